@@ -1,0 +1,1 @@
+"""The long-lived agent and every verb that joins strangers."""

@@ -1,0 +1,1 @@
+"""Command line and, later, service and pages: asks and shows, decides nothing."""

@@ -1,0 +1,1 @@
+"""Other people's systems: any Gymnasium world, and what comes after it."""

@@ -1,0 +1,1 @@
+"""The common language: MDPs and policies as arrays, kernels for them, random streams, errors, metrics."""

@@ -1,0 +1,27 @@
+"""What a learner leaves behind, episode by episode; filled in place by the kernels."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+class Curve(NamedTuple):
+    """Per episode, all (n_episodes,): discounted return, summed reward, steps, collisions, goal reached."""
+
+    returns: NDArray[np.float64]
+    rewards: NDArray[np.float64]
+    steps: NDArray[np.int64]
+    collisions: NDArray[np.int64]
+    reached: NDArray[np.bool_]
+
+
+def new_curve(n_episodes: int) -> Curve:
+    """An empty learning curve."""
+    return Curve(
+        np.zeros(n_episodes),
+        np.zeros(n_episodes),
+        np.zeros(n_episodes, np.int64),
+        np.zeros(n_episodes, np.int64),
+        np.zeros(n_episodes, np.bool_),
+    )

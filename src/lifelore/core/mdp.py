@@ -1,0 +1,134 @@
+"""Domains, tasks and their tables: ``D = (S, A, T, γ)``, ``τ = (D, R, S₀)`` (thesis §3.2.2).
+
+A domain is one pure scalar function ``step(params, s, a, u) -> (s2, reward, event)``. From it come the
+tables that every kernel and the exact solver read, and the Gymnasium environment. `u` is one uniform in
+[0, 1); a deterministic domain ignores it. `event` says what happened beside the reward.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+
+NOTHING, TERMINAL, COLLISION = 0, 1, 2
+"""Bits of an event: the episode ends here; the move was refused by the world (a wall, say)."""
+
+Step = Callable[[tuple, int, int, float], tuple[int, float, int]]
+
+
+class Tables(NamedTuple):
+    """A task enumerated: the lingua franca of kernels, solver and checks.
+
+    next_state : (n_states, n_actions, n_outcomes) int32
+    reward : (n_states, n_actions, n_outcomes) float64
+    event : (n_states, n_actions, n_outcomes) uint8, bits TERMINAL | COLLISION
+    outcome_cum : (n_outcomes,) float64, cumulative outcome probabilities, last one 1
+    starts : (n_starts,) int32, an episode starts in one of them, each as likely
+    """
+
+    next_state: NDArray[np.int32]
+    reward: NDArray[np.float64]
+    event: NDArray[np.uint8]
+    outcome_cum: NDArray[np.float64]
+    starts: NDArray[np.int32]
+
+    @property
+    def n_states(self) -> int:
+        return self.next_state.shape[0]
+
+    @property
+    def n_actions(self) -> int:
+        return self.next_state.shape[1]
+
+
+@dataclass(frozen=True)
+class Domain:
+    """What stays the same over tasks: states, actions, transitions, discount.
+
+    Parameters
+    ----------
+    name : str
+    n_states, n_actions : int
+        Both at least 1.
+    step : callable
+        Pure ``step(params, s, a, u) -> (s2, reward, event)`` on scalars; plain Python or a kernel.
+    discount : float
+        γ in [0, 1).
+    outcome_probs : sequence of float
+        Lengths of the intervals of `u` on which `step` is constant; they sum to 1. ``(1.0,)``
+        where the domain is deterministic.
+    tabulate : callable, optional
+        ``tabulate(params, midpoints) -> (next_state, reward, event)``: the same table from a compiled
+        loop. Must equal the table enumerated through `step`, which is what happens without it.
+
+    Thesis: §3.2.2.
+    """
+
+    name: str
+    n_states: int
+    n_actions: int
+    step: Step
+    discount: float
+    outcome_probs: Sequence[float] = (1.0,)
+    tabulate: Callable | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.n_states < 1 or self.n_actions < 1:
+            raise InputError(
+                f"n_states and n_actions must be at least 1, got {self.n_states} and {self.n_actions}"
+            )
+        if not 0.0 <= self.discount < 1.0:
+            raise InputError(f"discount must lie in [0, 1), got {self.discount}")
+        if min(self.outcome_probs) <= 0 or abs(sum(self.outcome_probs) - 1) > 1e-12:
+            raise InputError(f"outcome_probs must be positive and sum to 1, got {list(self.outcome_probs)}")
+
+
+@dataclass(frozen=True)
+class Task:
+    """A domain with its reward and initial states.
+
+    Parameters
+    ----------
+    domain : Domain
+    params : tuple
+        Arrays and numbers handed to the domain's `step`; the only thing tasks of one domain differ in.
+    starts : (n_starts,) int
+        Initial states S₀, drawn uniformly.
+    goal : int, optional
+        The goal state, where the task has one.
+    """
+
+    domain: Domain
+    params: tuple
+    starts: NDArray[np.int32]
+    goal: int | None = None
+
+    def tables(self) -> Tables:
+        """Enumerate the task into `Tables`."""
+        domain = self.domain
+        cum = np.cumsum(np.asarray(domain.outcome_probs, dtype=np.float64))
+        cum[-1] = 1.0
+        midpoints = cum - np.asarray(domain.outcome_probs) / 2
+        enumerate_all = domain.tabulate or _enumerate_with(domain)
+        next_state, reward, event = enumerate_all(self.params, midpoints)
+        return Tables(next_state, reward, event, cum, np.ascontiguousarray(self.starts, dtype=np.int32))
+
+
+def _enumerate_with(domain: Domain) -> Callable:
+    """The plain enumeration of `step`; what `Domain.tabulate` replaces where it would be slow."""
+    step = getattr(domain.step, "py_func", domain.step)
+
+    def enumerate_all(params: tuple, midpoints: NDArray[np.float64]):
+        shape = (domain.n_states, domain.n_actions, len(midpoints))
+        next_state, reward = np.empty(shape, np.int32), np.empty(shape, np.float64)
+        event = np.empty(shape, np.uint8)
+        for index in np.ndindex(shape):
+            s, a, k = index
+            next_state[index], reward[index], event[index] = step(params, s, a, float(midpoints[k]))
+        return next_state, reward, event
+
+    return enumerate_all

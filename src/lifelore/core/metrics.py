@@ -1,0 +1,110 @@
+"""Numbers people compare: means, medians and paired ratios with 95 % intervals, and learning-curve metrics."""
+
+from dataclasses import asdict, dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+
+RESAMPLES = 2000
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """One measured number: the value reported, the median, a 95 % interval and how many runs stand behind.
+
+    `ci95` is None where fewer than three values, or no spread, leave nothing to estimate it from.
+    """
+
+    value: float
+    median: float
+    ci95: tuple[float, float] | None
+    n: int
+
+    def to_dict(self) -> dict:
+        """Plain data: {"value", "median", "ci95", "n"}."""
+        plain = asdict(self)
+        plain["ci95"] = list(self.ci95) if self.ci95 else None
+        return plain
+
+
+def mean_estimate(values: ArrayLike) -> Estimate:
+    """Mean and median of `values` (n,), with a bias-corrected accelerated (BCa) bootstrap interval."""
+    values = _checked(values)
+    return Estimate(
+        float(values.mean()), float(np.median(values)), _interval(values[:, None], _means), len(values)
+    )
+
+
+def ratio_estimate(numerators: ArrayLike, denominators: ArrayLike) -> Estimate:
+    """Ratio of means of paired values, the median of the pairs' own ratios, and a paired BCa interval.
+
+    Pairs whose denominator is 0 take no part in the median; a mean denominator of 0 gives NaN.
+    """
+    top, bottom = _checked(numerators), _checked(denominators)
+    if len(top) != len(bottom):
+        raise InputError(f"paired values must agree in number, got {len(top)} and {len(bottom)}")
+    value = float(top.mean() / bottom.mean()) if bottom.mean() else float("nan")
+    own = top[bottom != 0] / bottom[bottom != 0]
+    median = float(np.median(own)) if len(own) else float("nan")
+    return Estimate(value, median, _interval(np.column_stack([top, bottom]), _mean_ratios), len(top))
+
+
+def _checked(values: ArrayLike) -> NDArray[np.float64]:
+    values = np.asarray(values, np.float64).ravel()
+    if not values.size or not np.isfinite(values).all():
+        raise InputError("values must be finite and at least one")
+    return values
+
+
+def _means(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    return samples[..., 0].mean(axis=-1)
+
+
+def _mean_ratios(samples: NDArray[np.float64]) -> NDArray[np.float64]:
+    below = samples[..., 1].mean(axis=-1)
+    return np.divide(samples[..., 0].mean(axis=-1), below, out=np.full_like(below, np.nan), where=below != 0)
+
+
+def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | None:
+    """BCa bootstrap interval of `statistic` over `rows` (n, columns), the same for the same data."""
+    from scipy.special import ndtr, ndtri
+
+    n = len(rows)
+    if n < 3 or (rows == rows[0]).all():
+        return None
+    draws = stream(n, "bootstrap").integers(0, n, size=(RESAMPLES, n))
+    resampled = statistic(rows[draws])
+    resampled = resampled[np.isfinite(resampled)]
+    left_out = statistic(np.stack([np.delete(rows, i, axis=0) for i in range(n)]))
+    value = statistic(rows[None])[0]
+    if not resampled.size or not np.isfinite(value) or not np.isfinite(left_out).all():
+        return None
+    below = (np.sum(resampled < value) + 0.5 * np.sum(resampled == value)) / resampled.size
+    bias = ndtri(np.clip(below, 1 / RESAMPLES, 1 - 1 / RESAMPLES))
+    deviation = left_out.mean() - left_out
+    spread = (deviation**2).sum() ** 1.5
+    acceleration = (deviation**3).sum() / (6 * spread) if spread > 0 else 0.0
+    z = bias + ndtri(np.array([0.025, 0.975]))
+    low, high = np.quantile(resampled, ndtr(bias + z / (1 - acceleration * z)))
+    return float(low), float(high)
+
+
+def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
+    """First-episode advantage: mean paired difference of first returns."""
+    return mean_estimate(_checked(returns) - _checked(baseline))
+
+
+def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window: int = 1) -> int | None:
+    """Episodes until the moving mean over `window` first reaches `threshold`; None if it never does.
+
+    The count is of episodes run, so at least `window`.
+    """
+    returns = np.asarray(returns, float)
+    if window < 1 or window > len(returns):
+        raise InputError(f"window must lie in [1, {len(returns)}], got {window}")
+    smooth = np.convolve(returns, np.ones(window) / window, mode="valid")
+    reached = np.flatnonzero(smooth >= threshold)
+    return int(reached[0]) + window if reached.size else None

@@ -1,0 +1,142 @@
+"""Exact solutions on tables: values, all tied-optimal actions, and the value of a given policy."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.jit import kernel
+from lifelore.core.mdp import TERMINAL, Tables
+
+TIE_TOLERANCE = 1e-9
+"""Actions whose values differ by less than this, relative to the larger, are tied."""
+
+
+def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
+    """Optimal action values by value iteration, (n_states, n_actions).
+
+    Sweeps in place until no value moves by more than `tolerance` times the largest reward. Where every
+    reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
+    shortest path.
+    """
+    q = np.zeros((tables.n_states, tables.n_actions))
+    _sweep(tables, q, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
+    return q
+
+
+@kernel
+def _sweep(tables, q, discount, tolerance):
+    next_state, reward, event, outcome_cum, _ = tables
+    n_states, n_actions, n_outcomes = next_state.shape
+    value = np.zeros(n_states)
+    moved = tolerance + 1.0
+    backwards = False
+    while moved > tolerance:
+        moved = 0.0
+        for i in range(n_states):
+            s = n_states - 1 - i if backwards else i
+            best = -np.inf
+            for a in range(n_actions):
+                total, before = 0.0, 0.0
+                for k in range(n_outcomes):
+                    p = outcome_cum[k] - before
+                    before = outcome_cum[k]
+                    total += p * reward[s, a, k]
+                    if not event[s, a, k] & TERMINAL:
+                        total += p * discount * value[next_state[s, a, k]]
+                q[s, a] = total
+                best = max(best, total)
+            moved = max(moved, abs(best - value[s]))
+            value[s] = best
+        backwards = not backwards
+
+
+def best_actions(q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE) -> NDArray[np.bool_]:
+    """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool."""
+    best = q.max(axis=1, keepdims=True)
+    return q >= best - tolerance * np.maximum(np.abs(best), 1e-300)
+
+
+def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
+    """The first best action where some action promises something; -1 where none does.
+
+    A learner that values nothing above zero in a state has no policy there yet. It counts as standing
+    still, for every learner alike: worth 0.
+    """
+    return np.where(q.max(axis=1) > 0, q.argmax(axis=1), -1).astype(np.int32)
+
+
+def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) -> NDArray[np.float64]:
+    """Exact value of following `policy` from every state, (n_states,).
+
+    Parameters
+    ----------
+    tables : Tables
+    policy : (n_states,) int
+        Action of each state; -1: stand still, worth 0.
+    discount : float
+        γ in [0, 1).
+    """
+    policy = np.ascontiguousarray(policy, dtype=np.int32)
+    if tables.outcome_cum.size == 1:
+        return _follow(tables.next_state, tables.reward, tables.event, policy, float(discount))
+    return _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
+
+
+@kernel
+def _follow(next_state, reward, event, policy, discount):
+    """Deterministic world: walk each path once; a cycle's value has a closed form."""
+    n_states = policy.size
+    value = np.zeros(n_states)
+    mark = np.zeros(n_states, np.int64)  # 0 new, -1 done, else 1 + place on the path under way
+    path = np.empty(n_states, np.int64)
+    for start in range(n_states):
+        length, s = 0, start
+        ended = False
+        while not ended and mark[s] == 0:
+            if policy[s] < 0:
+                mark[s] = -1
+                break
+            path[length] = s
+            length += 1
+            mark[s] = length
+            ended = event[s, policy[s], 0] & TERMINAL > 0
+            s = next_state[s, policy[s], 0]
+        after = 0.0 if ended else value[s]
+        if not ended and mark[s] > 0:
+            first = mark[s] - 1
+            once = 0.0
+            for i in range(length - 1, first - 1, -1):
+                once = reward[path[i], policy[path[i]], 0] + discount * once
+            after = once / (1.0 - discount ** (length - first))
+        for i in range(length - 1, -1, -1):
+            after = reward[path[i], policy[path[i]], 0] + discount * after
+            value[path[i]] = after
+            mark[path[i]] = -1
+    return value
+
+
+@kernel
+def _iterate(tables, policy, discount, tolerance):
+    next_state, reward, event, outcome_cum, _ = tables
+    value = np.zeros(policy.size)
+    moved = tolerance + 1.0
+    while moved > tolerance:
+        moved = 0.0
+        for s in range(policy.size):
+            a = policy[s]
+            if a < 0:
+                continue
+            total, before = 0.0, 0.0
+            for k in range(outcome_cum.size):
+                p = outcome_cum[k] - before
+                before = outcome_cum[k]
+                total += p * reward[s, a, k]
+                if not event[s, a, k] & TERMINAL:
+                    total += p * discount * value[next_state[s, a, k]]
+            moved = max(moved, abs(total - value[s]))
+            value[s] = total
+    return value
+
+
+def mean_start_value(tables: Tables, values: NDArray[np.float64]) -> float:
+    """A value function averaged over the initial states S₀."""
+    return float(values[tables.starts].mean())

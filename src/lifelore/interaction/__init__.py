@@ -1,0 +1,1 @@
+"""Types, performance and observation models, beliefs, selection rules: policy reuse (ch. 4)."""

@@ -1,0 +1,75 @@
+"""Does the memory hold what was put in, and does the cache say what the contributions say?"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from sqlalchemy import Connection, text
+
+from lifelore.core.errors import StoreError
+from lifelore.memory import cache, ledger
+from lifelore.memory.folding import Folded, LoreKey, fold
+
+
+def problems(conn: Connection) -> list[str]:
+    """One line for each thing that is wrong; empty when all is well."""
+    found = list(_file_problems(conn))
+    oldest_first = ledger.entries(conn)
+    graves = ledger.tombstones(conn)
+    found += [
+        f"contribution {one.identity} is there although forgotten"
+        for one in oldest_first
+        if one.identity in graves
+    ]
+    numbers = [entry.number for entry in oldest_first]
+    # A damaged contribution makes every comparison below it meaningless, so those come first and alone.
+    return found + (list(_damaged(conn, numbers)) or list(_cache_problems(conn, numbers)))
+
+
+def _file_problems(conn: Connection) -> Iterator[str]:
+    if conn.dialect.name == "sqlite":
+        for (said,) in conn.exec_driver_sql("PRAGMA integrity_check(10)"):
+            if said != "ok":
+                yield "the file: " + " ".join(said.split())
+
+
+def _damaged(conn: Connection, numbers: list[int]) -> Iterator[str]:
+    for stored in ledger.load(conn, numbers):
+        try:
+            stored.contribution.records()
+        except StoreError as error:
+            yield f"contribution {stored.contribution.identity}: {error}"
+
+
+def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
+    expected = fold(ledger.load(conn, numbers))
+    rows = conn.execute(text("SELECT kind, key, version, number FROM lifelore_lore"))
+    cached = {(row[0], row[1], row[2]): row[3] for row in rows}
+    for name in sorted(cached.keys() | expected.keys()):
+        label = f"cache of {name[0]}/{name[1]} version {name[2]}"
+        if name not in cached:
+            yield f"{label} is missing; rebuild the memory"
+        elif name not in expected:
+            yield f"{label} has no contribution; rebuild the memory"
+        elif not _agrees(conn, name, cached[name], expected[name]):
+            yield f"{label} differs from its contributions; rebuild the memory"
+    yield from _orphans(conn)
+
+
+def _orphans(conn: Connection) -> Iterator[str]:
+    for table in ("lifelore_cells", "lifelore_mentions"):
+        query = text(f"SELECT COUNT(*) FROM {table} WHERE lore NOT IN (SELECT number FROM lifelore_lore)")
+        if count := conn.execute(query).scalar_one():
+            yield f"{count} rows of {table} belong to nothing; rebuild the memory"
+
+
+def _agrees(conn: Connection, name: LoreKey, lore: int, part: Folded) -> bool:
+    record = cache.read(conn, name)
+    rows = conn.execute(text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore"), {"lore": lore})
+    return (
+        record is not None
+        and record.merge == part.merge
+        and record.about == part.about
+        and np.array_equal(record.slots, part.slots)
+        and np.array_equal(record.values, part.values)
+        and sorted(rows.scalars()) == sorted(part.mentions)
+    )

@@ -1,0 +1,121 @@
+"""The cache of folded lore: what `recall` reads, kept up to date by additive upserts."""
+
+import json
+from collections.abc import Iterable
+
+import numpy as np
+from sqlalchemy import Connection, text
+
+from lifelore.core.protocols import Record
+from lifelore.memory import ledger
+from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
+
+_ROWS_AT_ONCE = 10_000
+
+# "The contribution of the new row is later than that of the row in place."
+_LATER = """EXISTS (
+    SELECT 1 FROM lifelore_contributions AS new, lifelore_contributions AS old
+    WHERE new.number = excluded.origin AND old.number = {table}.origin
+    AND (new.stamp, new.robot, new.process, new.seq) > (old.stamp, old.robot, old.process, old.seq))"""
+
+_NOTE = text(
+    "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin)"
+    " VALUES (:kind, :key, :version, :merge, :about, :origin) ON CONFLICT (kind, key, version)"
+    " DO UPDATE SET about = excluded.about, origin = excluded.origin"
+    f" WHERE {_LATER.format(table='lifelore_lore')}"
+)
+_CELL = (
+    "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES (:lore, :slot, :value, :origin)"
+    " ON CONFLICT (lore, slot) DO UPDATE SET "
+)
+_UPSERT = {
+    "add": text(_CELL + "value = lifelore_cells.value + excluded.value"),
+    "union": text(_CELL + "value = excluded.value WHERE excluded.value > lifelore_cells.value"),
+    "newest": text(
+        _CELL + f"value = excluded.value, origin = excluded.origin WHERE {_LATER.format(table='lifelore_cells')}"
+    ),
+}
+_MENTION = text("INSERT INTO lifelore_mentions (contribution, lore) VALUES (:contribution, :lore)")
+_FIND = text(
+    "SELECT number, merge, about FROM lifelore_lore WHERE kind = :kind AND key = :key AND version = :version"
+)
+
+
+def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
+    """Merge folded contributions, which must stand in the ledger already, into the cache."""
+    for name, part in sorted(folded.items()):
+        named = _named(name)
+        about = json.dumps(part.about, sort_keys=True)
+        conn.execute(_NOTE, {**named, "merge": part.merge, "about": about, "origin": part.origin})
+        lore, merge, _ = conn.execute(_FIND, named).one()
+        require_one_merge(name, {merge, part.merge})
+        conn.execute(_MENTION, [{"contribution": number, "lore": lore} for number in part.mentions])
+        for rows in ledger.in_batches(_cells(lore, part), _ROWS_AT_ONCE):
+            conn.execute(_UPSERT[part.merge], rows)
+
+
+def _cells(lore: int, part: Folded) -> Iterable[dict[str, int]]:
+    """Rows for the upsert. Only *newest* needs to know where a value came from; the others say 0."""
+    origins = part.origins if part.merge == "newest" else np.zeros_like(part.origins)
+    columns = zip(part.slots.tolist(), part.values.tolist(), origins.tolist(), strict=True)
+    return ({"lore": lore, "slot": slot, "value": value, "origin": origin} for slot, value, origin in columns)
+
+
+def read(conn: Connection, name: LoreKey) -> Record | None:
+    """One key's merged record, slots ascending; None when no contribution has the key."""
+    found = conn.execute(_FIND, _named(name)).one_or_none()
+    if found is None:
+        return None
+    cells = conn.execute(
+        text("SELECT slot, value FROM lifelore_cells WHERE lore = :lore ORDER BY slot"),
+        {"lore": found.number},
+    ).all()
+    table = np.array([tuple(row) for row in cells], dtype=np.int64).reshape(-1, 2)
+    slots, values = np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
+    return Record(*name, found.merge, slots, values, json.loads(found.about))
+
+
+def names(conn: Connection, kind: str) -> list[tuple[str, int, dict]]:
+    """(key, version, about) of every key of a kind, sorted."""
+    rows = conn.execute(text("SELECT key, version, about FROM lifelore_lore WHERE kind = :kind"), {"kind": kind})
+    return sorted(((row[0], row[1], json.loads(row[2])) for row in rows), key=lambda row: row[:2])
+
+
+def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
+    """The keys that any of these contributions has."""
+    query = text(
+        "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_mentions"
+        " ON lore = lifelore_lore.number WHERE contribution = :contribution"
+    )
+    found = (conn.execute(query, {"contribution": number}) for number in contributions)
+    return {(row[0], row[1], row[2]) for rows in found for row in rows}
+
+
+def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
+    """Forget the cache, of the keys in `only` or of all, and fold the contributions anew."""
+    if only is None:
+        for table in ("cells", "mentions", "lore"):
+            conn.execute(text(f"DELETE FROM lifelore_{table}"))
+        touched = None
+    else:
+        touched = _clear(conn, only)
+    oldest_first = [entry.number for entry in ledger.entries(conn) if touched is None or entry.number in touched]
+    write(conn, fold(ledger.load(conn, oldest_first), only))
+
+
+def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
+    """Delete the cache of some keys; the row numbers of the contributions that had them."""
+    numbers: set[int] = set()
+    for name in sorted(only):
+        lore = {"lore": conn.execute(_FIND, _named(name)).one().number}
+        numbers.update(
+            conn.execute(text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore"), lore).scalars()
+        )
+        conn.execute(text("DELETE FROM lifelore_cells WHERE lore = :lore"), lore)
+        conn.execute(text("DELETE FROM lifelore_mentions WHERE lore = :lore"), lore)
+        conn.execute(text("DELETE FROM lifelore_lore WHERE number = :lore"), lore)
+    return numbers
+
+
+def _named(name: LoreKey) -> dict[str, str | int]:
+    return dict(zip(("kind", "key", "version"), name, strict=True))

@@ -1,0 +1,133 @@
+"""Many contributions' records folded into one array of cells per key; the arithmetic of merging.
+
+Folding is associative, and given in order (oldest first) it gives the same cells for any grouping:
+*add* sums, *union* takes the largest value, *newest* takes the last one.
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import StoreError
+from lifelore.core.protocols import Merge, Record
+from lifelore.memory.contribution import Contribution
+
+Ints = NDArray[np.int64]
+LoreKey = tuple[str, str, int]
+# Folding this many at a time keeps the repeated sorting linear and the unpacked arrays few.
+_AT_A_TIME = 64
+
+
+@dataclass(frozen=True)
+class Stored:
+    """A contribution and the number of its row in one memory."""
+
+    number: int
+    contribution: Contribution
+
+
+@dataclass(frozen=True)
+class Folded:
+    """What some contributions together say about one key.
+
+    Parameters
+    ----------
+    slots, values, origins : (n,) int64
+        Cells ascending by slot; `origins` is the row number of the contribution that gave the value last.
+    about, origin : mapping, int
+        The newest description and the row number of its contribution.
+    mentions : list of int
+        Row numbers of all contributions that have this key.
+    """
+
+    merge: Merge
+    slots: Ints
+    values: Ints
+    origins: Ints
+    about: Any
+    origin: int
+    mentions: list[int] = field(default_factory=list)
+
+
+def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[LoreKey, Folded]:
+    """Fold contributions, given oldest first, into one `Folded` per key.
+
+    Parameters
+    ----------
+    stored : iterable of Stored
+        Ascending in `Contribution.order`.
+    only : set of (kind, key, version), optional
+        Fold these keys alone.
+
+    Raises
+    ------
+    StoreError
+        A damaged contribution; two contributions that merge one key differently; a sum beyond 64 bits.
+    """
+    waiting: dict[LoreKey, list[Folded]] = {}
+    for one in stored:
+        for record in one.contribution.records():
+            name = (record.kind, record.key, record.version)
+            if only is None or name in only:
+                parts = waiting.setdefault(name, [])
+                parts.append(_lift(one.number, record))
+                if len(parts) > _AT_A_TIME:
+                    waiting[name] = [_join(name, parts)]
+    return {name: _join(name, parts) for name, parts in sorted(waiting.items())}
+
+
+def _lift(number: int, record: Record) -> Folded:
+    origins = np.full(record.slots.size, number, dtype=np.int64)
+    return Folded(record.merge, record.slots, record.values, origins, record.about, number, [number])
+
+
+def _join(name: LoreKey, parts: list[Folded]) -> Folded:
+    merge = parts[0].merge
+    require_one_merge(name, {part.merge for part in parts})
+    if len(parts) == 1:
+        return parts[0]
+    slots = np.concatenate([part.slots for part in parts])
+    oldest_first = np.argsort(slots, kind="stable")
+    slots = slots[oldest_first]
+    values = np.concatenate([part.values for part in parts])[oldest_first]
+    origins = np.concatenate([part.origins for part in parts])[oldest_first]
+    starts = np.flatnonzero(np.diff(slots, prepend=slots[:1] - 1)) if slots.size else slots
+    last = np.append(starts[1:], slots.size)[: starts.size] - 1
+    return Folded(
+        merge, slots[starts], _reduce(name, merge, values, starts, last), origins[last],
+        parts[-1].about, parts[-1].origin, [number for part in parts for number in part.mentions],
+    )  # fmt: skip
+
+
+def _reduce(name: LoreKey, merge: Merge, values: Ints, starts: Ints, last: Ints) -> Ints:
+    if merge == "newest" or not starts.size:
+        return values[last]
+    if merge == "union":
+        return np.maximum.reduceat(values, starts)
+    return _exact_sums(name, values, starts)
+
+
+def _exact_sums(name: LoreKey, values: Ints, starts: Ints) -> Ints:
+    """Sums of runs through 32-bit halves, so that only a total beyond 64 bits fails, never a partial sum."""
+    low = np.add.reduceat(values & 0xFFFFFFFF, starts)
+    high = np.add.reduceat(values >> 32, starts) + (low >> 32)
+    if np.any(high != high.astype(np.int32)):
+        raise StoreError(too_large(f"{name[0]}/{name[1]}"))
+    return (high << 32) | (low & 0xFFFFFFFF)
+
+
+def too_large(what: str) -> str:
+    """The message for a sum beyond 64 bits."""
+    return f"a value of {what} would no longer fit 64 bits; nothing was changed, contribute smaller weights"
+
+
+def require_one_merge(name: LoreKey, merges: set[str]) -> None:
+    """StoreError unless all contributions merge a key in the same way."""
+    if len(merges) > 1:
+        raise StoreError(
+            f"{name[0]}/{name[1]} version {name[2]} is merged by {' and by '.join(sorted(merges))};"
+            " one key has one merge, so raise the record's version where it changed; nothing was changed"
+        )

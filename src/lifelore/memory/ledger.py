@@ -1,0 +1,125 @@
+"""The memory proper: contributions, and tombstones of those forgotten."""
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict, dataclass
+from itertools import islice
+from typing import TypeVar
+
+from sqlalchemy import Connection, bindparam, text
+
+from lifelore.core.errors import StoreError
+from lifelore.memory.contribution import Contribution, Identity, Order
+from lifelore.memory.folding import Stored
+from lifelore.memory.record_rules import LARGEST
+
+Item = TypeVar("Item")
+# Rows fetched or named in one statement: a hundred blobs are about 2 MB, and SQLite allows 32,766 names.
+BATCH = 100
+
+_IDENTITY = "robot = :robot AND process = :process AND seq = :seq"
+_INSERT = text(
+    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
+    " VALUES (:robot, :process, :seq, :stamp, :task, :blob, :digest) RETURNING number"
+)
+_KNOWN = text(
+    f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
+    f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
+)
+_BURY = text(
+    "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (:robot, :process, :seq) ON CONFLICT DO NOTHING"
+)
+_LOAD = text(
+    "SELECT number, robot, process, seq, stamp, task, blob, digest FROM lifelore_contributions"
+    " WHERE number IN :numbers"
+).bindparams(bindparam("numbers", expanding=True))
+
+
+@dataclass(frozen=True)
+class Entry:
+    """What a merge needs to know of a contribution before it reads the blob."""
+
+    number: int
+    identity: Identity
+    stamp: int
+    digest: str
+
+    @property
+    def order(self) -> Order:
+        """As `Contribution.order`."""
+        return self.stamp, *self.identity
+
+
+def in_batches(items: Iterable[Item], size: int = BATCH) -> Iterator[list[Item]]:
+    """`items` in lists of at most `size`."""
+    iterator = iter(items)
+    while batch := list(islice(iterator, size)):
+        yield batch
+
+
+def is_known(conn: Connection, identity: Identity) -> bool:
+    """True when a contribution is there already, or was forgotten."""
+    return conn.execute(_KNOWN, _named(identity)).first() is not None
+
+
+def next_stamp(conn: Connection) -> int:
+    """A stamp later than the clock and than every stamp here."""
+    largest = conn.execute(text("SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions")).scalar_one()
+    if largest >= LARGEST:
+        raise StoreError("a contribution here has the last possible stamp; forget the robot whose clock is wrong")
+    return max(time.time_ns(), int(largest) + 1)
+
+
+def insert(conn: Connection, contribution: Contribution) -> Stored:
+    """Write one contribution down."""
+    return Stored(int(conn.execute(_INSERT, asdict(contribution)).scalar_one()), contribution)
+
+
+def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
+    """All contributions, or one robot's, without their blobs, oldest first."""
+    query = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions"
+    if robot is None:
+        rows = conn.execute(text(query))
+    else:
+        rows = conn.execute(text(query + " WHERE robot = :robot"), {"robot": robot})
+    found = [Entry(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
+    return sorted(found, key=lambda entry: entry.order)
+
+
+def load(conn: Connection, numbers: Iterable[int]) -> Iterator[Stored]:
+    """The contributions of these row numbers, in this order, a batch in memory at a time."""
+    for batch in in_batches(numbers):
+        rows = {row[0]: Stored(row[0], Contribution(*row[1:])) for row in conn.execute(_LOAD, {"numbers": batch})}
+        for number in batch:
+            yield _with_bytes(rows[number])
+
+
+def _with_bytes(stored: Stored) -> Stored:
+    if not isinstance(stored.contribution.blob, bytes):
+        raise StoreError(f"contribution {stored.contribution.identity} holds no bytes; the memory is damaged")
+    return stored
+
+
+def tombstones(conn: Connection) -> set[Identity]:
+    """The identities of all forgotten contributions."""
+    return {
+        (row[0], row[1], row[2])
+        for row in conn.execute(text("SELECT robot, process, seq FROM lifelore_tombstones"))
+    }
+
+
+def bury(conn: Connection, identities: Iterable[Identity]) -> None:
+    """Leave a tombstone for each identity."""
+    for batch in in_batches(sorted(identities), 1000):
+        conn.execute(_BURY, [_named(identity) for identity in batch])
+
+
+def remove(conn: Connection, numbers: Sequence[int]) -> None:
+    """Delete contributions by row number."""
+    statement = text("DELETE FROM lifelore_contributions WHERE number = :number")
+    for batch in in_batches(numbers, 1000):
+        conn.execute(statement, [{"number": number} for number in batch])
+
+
+def _named(identity: Identity) -> dict[str, str | int]:
+    return dict(zip(("robot", "process", "seq"), identity, strict=True))

@@ -1,0 +1,67 @@
+"""The one place where a database's complaint becomes a StoreError of one line."""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from sqlalchemy.exc import SQLAlchemyError
+
+from lifelore.core.errors import StoreError
+
+BUSY_SECONDS = 30
+
+_FULL = "no space is left; nothing of this task was stored: free space, then try again"
+_READ_ONLY = "it is read-only, nothing was stored: make file and folder writable, or name another memory"
+_BUSY = f"another process kept it locked for {BUSY_SECONDS} s; nothing was changed, try again"
+_DAMAGED = "it is damaged: restore an export, or move the file away to begin anew"
+_CLOSED_DOOR = "it cannot be opened: check the path, and that file and folder may be read and written"
+_OVERFLOW = "a value would no longer fit 64 bits; nothing was changed, contribute smaller weights"
+_NO_SERVER = "the server cannot be reached or refuses: check host, database, user and password"
+
+# SQLite's error names by their beginning, PostgreSQL's SQLSTATE by its class; the first that fits counts.
+_MEANINGS = {
+    "SQLITE_FULL": _FULL,
+    "SQLITE_READONLY": _READ_ONLY,
+    "SQLITE_BUSY": _BUSY,
+    "SQLITE_LOCKED": _BUSY,
+    "SQLITE_CORRUPT": _DAMAGED,
+    "SQLITE_NOTADB": _DAMAGED,
+    "SQLITE_CANTOPEN": _CLOSED_DOOR,
+    "SQLITE_PERM": _CLOSED_DOOR,
+    "SQLITE_IOERR": "the disk failed or is full; nothing of this task was stored: check it, then try again",
+    "SQLITE_CONSTRAINT_CHECK": _OVERFLOW,
+    "SQLITE_TOOBIG": "the contribution is larger than SQLite takes; nothing was changed, give it in parts",
+    "22003": _OVERFLOW,
+    "53": _FULL,
+    "25006": _READ_ONLY,
+    "42501": "the database user may not do this: grant it the right to create and write tables",
+    "55P03": _BUSY,
+    "08": _NO_SERVER,
+    "28": _NO_SERVER,
+    "3D": _NO_SERVER,
+}
+
+
+@contextmanager
+def one_line_refusals(location: str) -> Iterator[None]:
+    """Turn whatever the drivers raise inside the block into one StoreError about `location`."""
+    try:
+        yield
+    except SQLAlchemyError as error:
+        raise refusal(location, getattr(error, "orig", None) or error) from error
+    except sqlite3.Error as error:
+        raise refusal(location, error) from error
+    except (OSError, MemoryError) as error:
+        if isinstance(error, StoreError):
+            raise
+        raise refusal(location, error) from error
+
+
+def refusal(location: str, cause: BaseException) -> StoreError:
+    """The StoreError for a driver's exception: the memory, what it means, what to do, what was said."""
+    code = str(getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None) or "")
+    said = " ".join(str(cause).split())[:200]
+    meaning = next((text for start, text in _MEANINGS.items() if code.startswith(start)), None)
+    if meaning is None and "connection" in said.lower() and not code:
+        meaning = _NO_SERVER
+    return StoreError(f"memory {location}: {meaning} ({said})" if meaning else f"memory {location}: {said}")

@@ -1,0 +1,88 @@
+"""The tables, as numbered steps: a step and its note are one transaction.
+
+Contributions and tombstones are the memory; lore, mentions and cells are a cache of them.
+"""
+
+import time
+
+from sqlalchemy import Connection, inspect, text
+
+from lifelore.core.errors import StoreError
+
+APPLICATION_ID = 0x4C4F5245  # "LORE"
+
+_NOTES = """
+CREATE TABLE IF NOT EXISTS lifelore_migrations (
+    number {int} PRIMARY KEY, name {text} NOT NULL, applied {int} NOT NULL)
+"""
+
+_FIRST = """
+CREATE TABLE lifelore_contributions (
+    number {serial},
+    robot {text} NOT NULL, process {text} NOT NULL, seq {int} NOT NULL, stamp {int} NOT NULL,
+    task {text} NOT NULL, blob {blob} NOT NULL, digest {text} NOT NULL,
+    UNIQUE (robot, process, seq));
+CREATE INDEX lifelore_contributions_stamp ON lifelore_contributions (stamp);
+CREATE TABLE lifelore_tombstones (
+    robot {text} NOT NULL, process {text} NOT NULL, seq {int} NOT NULL,
+    PRIMARY KEY (robot, process, seq));
+CREATE TABLE lifelore_lore (
+    number {serial},
+    kind {text} NOT NULL, key {text} NOT NULL, version {int} NOT NULL,
+    merge {text} NOT NULL, about {text} NOT NULL, origin {int} NOT NULL,
+    UNIQUE (kind, key, version));
+CREATE TABLE lifelore_mentions (
+    contribution {int} NOT NULL, lore {int} NOT NULL,
+    PRIMARY KEY (contribution, lore));
+CREATE INDEX lifelore_mentions_lore ON lifelore_mentions (lore);
+CREATE TABLE lifelore_cells (
+    lore {int} NOT NULL, slot {int} NOT NULL, value {int} NOT NULL{whole}, origin {int} NOT NULL,
+    PRIMARY KEY (lore, slot)){clustered}
+"""
+
+MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST)}
+LATEST = max(MIGRATIONS)
+
+# SQLite turns an overflowing sum into a float; the check refuses it, as PostgreSQL does by itself.
+# PostgreSQL must compare names byte by byte, as SQLite and Python do, or ties would fall differently.
+_WORDS = {
+    "sqlite": {
+        "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
+        "whole": " CHECK (typeof(value) = 'integer')", "clustered": " WITHOUT ROWID",
+    },
+    "postgresql": {
+        "int": "BIGINT", "text": 'TEXT COLLATE "C"', "blob": "BYTEA",
+        "serial": "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY", "whole": "", "clustered": "",
+    },
+}  # fmt: skip
+
+
+def version(conn: Connection) -> int:
+    """The number of the last step taken; 0 for an empty database."""
+    if not inspect(conn).has_table("lifelore_migrations"):
+        return 0
+    return int(conn.execute(text("SELECT COALESCE(MAX(number), 0) FROM lifelore_migrations")).scalar_one())
+
+
+def refuse_newer(location: str, found: int) -> None:
+    """StoreError when a later Lifelore made the memory."""
+    if found > LATEST:
+        raise StoreError(
+            f"memory {location} was made by a newer Lifelore (schema {found}, this one knows {LATEST});"
+            " nothing was changed: upgrade lifelore, or name another memory"
+        )
+
+
+def take_step(conn: Connection, number: int) -> None:
+    """Run step `number` and note it, within the caller's transaction; nothing if it was taken before."""
+    words = _WORDS[conn.dialect.name]
+    conn.exec_driver_sql(_NOTES.format(**words))
+    if version(conn) >= number:
+        return
+    if conn.dialect.name == "sqlite":
+        conn.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
+    name, statements = MIGRATIONS[number]
+    for statement in statements.format(**words).split(";"):
+        conn.exec_driver_sql(statement)
+    note = text("INSERT INTO lifelore_migrations (number, name, applied) VALUES (:number, :name, :applied)")
+    conn.execute(note, {"number": number, "name": name, "applied": time.time_ns()})

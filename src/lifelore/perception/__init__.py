@@ -1,0 +1,1 @@
+"""Clouds in, scene graph out: segmentation, separation, contact point networks, relations, logic (ch. 2)."""
