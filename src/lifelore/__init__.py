@@ -1,3 +1,65 @@
-"""Lifelore: an agent that lives long in one kind of world and becomes good at that world."""
+"""Lifelore: an agent that lives long in one kind of world and becomes good at that world.
+
+The public names, each imported when first used, so that ``import lifelore`` costs nothing:
+
+>>> import lifelore
+>>> prior = lifelore.ActionPrior(n_actions=4)
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lifelore.action.action_prior import ActionPrior as ActionPrior
+    from lifelore.agent.foreign_life import live_in as live_in
+    from lifelore.agent.life import live as live
+    from lifelore.agent.life_settings import LifeSettings as LifeSettings
+    from lifelore.bridges.gymnasium_world import GymnasiumWorld as GymnasiumWorld
+    from lifelore.core.errors import LifeloreError as LifeloreError
+    from lifelore.core.mdp import Domain as Domain
+    from lifelore.core.mdp import Tables as Tables
+    from lifelore.core.mdp import Task as Task
+    from lifelore.core.protocols import Policy as Policy
+    from lifelore.core.protocols import Record as Record
+    from lifelore.core.protocols import SignalModel as SignalModel
+    from lifelore.core.protocols import World as World
+    from lifelore.core.q_learner import QLearning as QLearning
+    from lifelore.domains.worlds import make_world as make_world
+    from lifelore.memory import Memory as Memory
+    from lifelore.memory import open_memory as open_memory
 
 __version__ = "0.1.0"
+
+_HOME = {
+    "ActionPrior": "lifelore.action.action_prior",
+    "Domain": "lifelore.core.mdp",
+    "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
+    "LifeSettings": "lifelore.agent.life_settings",
+    "LifeloreError": "lifelore.core.errors",
+    "Memory": "lifelore.memory",
+    "Policy": "lifelore.core.protocols",
+    "QLearning": "lifelore.core.q_learner",
+    "Record": "lifelore.core.protocols",
+    "SignalModel": "lifelore.core.protocols",
+    "Tables": "lifelore.core.mdp",
+    "Task": "lifelore.core.mdp",
+    "World": "lifelore.core.protocols",
+    "live": "lifelore.agent.life",
+    "live_in": "lifelore.agent.foreign_life",
+    "make_world": "lifelore.domains.worlds",
+    "open_memory": "lifelore.memory",
+}
+
+__all__ = ["__version__", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOME:
+        raise AttributeError(f"module 'lifelore' has no attribute '{name}'")
+    value = getattr(import_module(_HOME[name]), name)
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -83,7 +83,8 @@ class Domain:
             )
         if not 0.0 <= self.discount < 1.0:
             raise InputError(f"discount must lie in [0, 1), got {self.discount}")
-        if min(self.outcome_probs) <= 0 or abs(sum(self.outcome_probs) - 1) > 1e-12:
+        probs = np.asarray(self.outcome_probs, float)
+        if not ((probs > 0).all() and abs(probs.sum() - 1) <= 1e-12):
             raise InputError(f"outcome_probs must be positive and sum to 1, got {list(self.outcome_probs)}")
 
 
@@ -106,6 +107,11 @@ class Task:
     params: tuple
     starts: NDArray[np.int32]
     goal: int | None = None
+
+    def __post_init__(self) -> None:
+        starts, n_states = np.asarray(self.starts), self.domain.n_states
+        if not starts.size or starts.min() < 0 or starts.max() >= n_states:
+            raise InputError(f"starts must name at least one state, each in [0, {n_states}), got {starts}")
 
     def tables(self) -> Tables:
         """Enumerate the task into `Tables`."""

@@ -44,8 +44,7 @@ def ratio_estimate(numerators: ArrayLike, denominators: ArrayLike) -> Estimate:
     Pairs whose denominator is 0 take no part in the median; a mean denominator of 0 gives NaN.
     """
     top, bottom = _checked(numerators), _checked(denominators)
-    if len(top) != len(bottom):
-        raise InputError(f"paired values must agree in number, got {len(top)} and {len(bottom)}")
+    _check_paired(top, bottom)
     value = float(top.mean() / bottom.mean()) if bottom.mean() else float("nan")
     own = top[bottom != 0] / bottom[bottom != 0]
     median = float(np.median(own)) if len(own) else float("nan")
@@ -57,6 +56,11 @@ def _checked(values: ArrayLike) -> NDArray[np.float64]:
     if not values.size or not np.isfinite(values).all():
         raise InputError("values must be finite and at least one")
     return values
+
+
+def _check_paired(first: NDArray[np.float64], second: NDArray[np.float64]) -> None:
+    if len(first) != len(second):
+        raise InputError(f"paired values must agree in number, got {len(first)} and {len(second)}")
 
 
 def _means(samples: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -82,7 +86,9 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
     value = statistic(rows[None])[0]
     if not resampled.size or not np.isfinite(value) or not np.isfinite(left_out).all():
         return None
-    below = (np.sum(resampled < value) + 0.5 * np.sum(resampled == value)) / resampled.size
+    # The same values summed in another order differ by rounding and are no less equal.
+    equal = np.isclose(resampled, value, rtol=1e-12, atol=1e-12 * np.abs(resampled).max())
+    below = (np.sum((resampled < value) & ~equal) + 0.5 * np.sum(equal)) / resampled.size
     bias = ndtri(np.clip(below, 1 / RESAMPLES, 1 - 1 / RESAMPLES))
     deviation = left_out.mean() - left_out
     spread = (deviation**2).sum() ** 1.5
@@ -94,7 +100,9 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
 
 def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
     """First-episode advantage: mean paired difference of first returns."""
-    return mean_estimate(_checked(returns) - _checked(baseline))
+    first, other = _checked(returns), _checked(baseline)
+    _check_paired(first, other)
+    return mean_estimate(first - other)
 
 
 def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window: int = 1) -> int | None:
@@ -105,6 +113,7 @@ def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window
     returns = np.asarray(returns, float)
     if window < 1 or window > len(returns):
         raise InputError(f"window must lie in [1, {len(returns)}], got {window}")
-    smooth = np.convolve(returns, np.ones(window) / window, mode="valid")
+    # Summed before divided: ten returns of 1 have the mean 1, ten tenths of them do not.
+    smooth = np.convolve(returns, np.ones(window), mode="valid") / window
     reached = np.flatnonzero(smooth >= threshold)
     return int(reached[0]) + window if reached.size else None

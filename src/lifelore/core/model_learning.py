@@ -31,9 +31,11 @@ NOT_LOOKED, LOOKED, DEAD_END, GOAL = range(4)
 
 NO_CRUMBS = 0.2
 """Among places equally near, first those with fewest others not looked at beside them (Warnsdorff's rule).
-Measured on buildings: the mean search falls from 0.70 to 0.55 of the number of places, where 0.5 is the least
-any searcher can need that must enter a place to see whether the goal is there. Below 1 / (moves + 1), so that
-a nearer place always comes first."""
+Measured on three buildings: the mean search falls from 0.67 to 0.59 of the number of places, where 0.5 is the
+least any searcher can need that must enter a place to see whether the goal is there. At most 1 / (moves + 1), so
+that a nearer place always comes first: with more than four moves a crumb weighs less."""
+MOST_ACTIONS = np.iinfo(np.int8).max
+"""Plans are kept as int8."""
 
 
 class Model(NamedTuple):
@@ -104,6 +106,8 @@ def blank_model(n_states: int, n_actions: int) -> Model:
 
 def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
     """A learner at the start of a task; `world` and `own` are numpy generators."""
+    if not 1 <= n_actions <= MOST_ACTIONS:
+        raise InputError(f"learner 'model' takes 1 to {MOST_ACTIONS} actions, got {n_actions}: use learner 'q'")
     return Explorer(
         np.zeros(n_states, np.int8),
         np.zeros((n_states, n_actions), np.int64),
@@ -237,6 +241,7 @@ def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, par
         if place[s] == GOAL:
             goal_known = True
             break
+    crumb = min(NO_CRUMBS, 1.0 / (target.shape[1] + 1))
     best_cost, best_state, best_action, ties = np.inf, -1, 0, 0
     goal_state, goal_action = -1, 0
     head, tail = 0, 1
@@ -258,7 +263,7 @@ def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, par
                 else:
                     cost = depth
             elif place[t] == NOT_LOOKED and not goal_known:
-                cost = depth + NO_CRUMBS * _not_looked_around(t, target, place)
+                cost = depth + crumb * _not_looked_around(t, target, place)
             elif place[t] != DEAD_END and parent[t] == UNKNOWN:
                 parent[t] = s
                 parent_action[t] = a

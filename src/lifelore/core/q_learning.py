@@ -83,10 +83,12 @@ def uniform_rows(tables: Tables, explore=None, ties=None, context_row=None) -> R
     ties = np.ones_like(explore) if ties is None else np.asarray(ties, float)
     if context_row is None:
         context_row = np.arange(n_states) if len(explore) == n_states else np.zeros(n_states)
-    _check_rows(explore, ties)
+    context_row = np.ascontiguousarray(context_row, dtype=np.int32)
+    _check_rows(explore, ties, n_actions)
+    _check_context_row(context_row, n_states, len(explore))
     return Rows(
         np.arange(n_states, dtype=np.int32),
-        np.ascontiguousarray(context_row, dtype=np.int32)[:, None],
+        context_row[:, None],
         np.zeros(tables.next_state.shape, np.uint8),
         cumulative(explore),
         np.ascontiguousarray(ties),
@@ -100,13 +102,24 @@ def cumulative(probs: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.ascontiguousarray(cum)
 
 
-def _check_rows(explore: NDArray[np.float64], ties: NDArray[np.float64]) -> None:
+def _check_rows(explore: NDArray[np.float64], ties: NDArray[np.float64], n_actions: int) -> None:
+    if explore.ndim != 2 or explore.shape[1] != n_actions:
+        raise InputError(f"explore must have {n_actions} columns, one an action, got shape {explore.shape}")
     if explore.shape != ties.shape:
         raise InputError(f"explore and ties must agree in shape, got {explore.shape} and {ties.shape}")
     if not np.allclose(explore.sum(axis=1), 1, atol=1e-9) or (explore < 0).any():
         raise InputError("explore must hold probabilities: non-negative rows that sum to 1")
     if not (ties > 0).all():
         raise InputError("ties must be positive: an action of weight 0 could never be chosen among equals")
+
+
+def _check_context_row(row: NDArray[np.int32], n_states: int, n_contexts: int) -> None:
+    # A row out of range would read foreign memory inside the kernel.
+    if row.shape != (n_states,) or row.min() < 0 or row.max() >= n_contexts:
+        raise InputError(
+            f"context_row must give each of {n_states} states a row in [0, {n_contexts}), "
+            f"got shape {row.shape}, {row.min(initial=0)}..{row.max(initial=0)}"
+        )
 
 
 def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:

@@ -1,6 +1,7 @@
 """Random streams derived by name, so that adding one never moves another."""
 
 import hashlib
+from numbers import Integral
 
 import numpy as np
 
@@ -22,6 +23,11 @@ def stream(seed: int, *names: str | int) -> np.random.Generator:
     >>> float(stream(7, "task", 3).random()) == float(stream(7, "task", 4).random())
     False
     """
-    label = "\x1f".join(f"{type(name).__name__}:{name}" for name in (int(seed), *names))
+    label = "\x1f".join(_label(name) for name in (int(seed), *names))
     digest = hashlib.sha256(label.encode()).digest()
     return np.random.default_rng(np.frombuffer(digest, dtype=np.uint32).tolist())
+
+
+def _label(name: str | int) -> str:
+    # A NumPy integer names the same stream as the Python one.
+    return f"int:{int(name)}" if isinstance(name, Integral) else f"{type(name).__name__}:{name}"

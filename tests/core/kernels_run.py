@@ -1,0 +1,69 @@
+"""Runs every kernel of the core on small worlds and saves all arrays: ``python kernels_run.py OUT.npz``.
+
+Started by the tests in processes of their own, compiled and as plain Python.
+"""
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+
+
+def _random_world():
+    spec = importlib.util.spec_from_file_location("twins", Path(__file__).with_name("conftest.py"))
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module.random_world
+
+
+def all_arrays() -> dict[str, np.ndarray]:
+    """Every array that the kernels leave behind, by name."""
+    from lifelore.core.curve import new_curve
+    from lifelore.core.model_learning import (
+        Manner,
+        Perceived,
+        best_known_actions,
+        blank_model,
+        explore,
+        new_explorer,
+    )
+    from lifelore.core.planning import optimal_q, policy_values
+    from lifelore.core.q_learning import Schedule, learn, new_learner, uniform_rows
+    from lifelore.core.random_state import next_uniform, random_state
+    from lifelore.core.streams import stream
+
+    random_world, out = _random_world(), {}
+    state = random_state(stream(0, "state"))
+    out["uniforms"] = np.array([next_uniform(state) for _ in range(50)])
+    for n_outcomes in (1, 3):
+        tables = random_world(n_outcomes, n_states=8, n_actions=3, n_outcomes=n_outcomes)
+        random = np.random.default_rng(n_outcomes)
+        rows = uniform_rows(tables, random.dirichlet(np.ones(3), 8), random.uniform(0.5, 2, (8, 3)))
+        who, curve = new_learner(8, 3, stream(1, "w"), stream(1, "o")), new_curve(20)
+        plan = Schedule(np.full(20, 0.3), np.full(20, 0.4), 30, 0.9)
+        while learn(tables, rows, plan, who, curve, 100):
+            pass
+        q = optimal_q(tables, 0.9)
+        values = policy_values(tables, random.integers(-1, 3, 8), 0.9)
+        out |= _named(f"q-learning {n_outcomes}", (*who, *curve, q, values))
+    tables = random_world(1, n_states=15, n_actions=3)
+    seen = Perceived(np.arange(15), np.zeros(15, np.int32), np.array([[0.0, 1.0, 4.0]]))
+    for manner in (Manner(), Manner(planned=False), Manner(exhaustive=True), Manner(senses=True)):
+        model, explorer = blank_model(15, 3), new_explorer(15, 3, stream(2, "w"), stream(2, "o"))
+        curve = new_curve(12)
+        while explore(tables, model, seen, manner, explorer, curve, 30, 0.9, 50):
+            pass
+        best = best_known_actions(model, explorer)
+        out |= _named(f"{manner}", (*model, *explorer, *curve, best))
+    return out
+
+
+def _named(name: str, arrays) -> dict[str, np.ndarray]:
+    return {f"{name} {i}": array for i, array in enumerate(arrays)}
+
+
+if __name__ == "__main__":
+    np.savez(sys.argv[1], **all_arrays())  # type: ignore[arg-type]

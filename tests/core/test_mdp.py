@@ -1,0 +1,74 @@
+"""Domains and tasks: enumeration by hand, and the rules they hold to."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Task
+
+
+def slippery(params, s, a, u):
+    """Three places in a row; a step right, or with u in the last fifth a slip back to place 0."""
+    goal = params[0]
+    if u >= 0.8:
+        return 0, -1.0, COLLISION
+    return (s + 1, 0.0, NOTHING) if s + 1 != goal else (goal, 9.0, TERMINAL)
+
+
+def row(**settings) -> Domain:
+    return Domain("row", 3, 1, slippery, 0.9, **{"outcome_probs": (0.8, 0.2), **settings})
+
+
+def test_tables_by_hand():
+    tables = Task(row(), (2,), np.array([0, 1])).tables()
+    assert (tables.n_states, tables.n_actions) == (3, 1)
+    assert tables.next_state[:2, 0].tolist() == [[1, 0], [2, 0]]
+    assert tables.reward[:2, 0].tolist() == [[0.0, -1.0], [9.0, -1.0]]
+    assert tables.event[:2, 0].tolist() == [[NOTHING, COLLISION], [TERMINAL, COLLISION]]
+    assert tables.outcome_cum.tolist() == [0.8, 1.0]
+    assert tables.starts.tolist() == [0, 1]
+    assert [a.dtype for a in tables] == [np.int32, np.float64, np.uint8, np.float64, np.int32]
+
+
+def test_last_cumulative_probability_is_one_to_the_bit():
+    tables = Task(row(outcome_probs=(0.1,) * 10), (2,), np.array([0])).tables()
+    assert tables.outcome_cum[-1] == 1.0
+    assert np.cumsum([0.1] * 10)[-1] != 1.0
+
+
+def test_tabulate_takes_the_place_of_the_enumeration():
+    seen = []
+
+    def tabulate(params, midpoints):
+        seen.append((params, midpoints.tolist()))
+        shape = (3, 1, 2)
+        return np.ones(shape, np.int32), np.zeros(shape), np.zeros(shape, np.uint8)
+
+    tables = Task(row(tabulate=tabulate), (2,), np.array([0])).tables()
+    assert (tables.next_state == 1).all()
+    assert seen == [((2,), [pytest.approx(0.4), pytest.approx(0.9)])]
+
+
+@pytest.mark.parametrize(
+    ("settings", "message"),
+    [
+        ({"n_states": 0}, "n_states and n_actions must be at least 1, got 0 and 1"),
+        ({"n_actions": 0}, "at least 1, got 3 and 0"),
+        ({"discount": 1.0}, r"discount must lie in \[0, 1\), got 1.0"),
+        ({"discount": float("nan")}, "got nan"),
+        ({"outcome_probs": (0.5, 0.6)}, "sum to 1"),
+        ({"outcome_probs": (1.5, -0.5)}, "positive"),
+        ({"outcome_probs": (float("nan"),)}, "positive and sum to 1"),
+        ({"outcome_probs": ()}, "sum to 1"),
+    ],
+)
+def test_domains_that_break_a_rule(settings, message):
+    given = {"name": "row", "n_states": 3, "n_actions": 1, "step": slippery, "discount": 0.9} | settings
+    with pytest.raises(InputError, match=message):
+        Domain(**given)
+
+
+@pytest.mark.parametrize("starts", [[], [3], [-1, 0]])
+def test_starts_must_be_states(starts):
+    with pytest.raises(InputError, match=r"starts must name at least one state, each in \[0, 3\)"):
+        Task(row(), (2,), np.array(starts, np.int32))

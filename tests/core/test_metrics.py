@@ -1,0 +1,124 @@
+"""Metrics: by hand, and SciPy's own bootstrap on the same draws as oracle."""
+
+import numpy as np
+import pytest
+import scipy.stats
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import (
+    RESAMPLES,
+    episodes_to_threshold,
+    jumpstart,
+    mean_estimate,
+    ratio_estimate,
+)
+from lifelore.core.streams import stream
+
+floats = st.floats(-100, 100, allow_subnormal=False)
+
+
+def scipy_interval(data, statistic, draws, n_resamples=RESAMPLES, **how):
+    found = scipy.stats.bootstrap(
+        data, statistic, method="BCa", n_resamples=n_resamples, rng=draws, vectorized=True, **how
+    )
+    return tuple(found.confidence_interval)
+
+
+def mean_ratio(top, bottom, axis=-1):
+    return np.mean(top, axis=axis) / np.mean(bottom, axis=axis)
+
+
+@pytest.mark.parametrize(("n", "law"), [(8, "poisson"), (30, "exponential"), (200, "lognormal")])
+def test_mean_interval_is_scipys_on_the_same_draws(n, law):
+    # Few values come as whole numbers: SciPy takes equal means of fractions for unequal where rounding differs.
+    values = getattr(np.random.default_rng(n), law)(size=n)
+    ours = mean_estimate(values)
+    assert ours.ci95 == pytest.approx(scipy_interval((values,), np.mean, stream(n, "bootstrap")), rel=1e-9)
+    assert (ours.value, ours.median, ours.n) == (values.mean(), np.median(values), n)
+
+
+def test_mean_interval_is_scipys_on_other_draws_within_monte_carlo_error():
+    values = np.random.default_rng(1).exponential(size=60)
+    theirs = scipy_interval((values,), np.mean, np.random.default_rng(2), 20_000)
+    # In units of the bootstrap's own deviation σ: a 2.5 % quantile of 2000 draws is known to
+    # √(0.025·0.975/2000) / φ(1.96) = 0.060, the bias to √(0.25/2000) / φ(0) = 0.028, which counts twice.
+    # Together 0.083, and 0.026 for SciPy's 20,000 draws: four times 0.087.
+    tolerance = 4 * 0.087 * values.std() / np.sqrt(60)
+    assert mean_estimate(values).ci95 == pytest.approx(theirs, abs=tolerance)
+
+
+def test_ratio_interval_is_scipys_on_the_same_draws():
+    random = np.random.default_rng(3)
+    top, bottom = random.exponential(size=40), random.uniform(1, 2, 40)
+    ours = ratio_estimate(top, bottom)
+    theirs = scipy_interval((top, bottom), mean_ratio, stream(40, "bootstrap"), paired=True)
+    assert ours.ci95 == pytest.approx(theirs, rel=1e-9)
+
+
+def test_ratio_by_hand():
+    found = ratio_estimate([1.0, 4.0, 0.0], [2.0, 2.0, 0.0])
+    # Means 5/3 over 4/3; own ratios ½ and 2, the third pair has none.
+    assert (found.value, found.median, found.n) == (pytest.approx(1.25), 1.25, 3)
+    nothing = ratio_estimate([1.0, 2.0, 3.0], [0.0, 0.0, 0.0])
+    assert np.isnan(nothing.value)
+    assert np.isnan(nothing.median)
+    assert nothing.ci95 is None
+
+
+def test_nothing_to_estimate_an_interval_from():
+    assert mean_estimate([1.0, 2.0]).ci95 is None
+    assert mean_estimate([2.0] * 9).ci95 is None
+    assert mean_estimate([2.0]).to_dict() == {"value": 2.0, "median": 2.0, "ci95": None, "n": 1}
+
+
+@settings(max_examples=50, deadline=None)
+@given(st.lists(floats, min_size=3, max_size=12), st.floats(0.1, 5), floats)
+def test_an_interval_moves_and_stretches_with_its_values(values, scale, shift):
+    values = np.round(values, 3)
+    ours, moved = mean_estimate(values).ci95, mean_estimate(values * scale + shift).ci95
+    assert (ours is None) == (moved is None)
+    if ours is not None and moved is not None:
+        size = 1 + np.abs(values).max() * scale + abs(shift)
+        assert moved == pytest.approx(np.multiply(ours, scale) + shift, abs=1e-6 * size)
+        assert ours[0] <= ours[1]
+        assert values.min() - 1e-9 <= ours[0]
+        assert ours[1] <= values.max() + 1e-9
+        assert mean_estimate(values).ci95 == ours
+
+
+def test_plain_data_of_an_estimate():
+    plain = mean_estimate([1.0, 2.0, 4.0]).to_dict()
+    assert list(plain) == ["value", "median", "ci95", "n"]
+    assert isinstance(plain["ci95"], list)
+
+
+def test_jumpstart_is_the_mean_paired_difference():
+    assert jumpstart([3.0, 5.0, 7.0], [1.0, 1.0, 1.0]).value == 4.0
+    with pytest.raises(InputError, match="agree in number, got 3 and 1"):
+        jumpstart([3.0, 5.0, 7.0], [1.0])
+
+
+def test_episodes_to_threshold_by_hand():
+    returns = np.array([0.0, 4.0, 0.0, 4.0, 8.0])
+    assert episodes_to_threshold(returns, 4.0) == 2
+    assert episodes_to_threshold(returns, 4.0, window=3) == 5  # means 4/3, 8/3, 4
+    assert episodes_to_threshold(returns, 9.0) is None
+    assert episodes_to_threshold(np.ones(10), 1.0, window=10) == 10  # a steady 1 has the mean 1
+
+
+@pytest.mark.parametrize("window", [0, 6])
+def test_windows_that_break_a_rule(window):
+    with pytest.raises(InputError, match=rf"window must lie in \[1, 5\], got {window}"):
+        episodes_to_threshold(np.zeros(5), 1.0, window)
+
+
+@pytest.mark.parametrize("values", [[], [np.nan, 1.0], [np.inf]])
+def test_values_that_break_a_rule(values):
+    with pytest.raises(InputError, match="values must be finite and at least one"):
+        mean_estimate(values)
+    with pytest.raises(InputError):
+        ratio_estimate(values, [1.0] * len(values))
+    with pytest.raises(InputError, match="got 1 and 2"):
+        ratio_estimate([1.0], [1.0, 2.0])

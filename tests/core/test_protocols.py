@@ -1,0 +1,50 @@
+"""Protocols are met by shape alone; a record is frozen."""
+
+from dataclasses import FrozenInstanceError
+
+import numpy as np
+import pytest
+
+from lifelore.core.curve import new_curve
+from lifelore.core.protocols import Policy, Record, SignalModel, World
+
+
+class Coin:
+    n_actions = 2
+
+    def reset(self, task, seed):
+        return 0
+
+    def step(self, action):
+        return 0, 1.0, True, False
+
+    def context(self, state, last_reward):
+        return state
+
+
+class Loudness:
+    def log_likelihood(self, policy, signal):
+        return np.array([0.0, -np.inf])
+
+
+def test_met_by_shape():
+    assert isinstance(Coin(), World)
+    assert isinstance(Loudness(), SignalModel)
+    assert isinstance(lambda state: 0, Policy)
+    assert not isinstance(Loudness(), World)
+    assert not isinstance(Coin(), SignalModel)
+    assert not isinstance(np.zeros(3, int), Policy)  # arrays serve where callers index them, not as calls
+
+
+def test_a_record_is_frozen():
+    record = Record("kind", "key", 1, "add", np.array([1]), np.array([2]))
+    with pytest.raises(FrozenInstanceError):
+        record.key = "other"  # type: ignore[misc]
+    assert record.about == {}
+
+
+def test_a_new_curve_is_empty_and_its_arrays_are_apart():
+    curve = new_curve(3)
+    assert all(len(column) == 3 and not column.any() for column in curve)
+    curve.steps[:] = 1
+    assert not curve.collisions.any()
