@@ -1,0 +1,80 @@
+"""Any task as a Gymnasium environment: the same `step` that the tables are made from."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import COLLISION, TERMINAL, Task
+
+
+class TaskEnvironment(gymnasium.Env):
+    """A `Task` to be acted in.
+
+    One uniform number is drawn for each reset and each step, so a rollout equals one through the task's
+    tables under the same numbers, bit for bit.
+
+    ## Action Space
+    ``Discrete(n_actions)`` of the task's domain.
+
+    ## Observation Space
+    ``Discrete(n_states)``: the number of the state.
+
+    ## Rewards
+    Those of the task's `step`.
+
+    ## Starting State
+    One of the task's starts, each as likely; ``reset(options={"state": s})`` starts in state s.
+
+    ## Episode End
+    Where `step` says so; a time limit is the business of ``gymnasium.make``.
+
+    ## Arguments
+    `task`: the task. `render_mode`: None, or what a subclass offers.
+
+    ``info["collision"]`` tells whether the last move was refused by the world.
+    """
+
+    def __init__(self, task: Task, render_mode: str | None = None) -> None:
+        if render_mode is not None and render_mode not in self.metadata["render_modes"]:
+            known = ", ".join(self.metadata["render_modes"]) or "none"
+            raise InputError(f"render_mode must be None or one of: {known}; got {render_mode!r}")
+        self.render_mode = render_mode
+        self.task = task
+        self.action_space = spaces.Discrete(task.domain.n_actions)
+        self.observation_space = spaces.Discrete(task.domain.n_states)
+        # The plain function: one call from Python costs less than entering compiled code.
+        self._step = getattr(task.domain.step, "py_func", task.domain.step)
+        self._state: int | None = None
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
+        """Start an episode; see the class for ``options``."""
+        super().reset(seed=seed)
+        chosen = (options or {}).get("state")
+        starts = self.task.starts
+        drawn = int(starts[int(self.np_random.random() * len(starts))])
+        self._state = drawn if chosen is None else self._check_state(chosen)
+        return self._state, self._info(0)
+
+    def step(self, action: Any):
+        """One move; gymnasium's five values."""
+        if self._state is None:
+            raise InputError("reset() must be called before step(), got no episode in progress")
+        if not self.action_space.contains(action):
+            raise InputError(f"action must lie in [0, {self.task.domain.n_actions}), got {action!r}")
+        uniform = self.np_random.random()
+        state, reward, event = self._step(self.task.params, self._state, int(action), uniform)
+        self._state = int(state)
+        return self._state, float(reward), bool(event & TERMINAL), False, self._info(event)
+
+    def _check_state(self, state: Any) -> int:
+        if isinstance(state, bool) or not isinstance(state, (int, np.integer)):
+            raise InputError(f"options['state'] must be the number of a state, got {state!r}")
+        if not 0 <= state < self.task.domain.n_states:
+            raise InputError(f"options['state'] must lie in [0, {self.task.domain.n_states}), got {state}")
+        return int(state)
+
+    def _info(self, event: int) -> dict[str, Any]:
+        return {"collision": bool(event & COLLISION)}

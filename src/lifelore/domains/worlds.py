@@ -1,0 +1,120 @@
+"""The worlds by name: settings as data in, a grid world out."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.domains.building import building_from_map
+from lifelore.domains.grid_world import GridWorld
+from lifelore.domains.lattice import lattice
+from lifelore.domains.noise_maze import noise_maze
+from lifelore.domains.occupancy_map import read_occupancy_map
+from lifelore.domains.office import office_map
+
+
+@dataclass(frozen=True)
+class WorldSettings:
+    """What makes a world; None is the domain's own default.
+
+    Parameters
+    ----------
+    domain : str
+        One of `domain_names()`.
+    map : str or Path, optional
+        YAML of a ROS map, for ``building``; without it an invented office of this `seed`.
+    cell, robot_radius : float, optional
+        In metres, for ``building``; 0.5 and 0.2.
+    min_free : float, optional
+        Share of a cell that must be free, for ``building``; 0.
+    discount, goal_reward, wall_reward : float, optional
+        γ 0.99 in buildings, 0.95 in the thesis's worlds; 100 and -10.
+    seed : int
+        Draws the office or the noise maze.
+    density : float, optional
+        Share of obstacles, for ``noise``; drawn from 0.5–0.8.
+    size : int, optional
+        Cells a side, for ``lattice`` and ``noise``; 23.
+    """
+
+    domain: str = "building"
+    map: str | Path | None = None
+    cell: float | None = None
+    robot_radius: float | None = None
+    min_free: float | None = None
+    discount: float | None = None
+    goal_reward: float | None = None
+    wall_reward: float | None = None
+    seed: int = 0
+    density: float | None = None
+    size: int | None = None
+
+
+_REWARDS = ("discount", "goal_reward", "wall_reward")
+
+
+def _building(settings: WorldSettings, **options) -> GridWorld:
+    drawn = settings.map is None
+    occupancy = office_map(settings.seed) if drawn else read_occupancy_map(settings.map)  # type: ignore[arg-type]
+    options.pop("map", None)
+    return building_from_map(occupancy, **options)
+
+
+def _lattice(settings: WorldSettings, **options) -> GridWorld:
+    return lattice(**options)
+
+
+def _noise(settings: WorldSettings, **options) -> GridWorld:
+    return noise_maze(stream(settings.seed, "noise maze"), **options)
+
+
+_WORLDS: dict[str, tuple[Callable[..., GridWorld], tuple[str, ...]]] = {
+    "building": (_building, ("map", "cell", "robot_radius", "min_free", *_REWARDS)),
+    "lattice": (_lattice, ("size", *_REWARDS)),
+    "noise": (_noise, ("density", "size", *_REWARDS)),
+}
+"""Name → constructor and the settings it takes."""
+
+
+def domain_names() -> tuple[str, ...]:
+    """The names `make_world` knows."""
+    return tuple(_WORLDS)
+
+
+def world_from_settings(settings: WorldSettings) -> GridWorld:
+    """The world that `settings` describe; the same settings give the same world.
+
+    Raises
+    ------
+    NotFoundError
+        No domain has this name.
+    InputError
+        A setting is given that the domain has no use for, or one breaks its rule.
+    """
+    if settings.domain not in _WORLDS:
+        raise NotFoundError(f"domain must be one of {', '.join(_WORLDS)}, got {settings.domain!r}")
+    construct, takes = _WORLDS[settings.domain]
+    options = {
+        field.name: getattr(settings, field.name)
+        for field in fields(settings)
+        if field.name not in ("domain", "seed") and getattr(settings, field.name) is not None
+    }
+    unused = [name for name in options if name not in takes]
+    if unused:
+        raise InputError(
+            f"{unused[0]} does not apply to domain {settings.domain!r}, got {options[unused[0]]!r}; leave it out "
+            f"(it takes {', '.join(takes)})"
+        )
+    return construct(settings, **options)
+
+
+def make_world(domain: str = "building", **settings) -> GridWorld:
+    """Shorthand: ``world_from_settings(WorldSettings(domain, **settings))``.
+
+    Examples
+    --------
+    >>> make_world("lattice", size=7).n_states
+    21
+    """
+    return world_from_settings(WorldSettings(domain, **settings))
