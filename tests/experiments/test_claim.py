@@ -1,0 +1,73 @@
+"""Settings of a claim and what may override them."""
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.claim import Claim
+from lifelore.experiments.predicate import Predicate
+
+
+def claim(check=None):
+    settings = {"runs": 5, "rate": 0.5, "name": "all", "sizes": [1, 2], "deep": {"a": 1}, "fast": True}
+    nothing = dict.fromkeys(("cells", "run_cell", "measure", "rows", "draw"), lambda *_: None)
+    sizes = {"quick": {**settings, "runs": 1}, "full": settings}
+    return Claim("C0.0", "t", "th", sizes, Predicate((), ()), **nothing, check=check)  # type: ignore[arg-type]
+
+
+def test_modes():
+    assert claim().settings("quick")["runs"] == 1
+    assert claim().settings("full")["runs"] == 5
+    with pytest.raises(InputError, match="mode must be one of quick, full, got 'fast'"):
+        claim().settings("fast")
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "value"),
+    [
+        ("runs", "7", 7),
+        ("runs", 7, 7),
+        ("rate", "1", 1.0),
+        ("rate", 1, 1.0),
+        ("name", "7", "7"),
+        ("sizes", "[3]", [3]),
+        ("fast", "false", False),
+        ("deep", '{"b": 2}', {"b": 2}),
+    ],
+)
+def test_overrides_are_read_as_the_settings_type(key, given, value):
+    found = claim().settings("full", {key: given})[key]
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "rule"),
+    [
+        ("runs", "many", "C0.0 setting 'runs' must be a whole number, got 'many'; the default is 5"),
+        ("runs", "1.5", "whole number"),
+        ("runs", True, "whole number"),
+        ("rate", "NaN", "must be a number"),
+        ("rate", "true", "must be a number"),
+        ("sizes", "3", "must be a list"),
+        ("sizes", "[NaN]", "must be a list"),
+        ("fast", "1", "true or false"),
+        ("deep", "[1]", "JSON object"),
+        ("speed", "1", "C0.0 has no setting 'speed'; it has runs, rate"),
+    ],
+)
+def test_overrides_that_break_their_rule(key, given, rule):
+    with pytest.raises(InputError, match=rule) as refused:
+        claim().settings("full", {key: given})
+    assert "\n" not in str(refused.value)
+
+
+def test_the_claims_own_check_sees_the_overridden_settings():
+    seen = []
+    claim(seen.append).settings("full", {"runs": "3"})
+    assert seen[0]["runs"] == 3
+
+
+def test_overriding_leaves_the_claim_as_it_was():
+    one = claim()
+    one.settings("full", {"runs": 3})
+    assert one.settings("full")["runs"] == 5

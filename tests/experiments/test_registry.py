@@ -1,0 +1,123 @@
+"""Conformance of every claim that is built, and that the registry is complete."""
+
+import json
+import pickle
+from itertools import product
+from pathlib import Path
+
+import pytest
+
+import lifelore.experiments
+from lifelore.core.errors import NotFoundError
+from lifelore.experiments.ledger import entries
+from lifelore.experiments.predicate import FOLDER, VERDICTS
+from lifelore.experiments.registry import built_ids, claim_of, list_claims, module_name
+from lifelore.experiments.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.figures.style import MAX_BYTES as MAX_FIGURE_BYTES
+
+IDS = built_ids()
+
+
+@pytest.fixture(scope="session")
+def quick(tmp_path_factory):
+    """Quick runs of all claims, by id, and where they were written."""
+    out = tmp_path_factory.mktemp("results")
+    return {result["claim"]: result for result in reproduce(IDS, "quick", out=out)}, out
+
+
+def test_registry_is_complete():
+    names = {path.stem for path in Path(lifelore.experiments.__file__).parent.glob("c[0-9]_*.py")}
+    assert names == {module_name(i) for i in IDS}
+    assert {path.stem for path in FOLDER.glob("*.json")} == set(IDS)
+
+
+def test_list_names_all_claims_built_or_not():
+    listed = list_claims()
+    assert [row["claim"] for row in listed] == [entry.id for entry in entries()]
+    assert {row["claim"] for row in listed if row["built"]} == set(IDS)
+    assert set(listed[0]) == {"claim", "where", "reports", "built"}
+
+
+@pytest.mark.parametrize(("claim_id", "rule"), [("C9.9", "not in the ledger"), ("C2.11", "not built yet")])
+def test_claims_that_cannot_be_run(claim_id, rule):
+    with pytest.raises(NotFoundError, match=rule):
+        claim_of(claim_id)
+
+
+@pytest.mark.parametrize("claim_id", IDS)
+class TestEveryClaim:
+    def test_names_itself(self, claim_id):
+        assert claim_of(claim_id).id == claim_id
+
+    def test_modes_have_the_same_settings_of_the_same_types(self, claim_id):
+        sizes = claim_of(claim_id).sizes
+        assert set(sizes) == {"quick", "full"}
+        types = [{key: type(value) for key, value in settings.items()} for settings in sizes.values()]
+        assert types[0] == types[1]
+        assert json.loads(json.dumps(sizes["full"])) == sizes["full"]
+
+    def test_cells_are_different_plain_data(self, claim_id):
+        claim = claim_of(claim_id)
+        texts = [json.dumps(cell) for cell in claim.cells(claim.settings("full"))]
+        assert len(set(texts)) == len(texts) > 1
+
+    def test_run_of_a_cell_can_be_sent_to_another_process(self, claim_id):
+        claim = claim_of(claim_id)
+        assert pickle.loads(pickle.dumps(claim.run_cell)) is claim.run_cell
+
+    def test_causes_belong_to_conditions(self, claim_id):
+        claim = claim_of(claim_id)
+        assert set(claim.causes) <= {c.name for c in claim.predicate.conditions}
+
+    def test_predicate_can_return_every_verdict(self, claim_id):
+        assert set(reachable_verdicts(claim_of(claim_id).predicate)) == set(VERDICTS)
+
+    def test_quick_run_writes_what_it_returns(self, claim_id, quick):
+        results, out = quick
+        path = out / claim_id / "result.json"
+        assert json.loads(path.read_text(encoding="utf-8")) == results[claim_id]
+        assert path.stat().st_size <= MAX_BYTES
+        picture = (out / claim_id / "figure.png").read_bytes()
+        assert picture.startswith(b"\x89PNG")
+        assert 10_000 < len(picture) <= MAX_FIGURE_BYTES
+
+    def test_result_has_exactly_its_keys(self, claim_id, quick):
+        result = quick[0][claim_id]
+        assert tuple(result) == RESULT_KEYS
+        assert result["verdict"] in VERDICTS
+        assert result["mode"] == "quick"
+        assert all(set(number) == {"value", "median", "ci95", "n"} for number in result["measured"].values())
+        assert result["settings"] == claim_of(claim_id).settings("quick")
+
+    def test_predicate_asks_only_what_is_measured(self, claim_id, quick):
+        asked = {c.measure for c in claim_of(claim_id).predicate.conditions}
+        assert asked <= set(quick[0][claim_id]["measured"])
+
+    def test_result_does_not_depend_on_threads_and_does_on_the_seed(self, claim_id, quick, tmp_path):
+        results, _ = quick
+        alone = reproduce([claim_id], "quick", jobs=1, out=tmp_path)[0]
+        same = {key for key in RESULT_KEYS if alone[key] == results[claim_id][key]}
+        assert set(RESULT_KEYS) - same <= {"seconds"}
+        other = reproduce([claim_id], "quick", jobs=3, out=tmp_path, seed=1)[0]
+        assert other["measured"] != alone["measured"]
+
+
+def reachable_verdicts(predicate):
+    """All verdicts over numbers at, below, above and between every bound asked of each measure."""
+    bounds = {}
+    for c in predicate.conditions:
+        asked = bounds.setdefault(c.measure, set())
+        asked.update(c.bound if isinstance(c.bound, tuple) else (c.bound,))
+    choices = []
+    for name, asked in bounds.items():
+        points = sorted(asked)
+        tried = {points[0] - 1, *points, (points[0] + points[-1]) / 2, points[-1] + 1}
+        choices.append([(name, x) for x in tried])
+    # One measure of many values at a time is enough when the rest take their extremes.
+    for combination in product(*choices):
+        yield predicate.verdict({name: sure(x) for name, x in combination})
+    yield predicate.verdict({})
+
+
+def sure(x):
+    return {"value": x, "median": x, "ci95": [x, x], "n": 10}

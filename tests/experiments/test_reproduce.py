@@ -1,0 +1,143 @@
+"""Runs that stop and go on, and what they refuse. A small claim of our own counts what is run."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.metrics import mean_estimate
+from lifelore.experiments import reproduce as module
+from lifelore.experiments.claim import Claim
+from lifelore.experiments.predicate import Predicate
+from lifelore.experiments.reproduce import reproduce, rounded
+from lifelore.figures.style import house_style, new_figure
+
+RAN = []
+PREDICATE = {
+    "conditions": [
+        {"name": "a", "measure": "x", "part": "value", "op": ">", "bound": 0, "words": "x is positive"}
+    ],
+    "rules": [{"verdict": "holds", "all": ["a"]}],
+}
+
+
+def run_cell(settings, cell, seed):
+    RAN.append(cell["i"])
+    if settings["fail_at"] == cell["i"]:
+        raise InputError("this cell fails")
+    return {"x": cell["i"] + seed + 1 / 3}
+
+
+def draw(result):
+    with house_style():
+        figure = new_figure(2, 2)
+        figure.subplots().plot([0, 1], [0, len(result["rows"])])
+    return figure
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    settings = {"n": 6, "fail_at": -1}
+    claim = Claim(
+        id="C3.1",
+        title="toy",
+        thesis="says",
+        sizes={"quick": settings, "full": settings},
+        predicate=Predicate.from_data(PREDICATE),
+        cells=lambda s: [{"i": i} for i in range(s["n"])],
+        run_cell=run_cell,
+        measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
+        rows=lambda s, results: list(results),
+        draw=draw,
+    )
+    monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
+    monkeypatch.setattr(module, "source_key", lambda name: "code")
+    RAN.clear()
+    return claim
+
+
+def test_finished_cells_are_not_run_again(toy, tmp_path):
+    first = reproduce(["C3.1"], out=tmp_path, jobs=2)
+    assert sorted(RAN) == [0, 1, 2, 3, 4, 5]
+    assert reproduce(["C3.1"], out=tmp_path, jobs=1) == first
+    assert len(RAN) == 6
+    reproduce(["C3.1"], out=tmp_path, seed=1)
+    assert len(RAN) == 12
+
+
+def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(toy, tmp_path):
+    def stop(done, total, label):
+        if done == 2:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        reproduce(["C3.1"], out=tmp_path, jobs=1, progress=stop)
+    before = len(RAN)
+    kept = len(list((tmp_path / "C3.1" / "cells").glob("*.json")))
+    assert 2 <= kept == before < 6
+    assert not (tmp_path / "C3.1" / "result.json").exists()
+    resumed = reproduce(["C3.1"], out=tmp_path, jobs=1)[0]
+    assert sorted(RAN) == [0, 1, 2, 3, 4, 5]
+    fresh = reproduce(["C3.1"], out=tmp_path / "fresh")[0]
+    assert {**resumed, "seconds": 0} == {**fresh, "seconds": 0}
+
+
+def test_a_cell_that_fails_stops_the_run_with_its_own_error(toy, tmp_path):
+    with pytest.raises(InputError, match="this cell fails"):
+        reproduce(["C3.1"], out=tmp_path, overrides={"fail_at": "3"}, jobs=1)
+    assert not (tmp_path / "C3.1" / "result.json").exists()
+
+
+def test_progress_counts_up_to_all(toy, tmp_path):
+    calls = []
+    reproduce(["C3.1"], out=tmp_path, progress=lambda *call: calls.append(call))
+    assert calls == [(done, 6, "C3.1") for done in range(7)]
+    calls.clear()
+    reproduce(["C3.1"], out=tmp_path, progress=lambda *call: calls.append(call))
+    assert calls == [(6, 6, "C3.1")]
+
+
+def test_result_by_hand(toy, tmp_path):
+    result = reproduce(["C3.1"], out=tmp_path, overrides={"n": 3})[0]
+    assert result["measured"]["x"]["value"] == 1.33333  # mean of 0, 1, 2 and a third, to six digits
+    assert result["verdict"] == "holds"
+    assert result["rows"] == [{"x": 0.333333}, {"x": 1.33333}, {"x": 2.33333}]
+    assert result["settings"] == {"n": 3, "fail_at": -1}
+    assert set(result["versions"]) == {"python", "lifelore", "numpy", "numba", "scipy"}
+
+
+def test_results_too_large_to_commit_are_refused(toy, tmp_path, monkeypatch):
+    monkeypatch.setattr(module, "MAX_BYTES", 100)
+    with pytest.raises(InputError, match="may hold 100 bytes"):
+        reproduce(["C3.1"], out=tmp_path)
+
+
+def test_a_disk_that_refuses_is_one_line(toy, tmp_path):
+    (tmp_path / "out").write_text("a file", encoding="utf-8")
+    with pytest.raises(StoreError, match="choose another place"):
+        reproduce(["C3.1"], out=tmp_path / "out")
+
+
+def test_what_is_refused_before_anything_runs(tmp_path):
+    with pytest.raises(NotFoundError, match="not in the ledger"):
+        reproduce(["C1.1"], out=tmp_path)
+    with pytest.raises(InputError, match="jobs must be at least 1, got 0"):
+        reproduce(["C3.1"], out=tmp_path, jobs=0)
+    with pytest.raises(InputError, match="has no setting 'runs'"):
+        reproduce(["C3.1"], out=tmp_path, overrides={"runs": 1})
+    assert not list(Path(tmp_path).iterdir())
+
+
+def test_rounded():
+    data = {"a": [1 / 3, float("nan"), float("inf")], "b": (True, 7, "x", None), "c": 123456789.0}
+    assert rounded(data) == {"a": [0.333333, None, None], "b": [True, 7, "x", None], "c": 123457000.0}
+    json.dumps(rounded(data), allow_nan=False)
+
+
+def test_a_quick_run_never_takes_the_place_of_evidence(toy, tmp_path):
+    reproduce(["C3.1"], "full", out=tmp_path)
+    evidence = (tmp_path / "C3.1" / "result.json").read_bytes()
+    reproduce(["C3.1"], "quick", out=tmp_path)
+    assert (tmp_path / "C3.1" / "result.json").read_bytes() == evidence
+    assert json.loads((tmp_path / "C3.1" / "quick" / "result.json").read_text())["mode"] == "quick"

@@ -1,0 +1,41 @@
+"""The code a result rests on: all it imports at whatever depth, and not what draws it."""
+
+import shutil
+
+import pytest
+
+from lifelore.experiments import source_key as module
+from lifelore.experiments.source_key import PACKAGE, source_key
+
+
+def test_closure_reaches_through_imports_and_leaves_figures_out():
+    found = module._closure("lifelore.experiments.lattice_grid")
+    assert {"lifelore.core.q_learning", "lifelore.core.random_state", "lifelore.core.jit"} <= found
+    assert "lifelore.experiments.lattice_learning" in found
+    assert not any(name.startswith("lifelore.figures") for name in found)
+    assert "lifelore.experiments.c3_2" not in found
+
+
+@pytest.fixture
+def copy(tmp_path, monkeypatch):
+    shutil.copytree(PACKAGE, tmp_path / "lifelore", ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(module, "PACKAGE", tmp_path / "lifelore")
+    return tmp_path / "lifelore"
+
+
+@pytest.mark.parametrize(
+    ("changed", "matters"),
+    [
+        ("core/random_state.py", True),
+        ("domains/grid_world.py", True),
+        ("figures/style.py", False),
+        ("core/errors.py", True),
+    ],
+)
+def test_the_key_changes_with_the_code_it_rests_on(copy, changed, matters):
+    fresh = source_key.__wrapped__
+    before = fresh("lifelore.experiments.lattice_grid")
+    assert before == source_key("lifelore.experiments.lattice_grid")
+    with (copy / changed).open("a", encoding="utf-8") as file:
+        file.write("# changed\n")
+    assert (fresh("lifelore.experiments.lattice_grid") != before) is matters

@@ -1,0 +1,51 @@
+"""What is drawn is what was given."""
+
+import numpy as np
+import pytest
+from matplotlib.colors import to_hex
+
+from lifelore.core.errors import InputError
+from lifelore.figures.learning_curve import draw_curve, draw_episode_bars, draw_optimal
+from lifelore.figures.style import COLOURS, new_figure
+
+
+@pytest.fixture
+def axes():
+    return new_figure(3, 2).subplots()
+
+
+def test_curve_and_interval(axes):
+    x, mean = np.arange(5), np.arange(5.0)
+    draw_curve(axes, x, mean, (mean - 1, mean + 2), "lore", "the lore")
+    (line,) = axes.lines
+    assert line.get_xydata().tolist() == np.column_stack([x, mean]).tolist()
+    assert to_hex(line.get_color()) == COLOURS["lore"]
+    assert line.get_label() == "the lore"
+    edge = axes.collections[0].get_paths()[0].vertices
+    assert (edge[:, 1].min(), edge[:, 1].max()) == (-1, 6)
+
+
+def test_curve_without_interval(axes):
+    draw_curve(axes, [0, 1], [0, 1], None, "scratch")
+    assert not axes.collections
+    assert axes.lines[0].get_label() == "scratch"
+
+
+def test_shapes_must_agree(axes):
+    with pytest.raises(InputError, match="x and mean must agree in shape"):
+        draw_curve(axes, [0, 1], [0, 1, 2], None, "lore")
+
+
+def test_optimal_line(axes):
+    draw_optimal(axes, 54.0)
+    assert list(axes.lines[0].get_ydata()) == [54.0, 54.0]
+
+
+def test_bars_stand_in_order_and_mark_the_cap(axes):
+    draw_episode_bars(axes, ["q-learning", "eps-QSAP"], [400, 1000], [(350, 450), None], cap=1000)
+    widths = [bar.get_width() for bar in axes.patches]
+    tops = [bar.get_y() for bar in axes.patches]
+    assert widths == [400, 1000]
+    assert tops[0] > tops[1]
+    assert [text.get_text() for text in axes.texts] == ["400", "≥ 1000"]
+    assert list(axes.lines[0].get_xdata()) == [350, 450]
