@@ -1,0 +1,60 @@
+# Everything a person or a machine does with a checkout. `make help` names it.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+# Pip never asks, and a slow index is given time.
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+
+# Real scenes and maps lie beside the checkout where they are at hand; tests read this variable alone.
+ifneq ($(wildcard ../shared/data),)
+export LIFELORE_DATA ?= $(abspath ../shared/data)
+endif
+
+.PHONY: help setup setup-test demo test check format bench soak docs reproduce clean
+
+help: ## Name every target
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+
+setup: $(BIN)/.core ## The environment with the core, in .venv
+
+setup-test: $(BIN)/.test ## The same with everything tests and checks need
+
+$(BIN)/.core: pyproject.toml constraints.txt
+	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
+	$(PIP) --editable .
+	touch $@
+
+$(BIN)/.test: $(BIN)/.core
+	$(PIP) --editable '.[test]'
+	touch $@
+
+demo: setup ## The main job on embedded defaults; pictures in out/demo
+	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
+
+test: setup-test ## The tests
+	$(BIN)/python -m pytest -m "not soak"
+
+check: setup-test ## Formatting, lint, types, direction of imports
+	$(BIN)/ruff format --check src tests
+	$(BIN)/ruff check src tests
+	$(BIN)/pyright
+	$(BIN)/lint-imports
+
+format: setup-test ## Mend formatting and what lint can mend
+	$(BIN)/ruff format src tests
+	$(BIN)/ruff check --fix src tests
+
+bench: setup-test ## Speed beside peers, side by side in one process
+	$(BIN)/lifelore bench kernels
+
+soak: setup-test ## Long runs: 200 kills
+	$(BIN)/python -m pytest -m soak
+
+docs: setup-test ## docs/reproduction.md from the committed results
+	$(BIN)/python -m lifelore.experiments.report
+
+reproduce: setup ## Every built claim at full size
+	$(BIN)/lifelore reproduce --full
+
+clean: ## Remove the environment and caches
+	rm -rf $(VENV) .pytest_cache .ruff_cache .hypothesis out

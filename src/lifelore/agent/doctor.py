@@ -1,0 +1,95 @@
+"""What is installed, what is missing, what is fast: `lifelore doctor` as plain data."""
+
+import os
+import platform
+import shutil
+import tempfile
+import time
+from importlib.metadata import PackageNotFoundError, version
+
+import numpy as np
+
+from lifelore.core.errors import LifeloreError
+from lifelore.core.jit import kernel_cache_dir
+from lifelore.core.q_learner import QLearning
+from lifelore.core.streams import stream
+from lifelore.domains.worlds import make_world
+from lifelore.memory import open_memory
+
+PACKAGES = {
+    "numpy": "arrays",
+    "scipy": "maps and graphs",
+    "numba": "kernels",
+    "gymnasium": "environments",
+    "sqlalchemy": "memory",
+    "matplotlib": "figures",
+    "psycopg": "memory on PostgreSQL (extra postgres)",
+    "minigrid": "MiniGrid worlds (extra envs)",
+}
+SLOW = 5.0
+"""Million steps a second below which kernels hardly run compiled."""
+
+
+def examine(memory: str | None = None) -> dict:
+    """Look at this machine.
+
+    Returns
+    -------
+    dict
+        ``lifelore``, ``python``, ``system``, ``cores``; ``packages``: [{"name", "version" or None, "for"}];
+        ``checks``: [{"what", "ok", "finding"}].
+    """
+    return {
+        "lifelore": version("lifelore"),
+        "python": platform.python_version(),
+        "system": platform.platform(terse=True),
+        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+        "packages": [{"name": name, "version": _version(name), "for": use} for name, use in PACKAGES.items()],
+        "checks": [_kernels(), _kernel_cache(), _memory(memory), _compiler()],
+    }
+
+
+def _version(name: str) -> str | None:
+    try:
+        return version(name)
+    except PackageNotFoundError:
+        return None
+
+
+def _kernels() -> dict:
+    tables = make_world("lattice").task(0).tables()
+    method = QLearning(episodes=300, epsilon=0.1, epsilon_floor=0.1)
+    speeds = []
+    for attempt in range(3):
+        began = time.perf_counter()
+        learner, _ = method.learn(tables, 0.95, world=stream(0, "world"), own=stream(0, "own", attempt))
+        speeds.append(learner.cursor[-1] / (time.perf_counter() - began) / 1e6)
+    speed = float(np.max(speeds))
+    return _check("kernels", speed > SLOW, f"{speed:.0f} million Q-learning steps a second on one core")
+
+
+def _kernel_cache() -> dict:
+    folder = kernel_cache_dir()
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            return _check("kernel cache", True, str(folder))
+    except OSError as error:
+        return _check("kernel cache", False, f"{folder} cannot be written ({error.strerror}); set NUMBA_CACHE_DIR")
+
+
+def _memory(where: str | None) -> dict:
+    try:
+        with open_memory(where) as opened:
+            return _check("memory", True, f"{opened.location}, {len(opened.robots())} robots")
+    except LifeloreError as error:
+        return _check("memory", False, str(error))
+
+
+def _compiler() -> dict:
+    found = shutil.which("gcc")
+    return _check("C compiler", True, found or "none; only `bench kernels` would compare itself with it")
+
+
+def _check(what: str, ok: bool, finding: str) -> dict:
+    return {"what": what, "ok": ok, "finding": finding}

@@ -1,0 +1,60 @@
+"""One task lived by the model-based learner."""
+
+from threading import Event
+
+import numpy as np
+
+from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
+from lifelore.core.curve import new_curve
+from lifelore.core.mdp import Tables
+from lifelore.core.model_learning import (
+    Explorer,
+    Manner,
+    Model,
+    Perceived,
+    best_known_actions,
+    explore,
+    known_policy,
+)
+from lifelore.core.planning import mean_start_value, policy_values
+
+
+def live_model_task(
+    tables: Tables,
+    optimal: float,
+    discount: float,
+    model: Model,
+    perceived: Perceived,
+    manner: Manner,
+    explorer: Explorer,
+    episodes: int,
+    max_steps: int,
+    stop: Event,
+) -> TaskResult:
+    """Explore until the greedy policy is worth 80 % of `optimal` or the cap is met; `model` learns in place."""
+    curve = new_curve(episodes)
+    policy = np.full(tables.n_states, -1, np.int32)
+    value, total, trace = 0.0, 0, []
+    while value < THRESHOLD * optimal:
+        if stop.is_set():
+            raise Stopped
+        steps = explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, CHECK_EVERY)
+        if steps == 0:
+            break
+        total += steps
+        policy = known_policy(model, explorer)
+        value = mean_start_value(tables, policy_values(tables, policy, discount))
+        trace.append((total, value / optimal))
+    reached = value >= THRESHOLD * optimal
+    episode, running = int(explorer.cursor[0]), explorer.running[0]
+    return TaskResult(
+        first_return=float(curve.returns[0] if episode > 0 else running),
+        collisions=int(curve.collisions.sum()),
+        steps_to_80=total if reached else episodes * max_steps,
+        episodes_to_80=min(episode + 1, episodes) if reached else episodes,
+        reached=bool(reached),
+        final_return=value,
+        policy=policy,
+        best=best_known_actions(model, explorer),
+        trace=np.array(trace, float).reshape(-1, 2),
+    )

@@ -1,0 +1,91 @@
+"""`lifelore`: the command line. Asks and shows; what is done is one function of a lower room a verb.
+
+Exit status: 0 done, 2 the user's mistake (one line that says what to do), 130 stopped by Ctrl-C, 1 ours.
+Heavy imports happen inside the verbs, so that ``--help`` answers at once.
+"""
+
+import sys
+
+import typer
+
+from lifelore.core.errors import LifeloreError
+
+INTERRUPTED = 130
+UsageError: type[Exception] = next(kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "UsageError")
+"""Click's, which newer versions of Typer carry inside themselves."""
+
+app = typer.Typer(
+    name="lifelore",
+    help="An agent that lives long in one kind of world and becomes good at that world.",
+    no_args_is_help=True,
+    add_completion=False,
+    rich_markup_mode=None,
+    pretty_exceptions_enable=False,
+)
+
+
+def _register() -> None:
+    from lifelore.app import bench_command, doctor_command, live_command, memory_commands, reproduce_command
+
+    app.command("live")(live_command.live)
+    app.add_typer(memory_commands.memory, name="memory")
+    app.command("reproduce")(reproduce_command.reproduce)
+    app.command("bench")(bench_command.bench)
+    app.command("doctor")(doctor_command.doctor)
+
+
+@app.command()
+def version(as_json: bool = typer.Option(False, "--json", help="One JSON document on stdout.")) -> None:
+    """Print the version."""
+    from lifelore import __version__
+
+    if as_json:
+        from lifelore.app.console import print_json
+
+        print_json({"version": __version__})
+    else:
+        print(__version__)
+
+
+_register()
+
+
+def main(arguments: list[str] | None = None) -> None:
+    """Run the command line and exit the process."""
+    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+
+
+def run(arguments: list[str]) -> int:
+    """Run the command line; the exit status. Every mistake of the user is one line on stderr."""
+    command = typer.main.get_command(app)
+    try:
+        status = command.main(arguments, prog_name="lifelore", standalone_mode=False)
+    except UsageError as error:
+        return _usage(error)
+    except LifeloreError as error:
+        return _mistake(str(error))
+    except (typer.Abort, KeyboardInterrupt):
+        print("lifelore: stopped", file=sys.stderr)
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The reader of our output went away (`lifelore … | head`); there is nobody left to tell.
+        sys.stderr.close()
+        return 0
+    return status if isinstance(status, int) else 0
+
+
+def _usage(error) -> int:
+    if type(error).__name__ == "NoArgsIsHelpError":
+        print(error.format_message(), file=sys.stderr)
+        return 2
+    where = f" (see: {error.ctx.command_path} --help)" if error.ctx else ""
+    return _mistake(f"{error.format_message()}{where}")
+
+
+def _mistake(message: str) -> int:
+    print(f"lifelore: {' '.join(message.split())}", file=sys.stderr)
+    return 2
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,74 @@
+"""The end of a life as a table."""
+
+import sys
+
+from rich.console import Console
+from rich.table import Table
+
+SHOWN = (
+    ("steps_to_80", "steps to 80 %"),
+    ("episodes_to_80", "episodes"),
+    ("collisions", "collisions"),
+    ("first_return", "first return"),
+)
+
+
+def print_life(report: dict, written: list[str]) -> None:
+    """First and last third of each agent with intervals, then the ratios to scratch."""
+    # Into a pipe or file there is no width to obey; four intervals in a row need a hundred columns.
+    console = Console() if sys.stdout.isatty() else Console(width=110)
+    tasks, memory = report["tasks"], report["memory"]
+    place = report["map"] or report["domain"]
+    console.print(
+        f"{len(tasks)} tasks in {place}, {report['n_states']:,} places, {report['seconds']:.1f} s; "
+        f"this robot has now finished {memory['tasks_after']} tasks",
+        highlight=False,
+        soft_wrap=True,
+    )
+    if tasks:
+        console.print(_thirds(report["summary"]["agents"]))
+        for name, ratios in report["summary"].items():
+            if name != "agents":
+                console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
+    for path in written:
+        console.print(f"wrote {path}", highlight=False)
+
+
+def _thirds(agents: dict) -> Table:
+    table = Table("agent", "third", title="means and 95 % intervals over the first and last third of the tasks")
+    for _, title in SHOWN:
+        table.add_column(title, justify="right")
+    for name, thirds in agents.items():
+        for which in ("first", "last"):
+            cells = [_number(thirds[which][measure]) for measure, _ in SHOWN]
+            table.add_row(name if which == "first" else "", which, *cells, end_section=which == "last")
+    return table
+
+
+def _number(estimate: dict) -> str:
+    text = _short(estimate["value"])
+    if estimate["ci95"]:
+        low, high = estimate["ci95"]
+        text += f" [{_short(low)}, {_short(high)}]"
+    return text
+
+
+def _short(x: float) -> str:
+    return f"{x / 1000:,.1f}k" if abs(x) >= 1000 else f"{x:,.0f}"
+
+
+def _ratio_line(name: str, ratios: dict) -> str:
+    steps, hits = ratios["steps_to_80_ratio"], ratios["collisions_ratio"]
+    who = name.removesuffix("_vs_scratch")
+    return (
+        f"{who} against scratch, last third: steps to 80 % {_ratio(steps)}, collisions {_ratio(hits)}, "
+        f"first return {ratios['jumpstart']['value']:+,.0f}"
+    )
+
+
+def _ratio(estimate: dict) -> str:
+    if estimate["value"] is None:
+        return "–"
+    interval = estimate["ci95"]
+    between = f" [{interval[0]:.3f}, {interval[1]:.3f}]" if interval else ""
+    return f"×{estimate['value']:.3f}{between}"

@@ -1,0 +1,77 @@
+"""`lifelore memory …`: look into what was learnt, move it, merge it, forget it."""
+
+from typing import Annotated
+
+import typer
+
+memory = typer.Typer(help="Show, export, import, merge or forget what was learnt.", no_args_is_help=True)
+
+Where = Annotated[
+    str | None, typer.Option("--memory", metavar="FILE|URL", help="Which memory; default: your own.")
+]
+AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")]
+
+
+@memory.command()
+def show(where: Where = None, as_json: AsJson = False) -> None:
+    """Who lived here, and what is known."""
+    from lifelore.app.console import print_json
+    from lifelore.app.memory_table import print_memory
+    from lifelore.memory import open_memory
+
+    with open_memory(where) as opened:
+        overview = opened.show()
+    print_json(overview) if as_json else print_memory(overview)
+
+
+@memory.command()
+def export(
+    path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
+) -> None:
+    """Write everything into one portable file."""
+    from lifelore.memory import open_memory
+
+    with open_memory(where) as opened:
+        count = opened.export_to(path)
+    _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
+
+
+@memory.command("import")
+def import_(
+    path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
+) -> None:
+    """Take in an exported file; what is there already, or was forgotten, stays as it is."""
+    _merge(path, where, as_json)
+
+
+@memory.command()
+def merge(
+    other: Annotated[str, typer.Argument(metavar="FILE|URL")], where: Where = None, as_json: AsJson = False
+) -> None:
+    """Take in another memory, which stays as it is. Exact in any order and grouping."""
+    _merge(other, where, as_json)
+
+
+@memory.command()
+def forget(robot: Annotated[str, typer.Argument()], where: Where = None, as_json: AsJson = False) -> None:
+    """Forget one robot for good: no later import brings it back."""
+    from lifelore.memory import open_memory
+
+    with open_memory(where) as opened:
+        count = opened.forget(robot)
+    _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
+
+
+def _merge(other: str, where: str | None, as_json: bool) -> None:
+    from lifelore.memory import open_memory
+
+    with open_memory(where) as opened:
+        counts = opened.merge_from(other)
+    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
+    _say(counts, f"contributions: {said}", as_json)
+
+
+def _say(document: dict, line: str, as_json: bool) -> None:
+    from lifelore.app.console import print_json
+
+    print_json(document) if as_json else print(line)

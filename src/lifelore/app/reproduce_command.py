@@ -1,0 +1,60 @@
+"""`lifelore reproduce`: run the thesis's claims."""
+
+from typing import Annotated
+
+import typer
+
+
+def reproduce(
+    claims: Annotated[
+        list[str] | None, typer.Argument(metavar="[CLAIM]...", help="Such as C3.2; none: all.")
+    ] = None,
+    quick: Annotated[bool, typer.Option("--quick", help="Small, for tests; no evidence. The default.")] = False,
+    full: Annotated[bool, typer.Option("--full", help="At the thesis's size or more.")] = False,
+    list_all: Annotated[bool, typer.Option("--list", help="Name every claim of the ledger.")] = False,
+    settings: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting.")
+    ] = None,
+    jobs: Annotated[int | None, typer.Option(help="Threads; results do not depend on them.")] = None,
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder of the results.")] = "results",
+    seed: Annotated[int, typer.Option(help="Same seed, same numbers.")] = 0,
+    as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+) -> None:
+    """Run claims of the thesis as measured experiments. Stop and start as you like: finished parts are kept."""
+    from lifelore.app.console import print_json, progress_bar
+    from lifelore.core.errors import InputError
+    from lifelore.experiments.registry import list_claims
+    from lifelore.experiments.reproduce import reproduce as run
+
+    if list_all:
+        entries = list_claims()
+        print_json(entries) if as_json else _print_list(entries)
+        return
+    if quick and full:
+        raise InputError("quick and full exclude each other: choose one")
+    with progress_bar("reproducing") as progress:
+        results = run(claims or [], "full" if full else "quick", _pairs(settings or []), jobs, out, seed, progress)
+    if as_json:
+        print_json(results)
+    else:
+        for result in results:
+            print(f"{result['claim']} ({result['mode']}): {result['verdict']}. {result['why']}")
+
+
+def _pairs(settings: list[str]) -> dict[str, str]:
+    from lifelore.core.errors import InputError
+
+    for setting in settings:
+        if "=" not in setting:
+            raise InputError(f"--set takes KEY=VALUE, got '{setting}'")
+    return dict(setting.split("=", 1) for setting in settings)
+
+
+def _print_list(entries: list[dict]) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    table = Table("claim", "where", "built", "what the thesis reports")
+    for entry in entries:
+        table.add_row(entry["claim"], entry["where"], "yes" if entry["built"] else "not yet", entry["reports"])
+    Console().print(table)

@@ -1,0 +1,284 @@
+"""Any Gymnasium environment with discrete actions as a `World`: tasks by seed or by a function of yours.
+
+An environment draws its layout, and all chance, from the seed of `reset`. A *task* must stay the same from
+episode to episode, so every episode of it is reset by the task's own seed; then the environment's generator
+is seeded anew for the episode, so that outcomes (slips, dealt cards) differ.
+"""
+
+import ast
+import hashlib
+import inspect
+import textwrap
+from collections.abc import Callable, Hashable, Mapping
+from types import CodeType, TracebackType
+from typing import Any, Literal, Self, SupportsFloat, get_args
+
+import gymnasium
+import numpy as np
+from gymnasium.spaces import Discrete
+
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+
+ResetBy = Literal["task", "episode"]
+
+
+class GymnasiumWorld:
+    """A user's own environment to be lived in; implements `lifelore.core.protocols.World`.
+
+    Parameters
+    ----------
+    env_or_factory : gymnasium.Env or callable
+        One environment whose tasks differ by the seed of `reset`, or a function from task number to
+        environment. What the function makes is closed when the task changes; an environment given is
+        closed by `close` alone.
+    context : callable, optional
+        ``context(observation)`` or ``context(observation, last_reward)`` to hashable features: what is
+        sensible to do is learnt for each value and carried to other tasks. Default: the state itself.
+    state : callable, optional
+        ``state(observation)`` to a hashable state, what the task itself is learnt over. Default: `hashable`.
+        Mind that a partial view makes different places one state, and that a continuous observation is a
+        new state at every step.
+    seed : int
+        Which tasks: task t is reset by a number drawn from (seed, t).
+    reset_by : {"task", "episode"}
+        ``task``: each episode of a task has the same layout and start. ``episode``: `reset` follows the
+        episode's seed, for environments in which it draws only where an episode starts.
+
+    Raises
+    ------
+    InputError
+        Actions are not ``Discrete``, or differ between tasks; `context` or `state` answers something
+        unhashable. What the environment itself raises passes unchanged.
+
+    Examples
+    --------
+    >>> import gymnasium
+    >>> world = GymnasiumWorld(gymnasium.make("FrozenLake-v1"), context=lambda place: place % 4)
+    >>> state = world.reset(task=3, seed=1)
+    >>> world.n_actions, world.context(state, 0.0) == state % 4
+    (4, True)
+    """
+
+    n_actions: int
+
+    def __init__(
+        self,
+        env_or_factory: gymnasium.Env | Callable[[int], gymnasium.Env],
+        context: Callable[..., Any] | None = None,
+        state: Callable[[Any], Any] | None = None,
+        *,
+        seed: int = 0,
+        reset_by: ResetBy = "task",
+    ) -> None:
+        if reset_by not in get_args(ResetBy):
+            raise InputError(f"reset_by must be one of {', '.join(get_args(ResetBy))}, got {reset_by!r}")
+        for name, function in {"context": context, "state": state}.items():
+            if function is not None and not callable(function):
+                raise InputError(f"{name} must be a function of the observation, got {type(function).__name__}")
+        self._context, self._state, self._seed, self._reset_by = context, state, seed, reset_by
+        self._with_reward = context is not None and _takes_two(context)
+        self._factory = None if isinstance(env_or_factory, gymnasium.Env) else env_or_factory
+        # The first task's environment is made at once: it says what the actions are.
+        self._task: int | None = 0
+        self._env = _made(env_or_factory, 0)
+        self.n_actions, self._first_action = _actions(self._env)
+        self._current: tuple[Any, Hashable] | None = None
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Close the environment."""
+        self._env.close()
+
+    @property
+    def env(self) -> gymnasium.Env:
+        """The environment of the current task."""
+        return self._env
+
+    @property
+    def name(self) -> str:
+        """The environment's registered id, else the name of its class."""
+        return self._env.spec.id if self._env.spec else type(self._env.unwrapped).__name__
+
+    @property
+    def context_key(self) -> str:
+        """What the contexts mean, as far as can be seen; lore of different keys never mixes.
+
+        A hash of the environment's id, the names of its wrappers, the number of actions, and the source of
+        `context` (without comments and layout). By default contexts are states, and the source of `state`
+        and the observation space stand in its place. What these functions *read* (global
+        names, enclosed values, what a wrapper computes) and the environment's own arguments are not seen: if
+        their meaning may change, pass a key of your own to `live_in`.
+
+        Raises
+        ------
+        InputError
+            The source of the function cannot be read (typed at a prompt, compiled, a callable object).
+        """
+        if self._context is not None:
+            meaning = ("context", _definition("context", self._context))
+        else:
+            state = _definition("state", self._state) if self._state else "as observed"
+            meaning = ("state", state, repr(self._env.observation_space))
+        parts = ("gymnasium", self.name, _wrappers(self._env), self.n_actions, *meaning)
+        return f"{self.name}-{hashlib.sha256(repr(parts).encode()).hexdigest()[:24]}"
+
+    def reset(self, task: int, seed: int) -> Hashable:
+        """Start an episode of a task; the same task and seed give the same episode for the same actions."""
+        if task != self._task:
+            self._change_task(task)
+        episode = stream(seed, "episode")
+        number = episode if self._reset_by == "episode" else stream(self._seed, "task", task)
+        observation, _ = self._env.reset(seed=int(number.integers(2**31)))
+        if self._reset_by == "task":
+            self._env.unwrapped.np_random = np.random.default_rng(int(episode.integers(2**31)))
+        return self._seen(observation)
+
+    def _change_task(self, task: int) -> None:
+        if self._factory:
+            self._env.close()
+            # A factory that fails must not leave a closed environment behind as the current task's.
+            self._task = self._current = None
+            self._env = _made(self._factory, task)
+            actions = _actions(self._env)
+            if actions != (self.n_actions, self._first_action):
+                raise InputError(
+                    f"env_or_factory must make environments of one action space: task {task} has {actions[0]} "
+                    f"actions from {actions[1]}, the first had {self.n_actions} from {self._first_action}"
+                )
+        self._task = task
+
+    def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
+        """Take action number `action` of [0, n_actions): (state, reward, terminated, truncated)."""
+        if self._current is None:
+            raise InputError("step must follow reset, got step first; call reset(task, seed)")
+        observation, reward, terminated, truncated, _ = self._env.step(self._first_action + int(action))
+        if not isinstance(reward, SupportsFloat):
+            raise InputError(f"reward of {self.name} must be a number, got {type(reward).__name__}; mend its step")
+        return self._seen(observation), float(reward), bool(terminated), bool(truncated)
+
+    def context(self, state: Hashable, last_reward: float) -> Hashable:
+        """Features of the state the world is in now, the only one whose observation is at hand."""
+        if self._current is None or state != self._current[1]:
+            raise InputError("state must be the one last returned by reset or step; ask for its context then")
+        if self._context is None:
+            return state
+        observation = self._current[0]
+        answer = self._context(observation, last_reward) if self._with_reward else self._context(observation)
+        return _require_hashable("context", answer)
+
+    def _seen(self, observation: Any) -> Hashable:
+        state = _require_hashable("state", self._state(observation)) if self._state else hashable(observation)
+        self._current = observation, state
+        return state
+
+
+def hashable(observation: Any) -> Hashable:
+    """An observation as a hashable value, the same in every process; equal observations give equal values.
+
+    Numbers and text stay, arrays become (dtype, shape, bytes), dicts tuples of sorted (key, value), tuples and
+    lists tuples.
+
+    Raises
+    ------
+    InputError
+        Something else is in it.
+    """
+    if observation is None or isinstance(observation, bool | int | float | str | bytes):
+        return observation
+    if isinstance(observation, np.generic):
+        return observation.item()
+    if isinstance(observation, np.ndarray) and not observation.dtype.hasobject:
+        return (observation.dtype.str, observation.shape, observation.tobytes())
+    if isinstance(observation, Mapping):
+        return tuple((str(key), hashable(observation[key])) for key in sorted(observation, key=str))
+    if isinstance(observation, tuple | list):
+        return tuple(hashable(part) for part in observation)
+    raise InputError(
+        f"observation must be made of numbers, text, arrays, dicts and tuples, got {type(observation).__name__}; "
+        "pass state= to turn it into something hashable"
+    )
+
+
+def _require_hashable(name: str, answer: Any) -> Hashable:
+    try:
+        hash(answer)
+    except TypeError:
+        raise InputError(
+            f"{name} must answer something hashable, got {type(answer).__name__}; return a tuple or a number"
+        ) from None
+    return answer
+
+
+def _made(env_or_factory: Any, task: int) -> gymnasium.Env:
+    if not isinstance(env_or_factory, gymnasium.Env) and not callable(env_or_factory):
+        raise InputError(
+            "env_or_factory must be a gymnasium.Env or a function from task number to one, "
+            f"got {type(env_or_factory).__name__}; pass gymnasium.make(...)"
+        )
+    env = env_or_factory if isinstance(env_or_factory, gymnasium.Env) else env_or_factory(task)
+    if not isinstance(env, gymnasium.Env):
+        raise InputError(f"env_or_factory must make a gymnasium.Env, got {type(env).__name__} for task {task}")
+    return env
+
+
+def _actions(env: gymnasium.Env) -> tuple[int, int]:
+    """Number of actions, and the number that the environment gives to the first."""
+    space = env.action_space
+    if not isinstance(space, Discrete):
+        raise InputError(f"actions must be Discrete, got {space}; wrap the environment so that they are")
+    return int(space.n), int(space.start)
+
+
+def _takes_two(function: Callable) -> bool:
+    """Whether a function asks for two positional arguments; one where Python cannot tell."""
+    try:
+        parameters = inspect.signature(function).parameters.values()
+    except (TypeError, ValueError):
+        return False
+    places = (inspect.Parameter.POSITIONAL_ONLY, inspect.Parameter.POSITIONAL_OR_KEYWORD)
+    return sum(p.kind in places and p.default is p.empty for p in parameters) == 2
+
+
+def _wrappers(env: gymnasium.Env) -> tuple[str, ...]:
+    """Names of the wrappers, outermost first."""
+    names = []
+    while isinstance(env, gymnasium.Wrapper):
+        names.append(type(env).__name__)
+        env = env.env
+    return tuple(names)
+
+
+def _definition(argument: str, function: Any) -> str:
+    """A function's qualified name and source, without comments and layout."""
+    try:
+        node = _node(function, function.__code__)
+    except (AttributeError, OSError, TypeError, SyntaxError):
+        node = None
+    if node is None:
+        raise InputError(
+            f"key cannot be made: the source of {argument} cannot be read; pass key= to say what contexts mean"
+        )
+    return f"{function.__qualname__}: {ast.unparse(node)}"
+
+
+def _node(function: Callable, code: CodeType) -> ast.AST | None:
+    """The part of the syntax tree that a function was compiled from."""
+    if function.__name__ != "<lambda>":
+        return ast.parse(textwrap.dedent(inspect.getsource(function)))
+    lines, _ = inspect.findsource(function)
+    # Several lambdas may stand on one line; the positions of the instructions tell which body this is.
+    spans = set(code.co_positions())
+    for node in ast.walk(ast.parse("".join(lines))):
+        if isinstance(node, ast.Lambda):
+            body = node.body
+            if (body.lineno, body.end_lineno, body.col_offset, body.end_col_offset) in spans:
+                return node
+    return None
