@@ -139,6 +139,18 @@ def test_equally_cheap_targets_are_equally_likely():
     assert all(abs(count - n / 4) < 110 for count in counts.values())
 
 
+def test_ties_lie_as_far_as_they_are_cheap():
+    # Beyond 1 and beyond 2 a place not looked at, two steps off; and here a move that costs 1 + 1 to try.
+    target = np.array([[1, 2, UNKNOWN], [3, 1, 1], [4, 2, 2], [3, 3, 3], [4, 4, 4]], np.int32)
+    place = np.array([LOOKED, LOOKED, LOOKED, NOT_LOOKED, NOT_LOOKED], np.int8)
+    costs = np.zeros(5, np.int32), np.array([[0.0, 0.0, 1.0]])
+    n = 3000
+    counts = Counter(tuple(planned(target, place, *costs, seed=seed)) for seed in range(n))
+    # Deviation √(n · ⅓ · ⅔) = 26; four of them.
+    assert sorted(counts) == [(0, 0), (1, 0), (2,)]
+    assert all(abs(count - n / 3) < 104 for count in counts.values())
+
+
 def corridor(n=6):
     """Places in a row, moves left and right, refused at both ends; all known, all looked at."""
     here = np.arange(n)

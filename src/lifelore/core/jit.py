@@ -70,13 +70,13 @@ def kernel(function: F) -> F:
 
 def inlined(function: F) -> F:
     """As `kernel`, for the small pieces that kernels call at every step: always inlined into them."""
-    return _compiled(function, forceinline=True)
+    return _compiled(function, inline="always")
 
 
 def _compiled(function: F, **options) -> F:
     previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
     numba.config.CACHE_DIR = str(kernel_cache_dir())  # type: ignore[attr-defined]
     try:
-        return numba.njit(cache=True, nogil=True, **options)(function)  # type: ignore[return-value]
+        return numba.njit(cache=True, nogil=True, no_cfunc_wrapper=True, **options)(function)  # type: ignore[return-value]
     finally:
         numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]

@@ -139,13 +139,14 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     done_steps = 0
     while done_steps < budget and episode < returns.size:
         if step == 0:
-            state = np.int64(starts[int(next_uniform(world) * starts.size)])
+            state = np.int64(starts[_one_of(world, starts.size)])
             left, ret, reach = np.int64(0), 0.0, 1.0
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
             _arrive(state, target, seen, percept, tried)
             if senses:
-                target[state] = next_state[state, :, 0]
+                for move in range(target.shape[1]):
+                    target[state, move] = next_state[state, move, 0]
                 left = np.int64(0)
         if planned:
             if left == 0:
@@ -154,7 +155,7 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
                 )
             if left == 0:
                 _doubt(target, tried)
-                plan[0] = int(next_uniform(own) * target.shape[1])
+                plan[0] = _one_of(own, target.shape[1])
                 left = np.int64(1)
             left -= 1
             a = np.int64(plan[left])
@@ -190,6 +191,12 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     return done_steps
 
 
+@kernel
+def _one_of(random, n):
+    """One of 0 … n - 1, each as likely."""
+    return np.int64(next_uniform(random) * n)
+
+
 @inlined
 def _arrive(state, target, seen, percept, tried):
     """The percept changed since it was remembered: forget what was remembered of this place."""
@@ -208,7 +215,7 @@ def _least_tried(tried, state, random):
             best, ties = a, 1
         elif tried[state, a] == tried[state, best]:
             ties += 1
-            if next_uniform(random) * ties < 1.0:
+            if _one_of(random, ties) == 0:
                 best = a
     return np.int64(best)
 
@@ -235,12 +242,10 @@ def _not_looked_around(s, target, place):
 @kernel
 def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random):
     """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0."""
-    parent[:] = UNKNOWN
     goal_known = False
     for s in range(place.size):
-        if place[s] == GOAL:
-            goal_known = True
-            break
+        parent[s] = UNKNOWN
+        goal_known |= place[s] == GOAL
     crumb = min(NO_CRUMBS, 1.0 / (target.shape[1] + 1))
     best_cost, best_state, best_action, ties = np.inf, -1, 0, 0
     goal_state, goal_action = -1, 0
@@ -273,7 +278,7 @@ def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, par
                 best_cost, best_state, best_action, ties = cost, s, a, 1
             elif cost == best_cost and cost < np.inf:
                 ties += 1
-                if next_uniform(random) * ties < 1.0:
+                if _one_of(random, ties) == 0:
                     best_state, best_action = s, a
         if head == level_end:
             level_end = tail
@@ -295,20 +300,15 @@ def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, par
 def goal_distances(target, place):
     """Steps to the goal over known moves, (n_states,) int32; 0 at the goal, -1 where no way is known."""
     n_states, n_actions = target.shape
-    first = np.zeros(n_states + 1, np.int64)
+    # Who leads where: the moves into each state, as a linked list.
+    last_into = np.full(n_states, -1, np.int32)
+    before = np.empty(n_states * n_actions, np.int32)
     for s in range(n_states):
         for a in range(n_actions):
-            if target[s, a] >= 0:
-                first[target[s, a] + 1] += 1
-    for s in range(n_states):
-        first[s + 1] += first[s]
-    origin = np.empty(first[n_states], np.int32)
-    filled = first[:-1].copy()
-    for s in range(n_states):
-        for a in range(n_actions):
-            if target[s, a] >= 0:
-                origin[filled[target[s, a]]] = s
-                filled[target[s, a]] += 1
+            t = target[s, a]
+            if t >= 0:
+                before[s * n_actions + a] = last_into[t]
+                last_into[t] = s * n_actions + a
     distance = np.full(n_states, -1, np.int32)
     queue = np.empty(n_states, np.int32)
     tail = 0
@@ -321,11 +321,14 @@ def goal_distances(target, place):
     while head < tail:
         s = queue[head]
         head += 1
-        for i in range(first[s], first[s + 1]):
-            if distance[origin[i]] < 0 and place[origin[i]] != DEAD_END:
-                distance[origin[i]] = distance[s] + 1
-                queue[tail] = origin[i]
+        move = last_into[s]
+        while move >= 0:
+            origin = move // n_actions
+            if distance[origin] < 0 and place[origin] != DEAD_END:
+                distance[origin] = distance[s] + 1
+                queue[tail] = origin
                 tail += 1
+            move = before[move]
     return distance
 
 

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.jit import kernel
+from lifelore.core.jit import inlined, kernel
 from lifelore.core.mdp import TERMINAL, Tables
 
 TIE_TOLERANCE = 1e-9
@@ -24,29 +24,37 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
 
 @kernel
 def _sweep(tables, q, discount, tolerance):
-    next_state, reward, event, outcome_cum, _ = tables
-    n_states, n_actions, n_outcomes = next_state.shape
+    n_states, n_actions = q.shape
     value = np.zeros(n_states)
     moved = tolerance + 1.0
-    backwards = False
+    forwards = True
     while moved > tolerance:
         moved = 0.0
         for i in range(n_states):
-            s = n_states - 1 - i if backwards else i
-            best = -np.inf
-            for a in range(n_actions):
-                total, before = 0.0, 0.0
-                for k in range(n_outcomes):
-                    p = outcome_cum[k] - before
-                    before = outcome_cum[k]
-                    total += p * reward[s, a, k]
-                    if not event[s, a, k] & TERMINAL:
-                        total += p * discount * value[next_state[s, a, k]]
-                q[s, a] = total
-                best = max(best, total)
-            moved = max(moved, abs(best - value[s]))
+            s = i if forwards else n_states - 1 - i
+            best = q[s, 0] = _backup(tables, s, 0, discount, value)
+            for a in range(1, n_actions):
+                q[s, a] = _backup(tables, s, a, discount, value)
+                if q[s, a] > best:
+                    best = q[s, a]
+            if abs(best - value[s]) > moved:
+                moved = abs(best - value[s])
             value[s] = best
-        backwards = not backwards
+        forwards = not forwards
+
+
+@inlined
+def _backup(tables, s, a, discount, value):
+    """Expected reward and discounted value of what follows (the Bellman backup)."""
+    next_state, reward, event, outcome_cum, _ = tables
+    total, before = 0.0, 0.0
+    for k in range(outcome_cum.size):
+        worth = reward[s, a, k]
+        if not event[s, a, k] & TERMINAL:
+            worth += discount * value[next_state[s, a, k]]
+        total += (outcome_cum[k] - before) * worth
+        before = outcome_cum[k]
+    return total
 
 
 def best_actions(q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE) -> NDArray[np.bool_]:
@@ -103,10 +111,11 @@ def _follow(next_state, reward, event, policy, discount):
         after = 0.0 if ended else value[s]
         if not ended and mark[s] > 0:
             first = mark[s] - 1
-            once = 0.0
+            once, shrunk = 0.0, 1.0
             for i in range(length - 1, first - 1, -1):
                 once = reward[path[i], policy[path[i]], 0] + discount * once
-            after = once / (1.0 - discount ** (length - first))
+                shrunk *= discount
+            after = once / (1.0 - shrunk)
         for i in range(length - 1, -1, -1):
             after = reward[path[i], policy[path[i]], 0] + discount * after
             value[path[i]] = after
@@ -116,23 +125,16 @@ def _follow(next_state, reward, event, policy, discount):
 
 @kernel
 def _iterate(tables, policy, discount, tolerance):
-    next_state, reward, event, outcome_cum, _ = tables
     value = np.zeros(policy.size)
     moved = tolerance + 1.0
     while moved > tolerance:
         moved = 0.0
         for s in range(policy.size):
-            a = policy[s]
-            if a < 0:
+            if policy[s] < 0:
                 continue
-            total, before = 0.0, 0.0
-            for k in range(outcome_cum.size):
-                p = outcome_cum[k] - before
-                before = outcome_cum[k]
-                total += p * reward[s, a, k]
-                if not event[s, a, k] & TERMINAL:
-                    total += p * discount * value[next_state[s, a, k]]
-            moved = max(moved, abs(total - value[s]))
+            total = _backup(tables, s, policy[s], discount, value)
+            if abs(total - value[s]) > moved:
+                moved = abs(total - value[s])
             value[s] = total
     return value
 

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.jit import kernel
+from lifelore.core.jit import inlined, kernel
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Domain, Task
 
 MOVES = np.array([(-1, 0), (1, 0), (0, 1), (0, -1)])
@@ -25,7 +25,7 @@ MOVE_BITS = 0b1111
 """The part of a percept that tells which moves are passable."""
 
 
-@kernel
+@inlined
 def step(params, s, a, u):
     """One move: into a wall (stay, `wall_reward`), into the goal (end, `goal_reward`), or on (0)."""
     neighbour, goal, goal_reward, wall_reward = params
