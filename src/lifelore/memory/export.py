@@ -1,6 +1,7 @@
 """A memory as one portable file: itself a valid memory, written aside and put in place whole."""
 
 import os
+from contextlib import suppress
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
@@ -23,7 +24,9 @@ def export(store: Store, path: Path) -> int:
             os.replace(aside, path)
     finally:
         for ending in ("", "-journal"):
-            aside.with_name(aside.name + ending).unlink(missing_ok=True)
+            # Below a file there is nothing to tidy, and the refusal under way says so.
+            with suppress(NotADirectoryError):
+                aside.with_name(aside.name + ending).unlink(missing_ok=True)
     return count
 
 

@@ -1,5 +1,6 @@
 """The one place where a database's complaint becomes a StoreError of one line."""
 
+import errno
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -41,6 +42,16 @@ _MEANINGS = {
     "3D": _NO_SERVER,
 }
 
+# What the system itself says of files and folders, before a database is asked.
+_OF_THE_SYSTEM = {
+    errno.ENOSPC: _FULL,
+    errno.EDQUOT: _FULL,
+    errno.EROFS: _READ_ONLY,
+    **dict.fromkeys(
+        (errno.ENOENT, errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.ENAMETOOLONG), _CLOSED_DOOR
+    ),
+}
+
 
 @contextmanager
 def one_line_refusals(location: str) -> Iterator[None]:
@@ -62,6 +73,8 @@ def refusal(location: str, cause: BaseException) -> StoreError:
     code = str(getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None) or "")
     said = " ".join(str(cause).split())[:200]
     meaning = next((text for start, text in _MEANINGS.items() if code.startswith(start)), None)
+    if isinstance(cause, OSError):
+        meaning = _OF_THE_SYSTEM.get(cause.errno or 0)
     if meaning is None and "connection" in said.lower() and not code:
         meaning = _NO_SERVER
     return StoreError(f"memory {location}: {meaning} ({said})" if meaning else f"memory {location}: {said}")
