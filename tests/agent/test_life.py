@@ -176,7 +176,6 @@ def test_fixed_start_and_destinations(tmp_path):
         ({"map": "x.yaml"}, "map applies to domain building"),
         ({"agent": "model", "learner": "q"}, "learner 'q' has agents"),
         ({"alpha0": 0.0}, "alpha0 must be positive"),
-        ({"epsilon": 1.5, "learner": "q"}, "epsilon must lie"),
     ],
 )
 def test_settings_that_break_a_rule(tmp_path, changes, message):
@@ -191,7 +190,9 @@ def test_settings_that_break_a_rule(tmp_path, changes, message):
 @pytest.mark.parametrize(
     "changes",
     [{"tasks": 0}, {"learner": "x"}, {"prior": "x"}, {"form": "x"}, {"ties": "x"}, {"robot": " "}, {"jobs": 0},
-     {"episodes": 10**9}, {"goal_reward": -1.0}, {"wall_reward": float("nan")}],
+     {"episodes": 10**9}, {"goal_reward": -1.0}, {"wall_reward": float("nan")},
+     {"wall_reward": -1e7}, {"epsilon": 1.5}, {"learning_rate": float("nan")}, {"cell": float("inf")},
+     {"alpha0": 1e7}],
 )  # fmt: skip
 def test_settings_are_checked_at_once(changes):
     with pytest.raises(InputError):

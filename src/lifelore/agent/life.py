@@ -91,7 +91,8 @@ def _world_settings(settings: LifeSettings) -> WorldSettings:
         name: getattr(settings, name) for name in ("domain", "discount", "goal_reward", "wall_reward", "seed")
     }
     if settings.domain == "building":
-        return WorldSettings(**shared, map=settings.map, cell=settings.cell, robot_radius=settings.robot_radius)
+        building = {name: getattr(settings, name) for name in ("map", "cell", "robot_radius", "density")}
+        return WorldSettings(**shared, **building)
     if settings.map is not None:
         raise InputError(f"map applies to domain building, not to '{settings.domain}'; leave one of them out")
     return WorldSettings(**shared, density=settings.density)
@@ -129,6 +130,11 @@ class _Living:
         task = self.stream.task(index)
         tables = task.tables()
         optimal = mean_start_value(tables, optimal_q(tables, task.domain.discount).max(axis=1))
+        if optimal <= 0:
+            raise InputError(
+                f"discount must leave some of task {index}'s goal at its starts, got {task.domain.discount}; "
+                "use a larger one"
+            )
         trial = _Trial(self, task, tables, optimal, index, stop)
         try:
             futures = {name: pool.submit(trial.live, name) for name in self.names}

@@ -16,6 +16,13 @@ WHOLE = {
     "jobs": (1, 256),
 }
 """Least and most of the whole numbers."""
+LARGEST = {
+    "cell": 1e3, "robot_radius": 1e3, "discount": 1.0, "goal_reward": 1e6, "wall_reward": 1e6,
+    "density": 1.0, "alpha0": 1e6, "weight": 1e6,
+}  # fmt: skip
+"""Magnitudes beyond which a number is a slip, or drowns the others in rounding; the rules of those who use it
+are narrower."""
+SHARES = ("learning_rate", "epsilon", "epsilon_decay", "epsilon_floor")
 
 
 @dataclass(frozen=True)
@@ -101,10 +108,16 @@ class LifeSettings:
             value = getattr(self, name)
             if value is not None and not least <= value <= most:
                 raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
-        for name in ("goal_reward", "wall_reward", "weight"):
+        # Also what this life has no use for: it stands in the report.
+        for name, most in LARGEST.items():
             value = getattr(self, name)
             if value is not None and not isfinite(value):
                 raise InputError(f"{name} must be a finite number, got {value}")
+            if value is not None and abs(value) > most:
+                raise InputError(f"{name} must be of magnitude {most:g} at most, got {value}")
+        for name in SHARES:
+            if not 0 <= getattr(self, name) <= 1:
+                raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
         if self.goal_reward is not None and self.goal_reward <= 0:
             raise InputError(f"goal_reward must be positive, got {self.goal_reward}")
         if not self.robot.strip():

@@ -6,16 +6,17 @@ import typer
 
 
 def bench(
-    name: Annotated[str, typer.Argument(help="Which benchmark, e.g. kernels.")],
+    name: Annotated[str, typer.Argument(help="kernels (speed) or courier (what a past is worth).")],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,
+    map: Annotated[str | None, typer.Option(metavar="YAML", help="courier: a ROS map; else offices.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Measure speed beside peers in one process; ratios are medians of pairs."""
+    """Measure beside peers, in one process; ratios are of pairs."""
     from lifelore.app.console import print_json, progress_bar
     from lifelore.experiments.bench import bench as run
 
     with progress_bar("measuring") as progress:
-        result = run(name, repeats=repeats, progress=progress)
+        result = run(name, repeats=repeats, map=map, progress=progress)
     print_json(result) if as_json else _print(result)
 
 

@@ -4,13 +4,16 @@ Exit status: 0 done, 2 the user's mistake (one line that says what to do), 130 s
 Heavy imports happen inside the verbs, so that ``--help`` answers at once.
 """
 
+import errno
+import os
 import sys
 
 import typer
 
+from lifelore.app.console import INTERRUPTED, print_json
 from lifelore.core.errors import LifeloreError
 
-INTERRUPTED = 130
+DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 UsageError: type[Exception] = next(kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "UsageError")
 """Click's, which newer versions of Typer carry inside themselves."""
 
@@ -40,8 +43,6 @@ def version(as_json: bool = typer.Option(False, "--json", help="One JSON documen
     from lifelore import __version__
 
     if as_json:
-        from lifelore.app.console import print_json
-
         print_json({"version": __version__})
     else:
         print(__version__)
@@ -60,6 +61,7 @@ def run(arguments: list[str]) -> int:
     command = typer.main.get_command(app)
     try:
         status = command.main(arguments, prog_name="lifelore", standalone_mode=False)
+        print(end="", flush=True)
     except UsageError as error:
         return _usage(error)
     except LifeloreError as error:
@@ -67,10 +69,16 @@ def run(arguments: list[str]) -> int:
     except (typer.Abort, KeyboardInterrupt):
         print("lifelore: stopped", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:
-        # The reader of our output went away (`lifelore … | head`); there is nobody left to tell.
-        sys.stderr.close()
+    except (BrokenPipeError, SystemExit):
+        # The reader of our output went away (`lifelore … | head`), for which Typer exits by itself; there is
+        # nobody left to tell.
+        _drop_output()
         return 0
+    except OSError as error:
+        if error.errno not in DISK_FULL:
+            raise
+        _drop_output()
+        return _mistake(f"the output cannot be written: {error.strerror}; free space, what is finished is kept")
     return status if isinstance(status, int) else 0
 
 
@@ -80,6 +88,13 @@ def _usage(error) -> int:
         return 2
     where = f" (see: {error.ctx.command_path} --help)" if error.ctx else ""
     return _mistake(f"{error.format_message()}{where}")
+
+
+def _drop_output() -> None:
+    """Let what waits for stdout go nowhere, or the interpreter would try once more and complain at its end."""
+    nowhere = os.open(os.devnull, os.O_WRONLY)
+    os.dup2(nowhere, 1)
+    os.close(nowhere)
 
 
 def _mistake(message: str) -> int:

@@ -8,11 +8,13 @@ from contextlib import contextmanager
 from threading import Event
 from typing import Any
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as shells have it."""
+
 
 def print_json(document: Any) -> None:
-    """One JSON document on stdout; NaN and infinity are refused rather than written as invalid JSON."""
-    json.dump(document, sys.stdout, indent=2, allow_nan=False)
-    sys.stdout.write("\n")
+    """One whole JSON document on stdout; NaN and infinity are refused rather than written as invalid JSON."""
+    print(json.dumps(document, indent=2, allow_nan=False))
 
 
 @contextmanager

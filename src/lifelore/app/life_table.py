@@ -54,7 +54,10 @@ def _number(estimate: dict) -> str:
 
 
 def _short(x: float) -> str:
-    return f"{x / 1000:,.1f}k" if abs(x) >= 1000 else f"{x:,.0f}"
+    for size, letter in ((1e6, "M"), (1e3, "k")):
+        if abs(x) >= size:
+            return f"{x / size:,.1f}{letter}"
+    return f"{x:,.0f}"
 
 
 def _ratio_line(name: str, ratios: dict) -> str:

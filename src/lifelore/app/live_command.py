@@ -56,16 +56,15 @@ def live(
     from lifelore.agent.life import live as live_through
     from lifelore.agent.life_settings import LifeSettings
     from lifelore.agent.portfolio import check_folder, write_portfolio
-    from lifelore.app.command_line import INTERRUPTED
-    from lifelore.app.console import print_json, progress_bar, stop_on_interrupt
+    from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
 
     told = LifeSettings(**settings, start=_row_column(start))
-    if out:
+    if out is not None:
         check_folder(out)
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
         life = live_through(told, progress=progress, stop=stop)
-        written = write_portfolio(life, out) if out and life.results else []
+        written = write_portfolio(life, out) if out is not None and life.results else []
     if as_json:
         print_json(life.report)
     else:

@@ -1,0 +1,124 @@
+"""`lifelore` as a whole: quick to answer, one line for a mistake, and what every command has."""
+
+import ast
+import subprocess
+import sys
+import time
+from importlib.metadata import entry_points
+from pathlib import Path
+
+import pytest
+import typer
+
+import lifelore
+from lifelore.app import command_line
+
+PROGRAM = Path(sys.executable).with_name("lifelore")
+HEAVY = ("numba", "sklearn", "matplotlib", "sqlalchemy", "scipy", "gymnasium", "numpy")
+HELP_SECONDS = 0.3
+TOLD_WHAT_IT_IMPORTED = """
+import sys
+from lifelore.app.command_line import run
+status = run(sys.argv[1:])
+print(status, sorted(sys.modules), file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [["--help"], ["live", "--help"], ["memory", "--help"], ["memory", "forget", "--help"], ["reproduce", "--help"],
+     ["bench", "--help"], ["doctor", "--help"], ["version"]],
+    ids=" ".join,
+)  # fmt: skip
+def test_help_and_version_import_nothing_heavy(arguments):
+    done = subprocess.run(
+        [sys.executable, "-c", TOLD_WHAT_IT_IMPORTED, *arguments], capture_output=True, text=True, check=True
+    )
+    status, imported = done.stderr.split(" ", 1)
+    assert status == "0"
+    assert set(HEAVY) & set(ast.literal_eval(imported)) == set()
+    assert done.stdout
+
+
+def test_help_is_quick():
+    """The best of up to ten runs, so that a busy machine cannot fail it."""
+    seconds = []
+    for _ in range(10):
+        began = time.perf_counter()
+        subprocess.run([PROGRAM, "--help"], capture_output=True, check=True)
+        seconds.append(time.perf_counter() - began)
+        if seconds[-1] <= HELP_SECONDS:
+            return
+    pytest.fail(f"lifelore --help took {min(seconds):.2f} s at best")
+
+
+def test_the_installed_program_is_this_command_line():
+    (entry,) = entry_points(group="console_scripts", name="lifelore")
+    assert entry.load() is command_line.main
+
+
+def test_version(ask):
+    assert ask("version").out == f"{lifelore.__version__}\n"
+    assert ask("version", "--json").document == {"version": lifelore.__version__}
+
+
+@pytest.mark.parametrize("arguments", [[], ["memory"]], ids=["lifelore", "lifelore memory"])
+def test_nothing_asked_is_answered_with_the_help(arguments, ask):
+    answer = ask(*arguments)
+    assert (answer.status, answer.out) == (2, "")
+    assert answer.err.strip() == ask(*arguments, "--help").out.strip()
+
+
+def test_main_leaves_with_the_status(monkeypatch):
+    monkeypatch.setattr(sys, "argv", ["lifelore", "version", "--nonsense"])
+    with pytest.raises(SystemExit) as left:
+        command_line.main()
+    assert left.value.code == 2
+    with pytest.raises(SystemExit) as left:
+        command_line.main(["version"])
+    assert left.value.code == 0
+
+
+def leaves(command, path: tuple[str, ...] = ()):
+    """(path, command) of every command that does something."""
+    for name, part in getattr(command, "commands", {}).items():
+        yield from leaves(part, (*path, name))
+    if not hasattr(command, "commands"):
+        yield path, command
+
+
+COMMANDS = dict(leaves(typer.main.get_command(command_line.app)))
+
+
+def test_the_contract_names_these_commands():
+    verbs = {"live", "reproduce", "bench", "doctor", "version"}
+    verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}
+    assert {" ".join(path) for path in COMMANDS} == verbs
+
+
+@pytest.mark.parametrize("path", COMMANDS, ids=" ".join)
+def test_every_command_has_json_and_says_what_it_is(path, ask):
+    command = COMMANDS[path]
+    assert "--json" in {name for parameter in command.params for name in parameter.opts}
+    assert len(command.help.split()) >= 3
+    assert all(parameter.help for parameter in command.params if "-" in parameter.opts[0])
+    answer = ask(*path, "--help")
+    assert (answer.status, answer.err) == (0, "")
+    assert "--json" in answer.out
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+@pytest.mark.parametrize("arguments", [["version"], ["memory", "show", "--json"], ["--help"]], ids=" ".join)
+def test_output_to_a_full_disk_is_one_line(arguments, unbuffered, start, answer, monkeypatch):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    with open("/dev/full", "w") as full:
+        said = answer(start(*arguments, stdout=full))
+    assert "the output cannot be written: No space left" in said.refusal
+
+
+@pytest.mark.parametrize("unbuffered", ["", "1"])
+def test_a_reader_that_goes_away_is_no_mistake(unbuffered, start, known, monkeypatch):
+    monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
+    process = start("memory", "show", "--memory", known)
+    process.stdout.close()
+    assert (process.wait(60), process.stderr.read()) == (0, "")

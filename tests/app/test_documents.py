@@ -1,0 +1,70 @@
+"""What the documents say to type can be typed: names of commands and options exist, and none is left out."""
+
+import re
+import shlex
+from pathlib import Path
+
+import pytest
+import typer
+
+from lifelore.app.command_line import app
+
+ROOT = Path(__file__).parents[2]
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "Makefile"])
+
+
+def commands_in(path: Path) -> list[str]:
+    """Each `lifelore …` of a shell block, of a Makefile's recipe, or of a span of code in a line."""
+    text = path.read_text(encoding="utf-8").replace("\\\n", " ")
+    if path.name == "Makefile":
+        lines = [line for line in text.splitlines() if line.startswith("\t")]
+        return [f"lifelore{found.group(1)}" for line in lines for found in re.finditer(r"/lifelore( .*)", line)]
+    blocks = re.findall(r"^```(?:sh|bash|console|shell)\n(.*?)^```", text, re.DOTALL | re.MULTILINE)
+    lines = [line.removeprefix("$ ") for block in blocks for line in block.splitlines()]
+    typed = [line[line.index("lifelore ") :] for line in lines if re.match(r"(\S*/)?lifelore ", line)]
+    spans = re.findall(r"`(lifelore [^`]+)`", re.sub(r"^```.*?^```", "", text, flags=re.DOTALL | re.MULTILINE))
+    return typed + [" ".join(span.split()) for span in spans]
+
+
+FOUND = [(path, command) for path in DOCUMENTS for command in commands_in(path)]
+
+
+def understand(command, arguments: list[str], name: str, typed: bool) -> list[str]:
+    """Parse as the program would, running nothing; the names of the commands on the way."""
+    if hasattr(command, "commands"):
+        if not arguments:
+            return []
+        first, *rest = arguments
+        assert first in command.commands or first == "--help", f"'{name}' has no command '{first}'"
+        return [] if first == "--help" else [first, *understand(command.commands[first], rest, first, typed)]
+    known = {option for parameter in command.params for option in parameter.opts} | {"--help"}
+    assert {word.split("=")[0] for word in arguments if word.startswith("-")} <= known
+    if typed:
+        command.make_context(name, arguments)
+    return []
+
+
+@pytest.mark.parametrize(("path", "line"), FOUND, ids=[f"{path.name}: {line}" for path, line in FOUND])
+def test_what_is_written_can_be_typed(path, line):
+    whole = line.split("|")[0].replace("…", "").replace("...", "")
+    arguments = shlex.split(whole, comments=True)[1:]
+    span = path.suffix == ".md" and f"`{line}`" in path.read_text(encoding="utf-8")
+    understand(typer.main.get_command(app), arguments, "lifelore", typed=not span)
+
+
+def registered(command, path: tuple[str, ...] = ()) -> set[str]:
+    if not hasattr(command, "commands"):
+        return {" ".join(path)}
+    return {name for key, part in command.commands.items() for name in registered(part, (*path, key))}
+
+
+def test_the_readme_lists_every_command_and_no_other():
+    rows = re.findall(r"^\| *`lifelore ([a-z -]+)` *\|", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
+    assert len(rows) == len(set(rows))
+    assert set(rows) == registered(typer.main.get_command(app))
+
+
+def test_there_is_something_to_type():
+    typed = [line for path, line in FOUND if path.name == "README.md"]
+    assert any(line.startswith("lifelore live ") for line in typed)
+    assert any(path.name == "Makefile" for path, _ in FOUND)

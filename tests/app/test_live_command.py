@@ -1,0 +1,201 @@
+"""`lifelore live`: the contract of its JSON, lives that repeat and go on, and what a person sees."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lifelore.domains.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.domains.office import office_map
+from lifelore.memory import open_memory
+
+DOCUMENT = {"domain", "map", "n_states", "seed", "settings", "tasks", "summary", "memory", "seconds"}
+TASK = {"index", "goal", "optimal_return", "agents"}
+RESULT = {"first_return", "collisions", "steps_to_80", "episodes_to_80", "reached", "final_return"}
+ESTIMATE = {"value", "median", "ci95", "n"}
+RATIOS = ("steps_to_80_ratio", "collisions_ratio", "jumpstart")
+MEASURES = ("steps_to_80", "collisions", "episodes_to_80", "first_return")
+TOLD = {
+    "domain", "map", "tasks", "cell", "robot_radius", "destinations", "learner", "prior", "agent", "robot",
+    "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
+    "wall_reward", "alpha0", "weight", "form", "ties", "learning_rate", "epsilon", "epsilon_decay",
+    "epsilon_floor",
+}  # fmt: skip
+LATTICE = ("live", "--domain", "lattice", "--json")
+
+
+def check_number(x, whole: bool = False) -> None:
+    assert type(x) is int if whole else isinstance(x, int | float)
+    assert not isinstance(x, bool)
+
+
+def check_estimate(estimate: dict, n: int) -> None:
+    assert set(estimate) == ESTIMATE
+    assert estimate["n"] == n
+    if estimate["ci95"] is not None:
+        low, high = estimate["ci95"]
+        assert low <= high
+
+
+def check_task(task: dict, names: list[str]) -> None:
+    assert set(task) == TASK
+    assert [type(part) for part in (task["index"], *task["goal"])] == [int, int, int]
+    assert task["optimal_return"] > 0
+    assert list(task["agents"]) == names
+    for result in task["agents"].values():
+        assert set(result) == RESULT
+        assert type(result["reached"]) is bool
+        for name in ("collisions", "steps_to_80", "episodes_to_80"):
+            check_number(result[name], whole=True)
+            assert result[name] >= 0
+        for name in ("first_return", "final_return"):
+            check_number(result[name])
+        assert result["final_return"] <= task["optimal_return"] * (1 + 1e-9)
+
+
+def check_summary(summary: dict, names: list[str], n_tasks: int) -> None:
+    size = max(1, n_tasks // 3)
+    rest = [name for name in names if name != "scratch"]
+    assert set(summary) == {"agents", *(f"{name}_vs_scratch" for name in rest)}
+    for name in rest:
+        beside = summary[f"{name}_vs_scratch"]
+        assert set(beside) == {*RATIOS, "capped"}
+        assert set(beside["capped"]) == {name, "scratch"}
+        for measure in RATIOS:
+            check_estimate({k: v for k, v in beside[measure].items() if k != "raw"}, size)
+            assert set(beside[measure]["raw"]) == {name, "scratch"}
+    assert list(summary["agents"]) == names
+    for thirds in summary["agents"].values():
+        assert set(thirds) == {"first", "last"}
+        for third in thirds.values():
+            assert set(third) == {*MEASURES, "capped"}
+            for measure in MEASURES:
+                check_estimate(third[measure], size)
+
+
+@pytest.mark.parametrize(
+    ("options", "names"),
+    [
+        ((), ["lore", "scratch"]),
+        (("--agent", "all"), ["lore", "model", "prior", "scratch", "undirected", "rmax", "frontier"]),
+        (("--agent", "scratch"), ["scratch"]),
+        (("--learner", "q", "--episodes", "30"), ["lore", "scratch"]),
+        (("--tasks", "1"), ["lore", "scratch"]),
+    ],
+    ids=["default", "all", "scratch", "q", "one task"],
+)
+def test_the_contract(options, names, ask, tmp_path):
+    said = ask(*LATTICE, "--tasks", 6, "--seed", 5, "--memory", tmp_path / "life.db", *options)
+    assert (said.status, said.err) == (0, "")
+    life = said.document
+    n_tasks = 1 if "--tasks" in options else 6
+    assert set(life) == DOCUMENT
+    assert (life["domain"], life["map"], life["n_states"], life["seed"]) == ("lattice", None, 341, 5)
+    assert set(life["settings"]) == TOLD
+    assert life["settings"]["tasks"] == n_tasks == len(life["tasks"])
+    assert life["settings"]["memory"] == str(tmp_path / "life.db")
+    assert [task["index"] for task in life["tasks"]] == list(range(n_tasks))
+    for task in life["tasks"]:
+        check_task(task, names)
+    check_summary(life["summary"], names, n_tasks)
+    assert life["memory"] == {"tasks_before": 0, "tasks_after": n_tasks}
+    assert life["seconds"] > 0
+
+
+def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
+    told = {
+        "domain": "noise", "tasks": 1, "destinations": 3, "learner": "q", "prior": "state", "agent": "lore",
+        "robot": "rosie", "episodes": 20, "max_steps": 50, "seed": 9, "jobs": 1, "density": 0.6,
+        "discount": 0.9, "goal_reward": 50.0, "wall_reward": -2.0, "alpha0": 0.5, "weight": 2.0,
+        "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
+        "epsilon_floor": 0.1, "cell": 0.5, "robot_radius": 0.2,
+    }  # fmt: skip
+    options = [f"--{name.replace('_', '-')}={value}" for name, value in told.items()]
+    settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
+    assert settings == told | {"memory": str(tmp_path / "life.db"), "map": None, "start": None}
+
+
+def repeatable(life: dict) -> dict:
+    """The report without what may differ: time, threads and where the memory lies."""
+    settings = {k: v for k, v in life["settings"].items() if k not in ("memory", "jobs")}
+    return {k: v for k, v in life.items() if k != "seconds"} | {"settings": settings}
+
+
+@pytest.mark.parametrize("learner", ["model", "q"])
+def test_the_same_seed_is_the_same_life_for_any_number_of_threads(learner, ask, tmp_path):
+    lives = [
+        ask(*LATTICE, "--tasks", 3, "--learner", learner, "--episodes", 60, "--jobs", jobs, "--memory", f"{i}.db")
+        for i, jobs in enumerate((1, 3, 1))
+    ]
+    first, *others = [repeatable(life.document) for life in lives]
+    assert others == [first, first]
+    other = ask(*LATTICE, "--tasks", 3, "--episodes", 60, "--seed", 1, "--memory", "other.db").document
+    assert [task["goal"] for task in other["tasks"]] != [task["goal"] for task in first["tasks"]]
+
+
+def test_processes_repeat_a_life_too(start, answer):
+    """Other hash seeds, other addresses: nothing of a process may enter a life."""
+    children = [
+        start(*LATTICE, "--tasks", 3, "--jobs", jobs, "--memory", f"{jobs}.db") for jobs in (1, 3)
+    ]  # fmt: skip
+    one, three = (repeatable(answer(child).document) for child in children)
+    assert one == three
+
+
+def test_a_second_life_goes_on(ask, tmp_path):
+    whole = ask(*LATTICE, "--tasks", 5, "--memory", "whole.db").document
+    first = ask(*LATTICE, "--tasks", 2, "--memory", "life.db").document
+    second = ask(*LATTICE, "--tasks", 3, "--memory", "life.db").document
+    assert second["memory"] == {"tasks_before": 2, "tasks_after": 5}
+    assert [task["index"] for task in second["tasks"]] == [2, 3, 4]
+    goals = [tuple(task["goal"]) for task in first["tasks"] + second["tasks"]]
+    assert len(set(goals)) == len(goals)
+    assert first["tasks"] + second["tasks"] == whole["tasks"]
+
+
+def test_without_a_memory_named_it_is_the_users_own(ask, own_data_folder):
+    assert ask(*LATTICE, "--tasks", 1).document["settings"]["memory"] == str(own_data_folder / "lifelore.db")
+    assert ask(*LATTICE, "--tasks", 1).document["memory"] == {"tasks_before": 1, "tasks_after": 2}
+    assert ask("memory", "show", "--json").document["robots"][0]["tasks"] == 2
+
+
+def map_of(state, tmp_path: Path) -> Path:
+    write_occupancy_map(tmp_path / "map.yaml", OccupancyMap(state, 0.05, (0.0, 0.0, 0.0)))
+    return tmp_path / "map.yaml"
+
+
+def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
+    path = map_of(office_map(3).state[:300, :300], tmp_path)
+    life = ask("live", "--map", path, "--tasks", 1, "--memory", "life.db", "--json").document
+    assert (life["domain"], life["map"]) == ("building", str(path))
+    assert life["n_states"] > 50
+    assert life["settings"]["discount"] == 0.99
+    check_task(life["tasks"][0], ["lore", "scratch"])
+
+
+def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
+    said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
+    assert (said.status, said.err) == (0, "")
+    for words in ("6 tasks in lattice, 341 places", "this robot has now finished 6 tasks", "steps to 80 %",
+                  "lore against scratch, last third", "wrote out/summary.json"):  # fmt: skip
+        assert words in said.out
+    written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
+    assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.pgm"}
+    assert all(path.stat().st_size > 0 for path in written)
+    assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
+
+
+def test_json_and_pictures_at_once(ask):
+    said = ask(*LATTICE, "--tasks", 2, "--memory", "life.db", "--out", "out")
+    assert (said.status, said.err) == (0, "")
+    assert json.loads(Path("out/summary.json").read_text()) == said.document
+
+
+def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monkeypatch):
+    """The folder is looked at first: a refusal costs no life, and memory stays as it was."""
+    before = known.read_bytes()
+    Path("taken").write_text("a file")
+    assert "taken" in ask(*LATTICE, "--tasks", 2, "--memory", known, "--out", "taken").refusal
+    assert known.read_bytes() == before
+    with open_memory(known) as memory:
+        assert memory.tasks("robot") == 2

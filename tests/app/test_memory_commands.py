@@ -1,0 +1,163 @@
+"""`lifelore memory …` from end to end, and what else says its piece in JSON: doctor, reproduce."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.memory import open_memory
+
+OVERVIEW = {"location", "schema", "robots", "lore", "forgotten"}
+REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}
+
+
+def lived(ask, memory: Path, robot: str, tasks: int, seed: int) -> Path:
+    options = ("--domain", "lattice", "--tasks", tasks, "--robot", robot, "--seed", seed, "--memory", memory)
+    assert ask("live", *options).status == 0
+    return memory
+
+
+def recalls(path: Path) -> dict:
+    """All that a memory knows, as plain data; it must be sound."""
+    with open_memory(path) as memory:
+        assert memory.check() == []
+        return {
+            (kind, key, version): _plain(memory.recall(kind, key, version))
+            for kind in ("action_prior", "transitions")
+            for key, version, _ in memory.keys(kind)
+        }
+
+
+def _plain(record) -> tuple:
+    return record.merge, np.asarray(record.slots).tolist(), np.asarray(record.values).tolist(), record.about
+
+
+def robots(path: Path) -> dict[str, int]:
+    with open_memory(path) as memory:
+        return {robot: memory.tasks(robot) for robot in memory.robots()}
+
+
+def test_what_is_exported_here_is_known_there(ask, tmp_path):
+    home = lived(ask, tmp_path / "home.db", "rosie", 3, 1)
+    away = lived(ask, tmp_path / "away.db", "wally", 2, 2)
+    file = tmp_path / "home.lore"
+    assert ask("memory", "export", file, "--memory", home, "--json").document == {
+        "exported": 3, "file": str(file)
+    }  # fmt: skip
+    assert recalls(file) == recalls(home) != recalls(away)
+    new = tmp_path / "new.db"
+    counts = {"added": 3, "already_there": 0, "forgotten": 0}
+    assert ask("memory", "import", file, "--memory", new, "--json").document == counts
+    assert recalls(new) == recalls(home)
+    assert ask("memory", "import", file, "--memory", away, "--json").document == counts
+    # Once more changes nothing, and merging the other way round ends at the same lore.
+    again = ask("memory", "import", file, "--memory", away, "--json").document
+    assert again == {"added": 0, "already_there": 3, "forgotten": 0}
+    merged = ask("memory", "merge", away, "--memory", home, "--json").document
+    assert merged == {"added": 2, "already_there": 3, "forgotten": 0}
+    assert recalls(home) == recalls(away)
+    assert robots(home) == robots(away) == {"rosie": 3, "wally": 2}
+
+
+def test_a_life_begins_with_what_was_imported(ask, tmp_path):
+    lived(ask, tmp_path / "home.db", "rosie", 4, 1)
+    ask("memory", "export", "home.lore", "--memory", "home.db")
+    ask("memory", "import", "home.lore", "--memory", "new.db")
+    here, there = (
+        ask("live", "--domain", "lattice", "--tasks", 2, "--robot", "new", "--memory", memory, "--json").document
+        for memory in ("home.db", "new.db")
+    )
+    assert here["tasks"] == there["tasks"]
+    agents = there["tasks"][0]["agents"]
+    assert agents["lore"]["collisions"] < agents["scratch"]["collisions"]
+
+
+def test_forgetting_is_for_good(ask, tmp_path):
+    home = lived(ask, tmp_path / "home.db", "rosie", 3, 1)
+    only_rosie = recalls(home)
+    lived(ask, home, "wally", 2, 2)
+    ask("memory", "export", "both.lore", "--memory", home)
+    said = ask("memory", "forget", "wally", "--memory", home, "--json").document
+    assert said == {"forgotten": 2, "robot": "wally"}
+    assert recalls(home) == only_rosie
+    back = ask("memory", "import", "both.lore", "--memory", home, "--json").document
+    assert back == {"added": 0, "already_there": 3, "forgotten": 2}
+    assert recalls(home) == only_rosie
+    assert robots(home) == {"rosie": 3}
+    # The tombstone travels: who merges this memory forgets too.
+    ask("memory", "import", "both.lore", "--memory", "new.db")
+    assert robots(tmp_path / "new.db") == {"rosie": 3, "wally": 2}
+    assert ask("memory", "merge", home, "--memory", "new.db", "--json").document["forgotten"] == 2
+    assert recalls(tmp_path / "new.db") == only_rosie
+    # And the forgotten may start afresh.
+    lived(ask, home, "wally", 1, 3)
+    assert robots(home) == {"rosie": 3, "wally": 1}
+
+
+def test_show(ask, known):
+    shown = ask("memory", "show", "--memory", known, "--json").document
+    assert set(shown) == OVERVIEW
+    assert (shown["location"], shown["forgotten"]) == (str(known), 0)
+    (robot,) = shown["robots"]
+    assert set(robot) == {"robot", "tasks", "first", "last"}
+    assert (robot["robot"], robot["tasks"]) == ("robot", 2)
+    assert [lore["kind"] for lore in shown["lore"]] == ["action_prior", "transitions"]
+    for lore in shown["lore"]:
+        assert set(lore) == {"kind", "key", "version", "merge", "slots", "sum"}
+        assert lore["slots"] > 0
+
+
+def test_what_a_person_reads(ask, known):
+    said = ask("memory", "show", "--memory", known)
+    assert (said.status, said.err) == (0, "")
+    for words in ("who lived", "robot", "what is known", "action_prior", "transitions"):
+        assert words in said.out
+    assert ask("memory", "export", "all.lore", "--memory", known).out == "2 contributions written to all.lore\n"
+    imported = "contributions: 0 added, 2 already there, 0 forgotten\n"
+    assert ask("memory", "import", "all.lore", "--memory", known).out == imported
+    assert ask("memory", "forget", "robot", "--memory", known).out == "2 contributions of robot forgotten\n"
+    assert "2 contributions were forgotten" in ask("memory", "show", "--memory", known).out
+
+
+def test_doctor(ask, known):
+    report = ask("doctor", "--memory", known, "--json").document
+    assert set(report) == REPORT
+    assert all(set(entry) == {"name", "version", "for"} for entry in report["packages"])
+    assert all(set(entry) == {"what", "ok", "finding"} for entry in report["checks"])
+    checks = {entry["what"]: entry for entry in report["checks"]}
+    assert set(checks) == {"kernels", "kernel cache", "memory", "C compiler"}
+    assert checks["memory"] == {"what": "memory", "ok": True, "finding": f"{known}, 1 robots"}
+    said = ask("doctor", "--memory", known)
+    assert (said.status, said.err) == (0, "")
+    assert all(name in said.out for name in ("numba", "sqlalchemy", "ok   memory"))
+
+
+def test_doctor_finds_what_is_wrong_and_leaves_it(ask, tmp_path):
+    (tmp_path / "diary.txt").write_text("Dear diary")
+    said = ask("doctor", "--memory", "diary.txt")
+    assert said.status == 0
+    assert "BAD  memory" in said.out
+    assert "is not a Lifelore memory" in " ".join(said.out.split())
+    assert (tmp_path / "diary.txt").read_text() == "Dear diary"
+
+
+def test_the_ledger_of_claims(ask):
+    entries = ask("reproduce", "--list", "--json").document
+    assert all(set(entry) == {"claim", "where", "reports", "built"} for entry in entries)
+    assert {"C3.1", "C3.2"} <= {entry["claim"] for entry in entries if entry["built"]}
+    said = ask("reproduce", "--list")
+    assert (said.status, said.err) == (0, "")
+    assert all(entry["claim"] in said.out for entry in entries)
+
+
+@pytest.mark.parametrize("as_json", [True, False])
+def test_a_claim_from_the_command_line(as_json, ask, tmp_path):
+    options = ("--set", "mazes=2", "--set", "tasks=3", "--out", "results", "--jobs", 1)
+    said = ask("reproduce", "C3.1", *options, *(["--json"] if as_json else []))
+    assert (said.status, said.err) == (0, "")
+    assert (tmp_path / "results/C3.1/result.json").is_file()
+    if as_json:
+        (result,) = said.document
+        assert (result["claim"], result["mode"]) == ("C3.1", "quick")
+    else:
+        assert said.out.startswith("C3.1 (quick): ")

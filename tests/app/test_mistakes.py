@@ -1,0 +1,274 @@
+"""Whatever a person may get wrong: exit 2, one line that names what was wrong, and nothing lost.
+
+Each case is a command and what its line must say. `{new}` is a memory not yet there, `{known}` one of two tasks,
+`{text}` a text file, `{folder}` a folder, `{map}` a sound map of a small room.
+"""
+
+import os
+import random
+import shlex
+import shutil
+import sqlite3
+import string
+from contextlib import closing
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.domains.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.memory import open_memory
+
+LATTICE = "live --memory {known} --domain lattice --tasks 1"
+Q = f"{LATTICE} --learner q"
+BUILDING = "live --memory {known} --tasks 1 --map {map}"
+NOISE = "live --memory {known} --tasks 1 --domain noise"
+LONG = "x" * 300
+
+ASKED_WRONGLY = {
+    "nonsense": "No such command 'nonsense'",
+    "--nonsense": "No such option: --nonsense",
+    "live --nonsense": "No such option: --nonsense",
+    "live --tasks": "--tasks",
+    "live extra": "extra",
+    "memory nonsense": "No such command 'nonsense'",
+    "memory export": "Missing argument",
+    "memory forget --memory {known}": "Missing argument",
+    "version extra": "extra",
+    "doctor --nonsense": "--nonsense",
+}
+NUMBERS = {
+    f"{LATTICE} --tasks x": "'--tasks'",
+    f"{LATTICE} --tasks 1.5": "'--tasks'",
+    f"{LATTICE} --tasks nan": "'--tasks'",
+    f"{LATTICE} --tasks 0": "tasks must be a whole number from 1 to 1,000,000, got 0",
+    f"{LATTICE} --tasks -3": "got -3",
+    f"{LATTICE} --tasks {10**24}": "tasks must be",
+    f"{LATTICE} --seed x": "'--seed'",
+    f"{LATTICE} --jobs 0": "jobs must be",
+    f"{LATTICE} --jobs 100000": "jobs must be",
+    f"{LATTICE} --episodes 0": "episodes must be",
+    f"{LATTICE} --episodes {10**10}": "episodes must be",
+    f"{LATTICE} --max-steps 0": "max_steps must be",
+    f"{LATTICE} --max-steps {10**20}": "max_steps must be",
+    f"{LATTICE} --destinations -1": "destinations must be",
+    f"{LATTICE} --destinations 342": "at most the 341 free places",
+    f"{LATTICE} --destinations {10**12}": "destinations must be",
+    f"{LATTICE} --discount x": "'--discount'",
+    f"{LATTICE} --discount nan": "discount must",
+    f"{LATTICE} --discount 1": "discount must lie in [0, 1)",
+    f"{LATTICE} --discount -0.1": "discount must lie in [0, 1)",
+    f"{LATTICE} --discount 0 --start 1,1": "discount",
+    f"{Q} --discount 0 --start 1,1": "discount",
+    f"{LATTICE} --goal-reward nan": "goal_reward must be",
+    f"{LATTICE} --goal-reward inf": "goal_reward must be",
+    f"{LATTICE} --goal-reward 0": "goal_reward must be",
+    f"{LATTICE} --goal-reward 1e300": "goal_reward must be",
+    f"{Q} --goal-reward 1e300": "goal_reward must be",
+    f"{LATTICE} --wall-reward nan": "wall_reward must be",
+    f"{LATTICE} --wall-reward -inf": "wall_reward must be",
+    f"{LATTICE} --wall-reward -1e300": "wall_reward must be",
+    f"{Q} --wall-reward 1e300": "wall_reward must be",
+    f"{LATTICE} --alpha0 nan": "alpha0 must be",
+    f"{LATTICE} --alpha0 inf": "alpha0 must be",
+    f"{LATTICE} --alpha0 0": "alpha0 must be",
+    f"{LATTICE} --alpha0 -1": "alpha0 must be",
+    f"{LATTICE} --alpha0 1e308": "alpha0 must be",
+    f"{LATTICE} --prior none --alpha0 nan --json": "alpha0 must be",
+    f"{LATTICE} --weight nan": "weight must be",
+    f"{LATTICE} --weight -1": "weight must",
+    f"{LATTICE} --weight 1e300": "weight must",
+    f"{LATTICE} --density 0.5": "density",
+    f"{BUILDING} --density 0.5": "density",
+    f"{NOISE} --density nan": "density must",
+    f"{NOISE} --density 1.5": "density must",
+    f"{NOISE} --density -0.1": "density must",
+    f"{NOISE} --density 0.999": "obstacles",
+    f"{Q} --epsilon nan": "epsilon must lie in [0, 1]",
+    f"{Q} --epsilon -0.1": "epsilon must lie in [0, 1]",
+    f"{Q} --epsilon-decay 2": "epsilon_decay must lie in [0, 1]",
+    f"{Q} --epsilon-floor inf": "epsilon_floor must lie in [0, 1]",
+    f"{Q} --learning-rate nan": "learning_rate must lie in [0, 1]",
+    # The same for settings that this life has no use for: they would stand in its report.
+    f"{LATTICE} --epsilon nan --json": "epsilon must lie in [0, 1]",
+    f"{LATTICE} --epsilon 7 --json": "epsilon must lie in [0, 1]",
+    f"{LATTICE} --learning-rate inf --json": "learning_rate must lie in [0, 1]",
+    f"{LATTICE} --cell nan --json": "cell must be",
+    f"{LATTICE} --robot-radius inf --json": "robot_radius must be",
+    f"{BUILDING} --cell nan": "cell must",
+    f"{BUILDING} --cell inf": "cell must",
+    f"{BUILDING} --cell 0": "cell must",
+    f"{BUILDING} --cell -1": "cell must",
+    f"{BUILDING} --cell 1e-300": "cell must",
+    f"{BUILDING} --cell 1e300": "cell must",
+    f"{BUILDING} --cell 100": "only one cell",
+    f"{BUILDING} --robot-radius nan": "robot_radius must",
+    f"{BUILDING} --robot-radius -0.1": "robot_radius must",
+    f"{BUILDING} --robot-radius 1e9": "robot_radius must",
+    f"{BUILDING} --robot-radius 50": "no free cell is left",
+}
+NAMES = {
+    f"{LATTICE} --domain moon": "domain must be one of building, lattice, noise, got 'moon'",
+    f"{LATTICE} --agent bob": "agent must be one of lore",
+    f"{LATTICE} --learner sarsa": "learner must be one of model, q",
+    f"{Q} --agent rmax": "learner 'q' has agents",
+    f"{LATTICE} --prior feelings": "prior must be one of observation, state, none",
+    f"{LATTICE} --form triangle": "form must be one of proportion",
+    f"{LATTICE} --ties last": "ties must be one of uniform, prior",
+    f"{LATTICE} --robot ''": "robot must",
+    f"{LATTICE} --robot '   '": "robot must",
+    f"{LATTICE} --robot {LONG}": "robot must",
+    f"{LATTICE} --robot 'two\nlines'": "robot must",
+    f"{LATTICE} --start 0,0": "start must be a free cell ROW,COL of this world (23 rows, 23 columns), got 0,0",
+    f"{LATTICE} --start=-1,-1": "start must be a free cell",
+    f"{LATTICE} --start {10**20},1": "start must be a free cell",
+    f"{LATTICE} --start 3": "start must be ROW,COL",
+    f"{LATTICE} --start 1,2,3": "start must be ROW,COL",
+    f"{LATTICE} --start a,b": "start must be ROW,COL",
+    f"{LATTICE} --start nan,1": "start must be ROW,COL",
+    "memory forget nobody --memory {known}": "robot 'nobody' has contributed nothing here; known robots: robot",
+    "reproduce C9.9": "claim 'C9.9' is not in the ledger",
+    "reproduce C2.1": "is not built yet",
+    "reproduce C3.1 --quick --full": "exclude each other",
+    "reproduce C3.1 --set x": "KEY=VALUE",
+    "reproduce C3.1 --set x=1 --out {folder}": "has no setting 'x'",
+    "reproduce C3.1 --set tasks=nan --out {folder}": "setting 'tasks' must be a whole number",
+    "reproduce C3.1 --jobs 0 --out {folder}": "jobs must be at least 1",
+    "reproduce C3.1 --jobs x": "'--jobs'",
+    "reproduce C3.1 --out {text}": "Not a directory",
+    "bench": "Missing argument",
+    "bench nonsense": "bench must be one of kernels",
+    "bench nonsense --json": "got 'nonsense'",
+    "bench kernels --repeats 0": "repeats must lie in",
+    "bench kernels --repeats x": "'--repeats'",
+}
+MAPS = {
+    f"{LATTICE} --map {{map}}": "map applies to domain building",
+    f"{BUILDING} --map missing.yaml": "no such file: missing.yaml",
+    f"{BUILDING} --map ''": "no such file",
+    f"{BUILDING} --map {{folder}}": "no such file",
+    f"{BUILDING} --map {LONG}": "no such file",
+    f"{BUILDING} --map {{text}}": "is not a map YAML",
+    f"{BUILDING} --map {{broken}}": "is not YAML",
+    f"{BUILDING} --map {{known}}": "map: ",
+    f"{BUILDING} --map {{imageless}}": "image 'gone.pgm' not found",
+    f"{BUILDING} --map {{spoilt}}": "it is damaged or no image",
+    f"{BUILDING} --map {{walled}}": "no free cell is left",
+    f"{BUILDING} --start 6,0": "start must be a free cell",
+    f"{BUILDING} --destinations 5000": "destinations must be at most",
+}
+PLACES = {
+    f"{LATTICE} --out ''": "out must name a folder",
+    f"{LATTICE} --out {{text}}": "out must name a folder",
+    f"{LATTICE} --out {{text}}/below": "out must name a folder",
+    f"{LATTICE} --out /proc/nowhere": "cannot write into /proc/nowhere",
+    f"{LATTICE} --out {LONG}": "cannot write into",
+    f"{LATTICE} --memory ''": "memory must name a file",
+    f"{LATTICE} --memory {{text}}": "is not a Lifelore memory",
+    f"{LATTICE} --memory {{folder}}": "is a folder",
+    f"{LATTICE} --memory {{foreign}}": "belongs to another program",
+    f"{LATTICE} --memory {{damaged}}": "is damaged",
+    f"{LATTICE} --memory {{newer}}": "newer Lifelore",
+    f"{LATTICE} --memory {{text}}/life.db": "check the path",
+    f"{LATTICE} --memory /proc/nowhere/life.db": "check the path",
+    f"{LATTICE} --memory {LONG}": "memory ",
+    f"{LATTICE} --memory mysql://u:secret@h/d": "memory takes a file or a postgresql:// URL, got mysql://",
+    f"{LATTICE} --memory sqlite:///life.db": "got sqlite://",
+    f"{LATTICE} --memory 'postgresql://u:secret@[::1/d'": "this postgresql:// URL cannot be read",
+    f"{LATTICE} --memory postgresql://u:secret@127.0.0.1:1/d": "the server cannot be reached",
+    "memory show --memory {text}": "is not a Lifelore memory",
+    "memory show --memory {damaged}": "is damaged",
+    "memory show --memory {newer}": "newer Lifelore",
+    "memory export '' --memory {known}": "memory must name a file",
+    "memory export {folder} --memory {known}": "is a folder",
+    "memory export {text} --memory {known}": "is not a Lifelore memory",
+    "memory export {known} --memory {known}": "is a memory in use",
+    "memory export {foreign} --memory {known}": "belongs to another program",
+    "memory export {text}/below --memory {known}": "check the path",
+    "memory export /proc/nowhere/x --memory {known}": "check the path",
+    "memory export postgresql://h/d --memory {known}": "path must be a file",
+    "memory import missing.db --memory {known}": "does not exist",
+    "memory import {text} --memory {known}": "is not a Lifelore memory",
+    "memory import {folder} --memory {known}": "is a folder",
+    "memory import {damaged} --memory {known}": "is damaged",
+    "memory import {newer} --memory {known}": "newer Lifelore",
+    "memory import {foreign} --memory {known}": "belongs to another program",
+    "memory merge mysql://h/d --memory {known}": "got mysql://",
+    "memory merge missing.db --memory {known}": "does not exist",
+}
+CASES = ASKED_WRONGLY | NUMBERS | NAMES | MAPS | PLACES
+
+
+def room(path: Path, state: int) -> Path:
+    """A map of 3 x 3 m, its inside of one state."""
+    pixels = np.ones((60, 60), np.uint8)
+    pixels[1:-1, 1:-1] = state
+    write_occupancy_map(path, OccupancyMap(pixels, 0.05))
+    return path
+
+
+def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
+    """What the cases name; `new` is not made."""
+    things = {
+        name: folder / f"{name}{ending}"
+        for ending, names in {
+            ".txt": ["text"], "": ["folder"], ".db": ["new", "known", "foreign", "damaged", "newer"],
+            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"],
+        }.items()
+        for name in names
+    }  # fmt: skip
+    things["text"].write_text("Dear diary,\n" * 500)
+    things["folder"].mkdir()
+    for name in ("known", "damaged", "newer"):
+        shutil.copy(two_tasks, things[name])
+    noise = bytearray(things["damaged"].read_bytes())
+    noise[4096:] = random.Random(1).randbytes(len(noise) - 4096)
+    things["damaged"].write_bytes(noise)
+    with closing(sqlite3.connect(things["newer"], isolation_level=None)) as conn:
+        conn.execute("INSERT INTO lifelore_migrations VALUES (99, 'flying', 0)")
+    with closing(sqlite3.connect(things["foreign"])) as conn:
+        conn.execute("CREATE TABLE notes (body TEXT)")
+    for name in ("map", "imageless", "spoilt"):
+        room(things[name], 0)
+    room(things["walled"], 1)
+    things["broken"].write_text("image: [map.pgm\n")
+    things["imageless"].write_text(things["map"].read_text().replace("map.pgm", "gone.pgm"))
+    things["spoilt"].with_suffix(".pgm").write_text("P5 nothing else")
+    return things
+
+
+@pytest.fixture(scope="module")
+def things(tmp_path_factory: pytest.TempPathFactory, two_tasks: Path) -> dict[str, Path]:
+    return make_things(tmp_path_factory.mktemp("things"), two_tasks)
+
+
+def everything_in(folder: Path) -> dict[Path, bytes | None]:
+    return {path: path.read_bytes() if path.is_file() else None for path in folder.rglob("*")}
+
+
+@pytest.mark.parametrize("case", CASES, ids=lambda case: case.replace(LONG, "LONG").replace("\n", " ")[:100])
+def test_a_mistake_is_one_line_and_loses_nothing(case, things, ask):
+    before = everything_in(things["known"].parent)
+    said = ask(*shlex.split(case.format(**things)))
+    assert CASES[case] in said.refusal
+    assert "secret" not in said.err
+    # Byte for byte: the sound memory, those that were refused, and no file is left that was not there.
+    assert everything_in(things["known"].parent) == before
+
+
+def test_the_cases_name_only_what_is_made(things):
+    named = {part for case in CASES for _, part, _, _ in string.Formatter().parse(case) if part}
+    assert named <= set(things)
+    with open_memory(things["known"]) as memory:
+        assert (memory.tasks("robot"), memory.check()) == (2, [])
+
+
+@pytest.mark.parametrize("case", ["--tasks nan", "--domain moon", "--start 0,0", "--memory ''", "--agent bob"])
+def test_a_mistake_in_a_process_of_its_own(case, start, answer):
+    assert answer(start("live", "--domain", "lattice", "--json", *shlex.split(case))).refusal
+
+
+def test_odd_bytes_in_an_argument(start, answer):
+    """Names need not be UTF-8 on Linux; the line that speaks of them must still be written."""
+    said = answer(start("live", "--domain", os.fsdecode(b"\xff\xfe")))
+    assert "domain must be one of" in said.refusal

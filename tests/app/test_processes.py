@@ -1,0 +1,230 @@
+"""Lives as real processes: interrupted, killed, side by side, out of space, and without the right to write."""
+
+import json
+import os
+import random
+import resource
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from contextlib import closing
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.app.command_line import run
+from lifelore.memory import open_memory
+
+SOAK_KILLS = int(os.environ.get("LIFELORE_SOAK_KILLS", "200"))
+LATTICE = ("live", "--domain", "lattice")
+
+
+def sound_tasks(path: Path, robot: str = "robot") -> int:
+    """Finished tasks of a robot, after a look at every byte."""
+    with open_memory(path) as memory:
+        assert memory.check() == []
+        return memory.tasks(robot)
+
+
+def task_indices(path: Path) -> list[int]:
+    """Which tasks of the stream are stored, in the order they were."""
+    with closing(sqlite3.connect(path)) as conn:
+        rows = conn.execute("SELECT task FROM lifelore_contributions ORDER BY number").fetchall()
+    return [json.loads(task)["index"] for (task,) in rows]
+
+
+def test_ctrl_c_keeps_what_is_finished(start, answer, ask, wait_for_tasks, tmp_path):
+    memory = tmp_path / "life.db"
+    child = start(*LATTICE, "--tasks", 100_000, "--memory", memory, "--json")
+    wait_for_tasks(memory, 2)
+    child.send_signal(signal.SIGINT)
+    said = answer(child)
+    assert said.status == 130
+    assert said.err.startswith("stopping: ")
+    assert said.err.count("\n") == 1
+    life = said.document
+    stored = sound_tasks(memory)
+    assert stored >= 2
+    assert life["memory"] == {"tasks_before": 0, "tasks_after": stored}
+    assert [task["index"] for task in life["tasks"]] == list(range(stored)) == task_indices(memory)
+    assert life["summary"]["lore_vs_scratch"]["jumpstart"]["n"] == max(1, stored // 3)
+    on = ask(*LATTICE, "--tasks", 2, "--memory", memory, "--json").document
+    assert on["memory"] == {"tasks_before": stored, "tasks_after": stored + 2}
+    assert [task["index"] for task in on["tasks"]] == [stored, stored + 1]
+
+
+def test_ctrl_c_is_heard_within_a_task(start, answer, ask, tmp_path):
+    """The first task alone would take the better part of a minute: a thousand million steps, all at random."""
+    memory = tmp_path / "life.db"
+    endless = ("--learner", "q", "--epsilon-decay", 1, "--episodes", 1_000_000, "--max-steps", 1000)
+    child = start(*LATTICE, *endless, "--memory", memory, "--json")
+    while not memory.exists():
+        time.sleep(0.02)
+        assert child.poll() is None
+    child.send_signal(signal.SIGINT)
+    said = answer(child)
+    life = said.document
+    assert (said.status, life["tasks"], life["summary"]) == (130, [], {})
+    assert life["memory"] == {"tasks_before": 0, "tasks_after": 0}
+    assert sound_tasks(memory) == 0
+    assert ask(*LATTICE, "--tasks", 1, "--memory", memory).status == 0
+
+
+def killed_life(start, memory: Path, seconds: float, after: int | None, wait_for_tasks) -> None:
+    """Start a life and kill it: `seconds` after its start, or after there are more than `after` tasks."""
+    child = start("live", "--tasks", 1_000_000, "--jobs", 1, "--memory", memory)
+    if after is not None:
+        wait_for_tasks(memory, after + 1)
+    time.sleep(seconds)
+    child.kill()
+    assert (child.wait(30), child.stdout.read(), child.stderr.read()) == (-signal.SIGKILL, "", "")
+
+
+def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -> None:
+    """After every kill memory is sound, nothing of it is gone, and the next life goes on where it stopped.
+
+    Every fourth kill falls anywhere into the first 1.5 s, so also into a start or an opening; the others fall
+    into the life itself, at least one task after its beginning: so there is progress on any machine.
+    """
+    draw, before = random.Random(seed), 0
+    for kill in range(kills):
+        if kill % 4 == 0:
+            killed_life(start, memory, draw.uniform(0.3, 1.5), None, wait_for_tasks)
+        else:
+            killed_life(start, memory, draw.uniform(0.0, 0.3), before, wait_for_tasks)
+        tasks = sound_tasks(memory)
+        assert tasks > before if kill % 4 else tasks >= before
+        before = tasks
+    life = ask("live", "--tasks", 2, "--memory", memory, "--json").document
+    assert life["memory"] == {"tasks_before": before, "tasks_after": before + 2}
+    # No task was lived twice, none was left out, and none was stored by halves.
+    assert task_indices(memory) == list(range(before + 2))
+
+
+def test_kills_lose_at_most_the_task_in_progress(start, ask, wait_for_tasks, tmp_path):
+    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=20, seed=20)
+
+
+@pytest.mark.soak
+def test_soak_kills(start, ask, wait_for_tasks, tmp_path):
+    kill_loop(start, ask, wait_for_tasks, tmp_path / "life.db", kills=SOAK_KILLS, seed=200)
+
+
+FIXED = ("--learner", "q", "--epsilon", 0, "--epsilon-floor", 0, "--episodes", 60)
+"""Never exploring, a Q-learner never asks the prior: what a task teaches depends on seed and task number only."""
+SHARED = 10
+SLOTS = 2**18
+"""More than there are percepts times actions."""
+
+
+def prior_counts(path: Path) -> np.ndarray:
+    """(SLOTS,) sums of all action priors in a memory, as the integers that are stored."""
+    counts = np.zeros(SLOTS, np.int64)
+    with open_memory(path) as memory:
+        for key, version, _ in memory.keys("action_prior"):
+            record = memory.recall("action_prior", key, version)
+            counts[np.asarray(record.slots)] += np.asarray(record.values)
+    return counts
+
+
+@pytest.fixture(scope="module")
+def taught(tmp_path_factory) -> list[np.ndarray]:
+    """What each of the first `2 * SHARED` tasks adds to the prior in a life alone."""
+    memory = tmp_path_factory.mktemp("alone") / "life.db"
+    known = [np.zeros(SLOTS, np.int64)]
+    for _ in range(2 * SHARED):
+        assert run([str(word) for word in (*LATTICE, *FIXED, "--tasks", 1, "--memory", memory, "--json")]) == 0
+        known.append(prior_counts(memory))
+    return [after - before for before, after in pairwise(known)]
+
+
+@pytest.mark.parametrize("robots", [("rosie", "wally"), ("rosie", "rosie")], ids=["two robots", "one robot"])
+def test_two_lives_on_one_memory_add_up(robots, start, answer, taught, tmp_path):
+    """Both begin where no memory is yet. Which task is lived by whom is a matter of time; what it adds is not."""
+    memory, tasks = tmp_path / "life.db", SHARED
+    children = [
+        start(*LATTICE, *FIXED, "--tasks", tasks, "--robot", robot, "--memory", memory, "--json")
+        for robot in robots
+    ]
+    lives = [answer(child) for child in children]
+    assert [(life.status, life.err) for life in lives] == [(0, ""), (0, "")]
+    for robot in set(robots):
+        assert sound_tasks(memory, robot) == tasks * robots.count(robot)
+    lived = [task["index"] for life in lives for task in life.document["tasks"]]
+    assert len(lived) == 2 * tasks
+    expected = sum(taught[index] for index in lived)
+    assert expected.sum() > 0
+    assert np.array_equal(prior_counts(memory), expected)
+
+
+def test_two_lives_that_remember_everything(start, answer, tmp_path):
+    """The whole agent; memory is the sum of its robots, and one's part is what forgetting the other leaves."""
+    memory = tmp_path / "life.db"
+    robots = ("rosie", "wally")
+    options = ("--tasks", 30, "--memory", memory, "--json", "--robot")
+    children = [start(*LATTICE, *options, robot) for robot in robots]
+    assert [answer(child).status for child in children] == [0, 0]
+    parts = []
+    for robot in robots:
+        assert sound_tasks(memory, robot) == 30
+        part = tmp_path / f"without-{robot}.db"
+        with open_memory(part) as other:
+            assert other.merge_from(memory) == {"added": 60, "already_there": 0, "forgotten": 0}
+            assert other.forget(robot) == 30
+        parts.append(prior_counts(part))
+    assert all(part.sum() > 0 for part in parts)
+    assert np.array_equal(prior_counts(memory), sum(parts))
+
+
+def test_a_full_disk_is_one_line_and_keeps_what_is_finished(start, answer, ask, known):
+    """Files that may not grow past a limit: write() itself fails, as on a full disk."""
+    limit = known.stat().st_size + 150_000
+    child = start(
+        "live", "--domain", "lattice", "--tasks", 100_000, "--memory", known, "--json",
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit)),
+    )  # fmt: skip
+    line = answer(child).refusal
+    assert f"memory {known}: " in line
+    assert "full" in line or "no space" in line
+    stored = sound_tasks(known)
+    assert stored > 2
+    assert task_indices(known) == list(range(stored))
+    on = ask(*LATTICE, "--tasks", 1, "--memory", known, "--json").document
+    assert on["memory"] == {"tasks_before": stored, "tasks_after": stored + 1}
+
+
+AS_NOBODY = """
+import os, sys
+from lifelore.app.command_line import run
+memory, spare, *arguments = sys.argv[1:]
+with open(os.devnull, "w") as nowhere:
+    told, sys.stdout = sys.stdout, nowhere
+    assert run([*arguments, "--memory", spare]) == 0  # so that what is read late is read before the rights go
+    sys.stdout = told
+os.chmod(os.path.dirname(memory), 0o555)
+os.chmod(memory, 0o444)
+if os.getuid() == 0:
+    os.setgid(65534), os.setuid(65534)
+sys.exit(run([*arguments, "--memory", memory]))
+"""
+
+
+@pytest.mark.parametrize("arguments", [(*LATTICE, "--tasks", "1"), ("memory", "show")], ids=["live", "show"])
+def test_a_read_only_memory(arguments, known, tmp_path, answer):
+    shut = tmp_path / "shut"
+    shut.mkdir()
+    known = known.rename(shut / "known.db")
+    for folder in (tmp_path, tmp_path.parent, tmp_path.parent.parent):
+        folder.chmod(0o755)
+    before = known.read_bytes()
+    command = [sys.executable, "-c", AS_NOBODY, str(known), str(tmp_path / "spare.db"), *arguments]
+    said = answer(subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True))
+    shut.chmod(0o755)
+    assert "read-only" in said.refusal or "may be read and written" in said.refusal
+    assert known.read_bytes() == before
+    known.chmod(0o644)
+    assert sound_tasks(known) == 2
