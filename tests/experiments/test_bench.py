@@ -144,9 +144,33 @@ def test_lines_by_hand():
 
 
 def test_what_cannot_be_run():
-    with pytest.raises(NotFoundError, match="bench must be one of kernels, got 'speed'"):
+    with pytest.raises(NotFoundError, match="bench must be one of kernels, courier, got 'speed'"):
         bench("speed")
     for repeats in (0, 1001):
         with pytest.raises(InputError, match=rf"repeats must lie in \[1, 1000\], got {repeats}"):
             bench("kernels", repeats=repeats)
     assert "kernels" in BENCHES
+
+
+def test_courier_lives_at_home_and_abroad(monkeypatch):
+    from lifelore.experiments.bench import courier
+
+    monkeypatch.setattr(courier, "TASKS", 3)
+    monkeypatch.setattr(courier, "VISITS", 1)
+    steps = []
+    result = bench("courier", repeats=1, progress=lambda *step: steps.append(step))
+    assert [step[:2] for step in steps] == [(1, 2), (2, 2)]
+    by_name = {row["name"]: row for row in result["rows"]}
+    lore = by_name["lore at home, steps to 80 %"]
+    scratch = by_name[lore["ratio_to"]]
+    assert lore["ratio"] == pytest.approx(lore["value"] / scratch["value"])
+    assert (
+        by_name["lore in another building, collisions"]["value"]
+        < by_name["scratch in another building, collisions"]["value"]
+    )
+    assert len(result["goals"]) == 8
+
+
+def test_a_map_is_for_the_courier():
+    with pytest.raises(InputError, match="map applies to bench courier"):
+        bench("kernels", map="x.yaml")

@@ -1,0 +1,92 @@
+"""`bench courier`: does the main job pay? Whole lives beside `scratch`, at home and then in another building.
+
+Each round is one life of `TASKS` tasks with every agent, and then a visit: `VISITS` tasks in a generated office
+the life has never seen, with the memory of home. Ratios are of means over all rounds, on the same tasks.
+"""
+
+import tempfile
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from statistics import median
+
+import numpy as np
+
+from lifelore.agent.life import live
+from lifelore.agent.life_settings import LifeSettings
+from lifelore.agent.summary import third
+from lifelore.experiments.bench.rounds import at_most, row
+
+TASKS, VISITS = 30, 3
+AWAY = 1000
+"""Offices visited are drawn from this seed on; none is a home."""
+GOALS = {"lore": (0.10, 0.005), "prior": (1.0, 0.03)}
+"""Most steps and collisions at home, as ratios to scratch over the last third of the tasks."""
+VISIT_GOALS = (1.05, 0.25)
+"""The same in the other building, over all its tasks."""
+SECONDS = 90.0
+"""Most seconds of one life."""
+
+
+def bench_courier(repeats: int, progress: Callable[[int, int, str], None], map: str | None = None) -> dict:
+    """Rows and goals; see `lifelore.experiments.bench.bench`. `map`: a ROS map; default generated offices."""
+    lives, visits = [], []
+    for seed in range(repeats):
+        with tempfile.TemporaryDirectory() as folder:
+            told = LifeSettings(map=map, tasks=TASKS, agent="all", seed=seed, memory=str(Path(folder) / "life.db"))
+            lives.append(live(told).report)
+            progress(2 * seed + 1, 2 * repeats, f"life {seed}")
+            away = LifeSettings(tasks=VISITS, seed=AWAY + seed, memory=told.memory, robot="guest")
+            visits.append(live(away).report)
+            progress(2 * seed + 2, 2 * repeats, f"visit {seed}")
+    home = [task for report in lives for task in third(report["tasks"], "last")]
+    abroad = [task for report in visits for task in report["tasks"]]
+    rows = [*_rows("at home", home), *_rows("in another building", abroad)]
+    seconds = median(report["seconds"] for report in lives)
+    rows.append(row(f"a life of {TASKS} tasks with every agent", seconds, "s"))
+    return {
+        "rows": rows,
+        "goals": [*_home_goals(home), *_visit_goals(abroad), at_most("a life, s", SECONDS, seconds)],
+    }
+
+
+def _mean(tasks: Sequence[dict], agent: str, measure: str) -> float:
+    return float(np.mean([task["agents"][agent][measure] for task in tasks]))
+
+
+def _ratio(tasks: Sequence[dict], agent: str, measure: str) -> float:
+    return _mean(tasks, agent, measure) / _mean(tasks, "scratch", measure)
+
+
+def _rows(where: str, tasks: Sequence[dict]) -> list[dict]:
+    rows = []
+    for measure, unit in (("steps_to_80", "steps to 80 %"), ("collisions", "collisions")):
+        for agent in tasks[0]["agents"]:
+            name, scratch = (f"{who} {where}, {unit}" for who in (agent, "scratch"))
+            ratio = None if agent == "scratch" else _ratio(tasks, agent, measure)
+            rows.append(
+                row(name, _mean(tasks, agent, measure), unit, scratch if ratio is not None else None, ratio)
+            )
+    for agent in tasks[0]["agents"]:
+        capped = sum(not task["agents"][agent]["reached"] for task in tasks)
+        rows.append(row(f"{agent} {where}, capped tasks of {len(tasks)}", float(capped), "tasks"))
+    return rows
+
+
+def _home_goals(tasks: Sequence[dict]) -> list[dict]:
+    goals = []
+    for agent, (steps, collisions) in GOALS.items():
+        goals.append(at_most(f"{agent} / scratch, steps at home", steps, _ratio(tasks, agent, "steps_to_80")))
+        goals.append(
+            at_most(f"{agent} / scratch, collisions at home", collisions, _ratio(tasks, agent, "collisions"))
+        )
+    return goals
+
+
+def _visit_goals(tasks: Sequence[dict]) -> list[dict]:
+    steps, collisions = VISIT_GOALS
+    capped = sum(not task["agents"]["lore"]["reached"] for task in tasks)
+    return [
+        at_most("lore / scratch, steps in another building", steps, _ratio(tasks, "lore", "steps_to_80")),
+        at_most("lore / scratch, collisions in another building", collisions, _ratio(tasks, "lore", "collisions")),
+        at_most("lore capped in another building", 0, float(capped)),
+    ]
