@@ -185,27 +185,28 @@ def learn(tables, rows, schedule, learner, curve, budget):
     epsilons, alphas, max_steps, gamma = schedule
     q, visits, world, own, cursor, running = learner
     returns, rewards, steps, collisions, reached = curve
-    episode, step, state, reward_class = cursor[0], cursor[1], cursor[2], cursor[3]
+    # Unsigned, because Numba asks of every signed index whether it counts from the end.
+    episode, step, state, reward_class = cursor[0], cursor[1], np.uint64(cursor[2]), np.uint64(cursor[3])
     ret, discount = running[0], running[1]
     done_steps = 0
     while done_steps < budget and episode < epsilons.size:
         if step == 0:
-            state = np.int64(starts[int(next_uniform(world) * starts.size)])
-            reward_class, ret, discount = np.int64(0), 0.0, 1.0
-        row = q_row[state]
-        context = context_row[state, reward_class]
+            state = np.uint64(starts[int(next_uniform(world) * starts.size)])
+            reward_class, ret, discount = np.uint64(0), 0.0, 1.0
+        row = np.uint64(q_row[state])
+        context = np.uint64(context_row[state, reward_class])
         a = choose(q, row, explore_cum, tie_weight, context, epsilons[episode], own)
         k = 0
         if outcome_cum.size > 1:
             u = next_uniform(world)
             while u >= outcome_cum[k]:
                 k += 1
-        following = np.int64(next_state[state, a, k])
+        following = np.uint64(next_state[state, a, k])
         reward = reward_of[state, a, k]
         event = event_of[state, a, k]
         target = reward
         if not event & TERMINAL:
-            target += gamma * _best_value(q, q_row[following])
+            target += gamma * _best_value(q, np.uint64(q_row[following]))
         q[row, a] += alphas[episode] * (target - q[row, a])
         visits[row, a] += 1
         ret += discount * reward
@@ -213,7 +214,7 @@ def learn(tables, rows, schedule, learner, curve, budget):
         rewards[episode] += reward
         if event & COLLISION:
             collisions[episode] += 1
-        reward_class = np.int64(class_of[state, a, k])
+        reward_class = np.uint64(class_of[state, a, k])
         state = following
         step += 1
         done_steps += 1
