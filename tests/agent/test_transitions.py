@@ -3,7 +3,7 @@
 import numpy as np
 
 from lifelore.agent.transitions import agreement, cells_of, from_record, model_table, to_record
-from lifelore.core.model_learning import UNKNOWN, blank_model
+from lifelore.core.known_world import UNKNOWN, blank_model
 from lifelore.domains.grid_world import GridWorld
 
 

@@ -22,14 +22,8 @@ def _random_world():
 def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
     from lifelore.core.curve import new_curve
-    from lifelore.core.model_learning import (
-        Manner,
-        Perceived,
-        best_known_actions,
-        blank_model,
-        explore,
-        new_explorer,
-    )
+    from lifelore.core.known_world import best_known_actions, blank_model
+    from lifelore.core.model_learning import Manner, Perceived, explore, new_explorer
     from lifelore.core.planning import optimal_q, policy_values
     from lifelore.core.q_learning import Schedule, learn, new_learner, uniform_rows
     from lifelore.core.random_state import next_uniform, random_state
@@ -56,7 +50,7 @@ def all_arrays() -> dict[str, np.ndarray]:
         curve = new_curve(12)
         while explore(tables, model, seen, manner, explorer, curve, 30, 0.9, 50):
             pass
-        best = best_known_actions(model, explorer)
+        best = best_known_actions(model, explorer.place)
         out |= _named(f"{manner}", (*model, *explorer, *curve, best))
     return out
 

@@ -9,22 +9,9 @@ from hypothesis import strategies as st
 
 from lifelore.core.curve import new_curve
 from lifelore.core.errors import InputError
+from lifelore.core.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN, Model, blank_model, known_policy
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.model_learning import (
-    DEAD_END,
-    GOAL,
-    LOOKED,
-    NOT_LOOKED,
-    UNKNOWN,
-    Manner,
-    Model,
-    Perceived,
-    blank_model,
-    check_deterministic,
-    explore,
-    known_policy,
-    new_explorer,
-)
+from lifelore.core.model_learning import Manner, Perceived, check_deterministic, explore, new_explorer
 from lifelore.core.planning import mean_start_value, optimal_q, policy_values
 from lifelore.core.streams import stream
 
@@ -105,7 +92,7 @@ def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
     explorer, curve = lived(tables, model, episodes=30, seed=1)
     assert curve.reached[-5:].all()
     assert (curve.steps[-5:] == 3).all()
-    greedy = policy_values(tables, known_policy(model, explorer), 0.9)
+    greedy = policy_values(tables, known_policy(model, explorer.place), 0.9)
     assert mean_start_value(tables, greedy) == pytest.approx(optimal_q(tables, 0.9)[2].max())
     # What was learnt is true, and the percepts of visited places are remembered.
     known = model.target != UNKNOWN

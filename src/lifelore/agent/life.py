@@ -21,8 +21,9 @@ from lifelore.agent.summary import summarise
 from lifelore.agent.task_result import Stopped, TaskResult
 from lifelore.agent.task_stream import TaskStream
 from lifelore.core.errors import InputError
+from lifelore.core.known_world import blank_model
 from lifelore.core.mdp import Tables, Task
-from lifelore.core.model_learning import Perceived, blank_model, new_explorer
+from lifelore.core.model_learning import Perceived, new_explorer
 from lifelore.core.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Record
 from lifelore.core.q_learner import QLearning

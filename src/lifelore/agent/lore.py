@@ -11,7 +11,7 @@ from lifelore.action.action_prior import KIND as PRIOR_KIND
 from lifelore.action.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.action_prior import ActionPrior
 from lifelore.agent import transitions
-from lifelore.core.model_learning import Model
+from lifelore.core.known_world import Model
 from lifelore.core.protocols import Record
 from lifelore.domains.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
 

@@ -6,16 +6,9 @@ import numpy as np
 
 from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
 from lifelore.core.curve import new_curve
+from lifelore.core.known_world import Model, best_known_actions, known_policy
 from lifelore.core.mdp import Tables
-from lifelore.core.model_learning import (
-    Explorer,
-    Manner,
-    Model,
-    Perceived,
-    best_known_actions,
-    explore,
-    known_policy,
-)
+from lifelore.core.model_learning import Explorer, Manner, Perceived, check_deterministic, explore
 from lifelore.core.planning import mean_start_value, policy_values
 
 
@@ -32,6 +25,7 @@ def live_model_task(
     stop: Event,
 ) -> TaskResult:
     """Explore until the greedy policy is worth 80 % of `optimal` or the cap is met; `model` learns in place."""
+    check_deterministic(tables)
     curve = new_curve(episodes)
     policy = np.full(tables.n_states, -1, np.int32)
     value, total, trace = 0.0, 0, []
@@ -42,7 +36,7 @@ def live_model_task(
         if steps == 0:
             break
         total += steps
-        policy = known_policy(model, explorer)
+        policy = known_policy(model, explorer.place)
         value = mean_start_value(tables, policy_values(tables, policy, discount))
         trace.append((total, value / optimal))
     reached = value >= THRESHOLD * optimal
@@ -55,6 +49,6 @@ def live_model_task(
         reached=bool(reached),
         final_return=value,
         policy=policy,
-        best=best_known_actions(model, explorer),
+        best=best_known_actions(model, explorer.place),
         trace=np.array(trace, float).reshape(-1, 2),
     )

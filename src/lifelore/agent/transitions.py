@@ -9,7 +9,7 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.model_learning import UNKNOWN, Model, blank_model
+from lifelore.core.known_world import UNKNOWN, Model, blank_model
 from lifelore.core.protocols import Record
 from lifelore.domains.grid_world import MOVE_NAMES, GridWorld
 

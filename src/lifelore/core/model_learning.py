@@ -20,33 +20,13 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.jit import inlined, kernel
+from lifelore.core.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.random_state import next_uniform, random_state
+from lifelore.core.random_state import one_of, random_state
+from lifelore.core.search_plan import plan_search
 
-UNKNOWN = -1
-"""Target of a move never made, and percept of a state never seen."""
-NOT_LOOKED, LOOKED, DEAD_END, GOAL = range(4)
-"""What this task knows of a place: nothing, nothing there, the episode ends badly, the goal."""
-
-
-NO_CRUMBS = 0.2
-"""Among places equally near, first those with fewest others not looked at beside them (Warnsdorff's rule).
-Measured on three buildings: the mean search falls from 0.67 to 0.59 of the number of places, where 0.5 is the
-least any searcher can need that must enter a place to see whether the goal is there. At most 1 / (moves + 1), so
-that a nearer place always comes first: with more than four moves a crumb weighs less."""
 MOST_ACTIONS = np.iinfo(np.int8).max
 """Plans are kept as int8."""
-
-
-class Model(NamedTuple):
-    """Remembered knowledge of a domain; changed in place.
-
-    target : (n_states, n_actions) int32, state that a move leads to, UNKNOWN where never made
-    percept : (n_states,) int64, what was perceived there, UNKNOWN where never
-    """
-
-    target: NDArray[np.int32]
-    percept: NDArray[np.int64]
 
 
 class Manner(NamedTuple):
@@ -99,11 +79,6 @@ class Explorer(NamedTuple):
     running: NDArray[np.float64]
 
 
-def blank_model(n_states: int, n_actions: int) -> Model:
-    """A model of a domain of which nothing is known."""
-    return Model(np.full((n_states, n_actions), UNKNOWN, np.int32), np.full(n_states, UNKNOWN, np.int64))
-
-
 def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
     """A learner at the start of a task; `world` and `own` are numpy generators."""
     if not 1 <= n_actions <= MOST_ACTIONS:
@@ -139,7 +114,7 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     done_steps = 0
     while done_steps < budget and episode < returns.size:
         if step == 0:
-            state = np.int64(starts[_one_of(world, starts.size)])
+            state = np.int64(starts[one_of(world, starts.size)])
             left, ret, reach = np.int64(0), 0.0, 1.0
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
@@ -150,12 +125,12 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
                 left = np.int64(0)
         if planned:
             if left == 0:
-                left = _plan(
+                left = plan_search(
                     state, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, own
                 )
             if left == 0:
                 _doubt(target, tried)
-                plan[0] = _one_of(own, target.shape[1])
+                plan[0] = one_of(own, target.shape[1])
                 left = np.int64(1)
             left -= 1
             a = np.int64(plan[left])
@@ -191,12 +166,6 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     return done_steps
 
 
-@kernel
-def _one_of(random, n):
-    """One of 0 … n - 1, each as likely."""
-    return np.int64(next_uniform(random) * n)
-
-
 @inlined
 def _arrive(state, target, seen, percept, tried):
     """The percept changed since it was remembered: forget what was remembered of this place."""
@@ -215,7 +184,7 @@ def _least_tried(tried, state, random):
             best, ties = a, 1
         elif tried[state, a] == tried[state, best]:
             ties += 1
-            if _one_of(random, ties) == 0:
+            if one_of(random, ties) == 0:
                 best = a
     return np.int64(best)
 
@@ -227,126 +196,6 @@ def _doubt(target, tried):
         for a in range(target.shape[1]):
             if target[s, a] == s and tried[s, a] == 0:
                 target[s, a] = UNKNOWN
-
-
-@inlined
-def _not_looked_around(s, target, place):
-    count = 0
-    for a in range(target.shape[1]):
-        t = target[s, a]
-        if t >= 0 and t != s and place[t] == NOT_LOOKED:
-            count += 1
-    return count
-
-
-@kernel
-def _plan(start, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random):
-    """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0."""
-    goal_known = False
-    for s in range(place.size):
-        parent[s] = UNKNOWN
-        goal_known |= place[s] == GOAL
-    crumb = min(NO_CRUMBS, 1.0 / (target.shape[1] + 1))
-    best_cost, best_state, best_action, ties = np.inf, -1, 0, 0
-    goal_state, goal_action = -1, 0
-    head, tail = 0, 1
-    queue[0] = start
-    parent[start] = start
-    level_end, depth = 1, 1.0
-    while head < tail and depth <= best_cost:
-        s = queue[head]
-        head += 1
-        for a in range(target.shape[1]):
-            t = target[s, a]
-            cost = np.inf
-            if t == UNKNOWN:
-                cost = depth + try_cost[cost_row[s], a]
-            elif place[t] == GOAL:
-                if exhaustive:
-                    if goal_state < 0:
-                        goal_state, goal_action = s, a
-                else:
-                    cost = depth
-            elif place[t] == NOT_LOOKED and not goal_known:
-                cost = depth + crumb * _not_looked_around(t, target, place)
-            elif place[t] != DEAD_END and parent[t] == UNKNOWN:
-                parent[t] = s
-                parent_action[t] = a
-                queue[tail] = t
-                tail += 1
-            if cost < best_cost:
-                best_cost, best_state, best_action, ties = cost, s, a, 1
-            elif cost == best_cost and cost < np.inf:
-                ties += 1
-                if _one_of(random, ties) == 0:
-                    best_state, best_action = s, a
-        if head == level_end:
-            level_end = tail
-            depth += 1.0
-    if best_state < 0:
-        best_state, best_action = goal_state, goal_action
-    if best_state < 0:
-        return np.int64(0)
-    plan[0] = best_action
-    length, s = 1, best_state
-    while s != start:
-        plan[length] = parent_action[s]
-        length += 1
-        s = parent[s]
-    return np.int64(length)
-
-
-@kernel
-def goal_distances(target, place):
-    """Steps to the goal over known moves, (n_states,) int32; 0 at the goal, -1 where no way is known."""
-    n_states, n_actions = target.shape
-    # Who leads where: the moves into each state, as a linked list.
-    last_into = np.full(n_states, -1, np.int32)
-    before = np.empty(n_states * n_actions, np.int32)
-    for s in range(n_states):
-        for a in range(n_actions):
-            t = target[s, a]
-            if t >= 0:
-                before[s * n_actions + a] = last_into[t]
-                last_into[t] = s * n_actions + a
-    distance = np.full(n_states, -1, np.int32)
-    queue = np.empty(n_states, np.int32)
-    tail = 0
-    for s in range(n_states):
-        if place[s] == GOAL:
-            distance[s] = 0
-            queue[tail] = s
-            tail += 1
-    head = 0
-    while head < tail:
-        s = queue[head]
-        head += 1
-        move = last_into[s]
-        while move >= 0:
-            origin = move // n_actions
-            if distance[origin] < 0 and place[origin] != DEAD_END:
-                distance[origin] = distance[s] + 1
-                queue[tail] = origin
-                tail += 1
-            move = before[move]
-    return distance
-
-
-def best_known_actions(model: Model, explorer: Explorer) -> NDArray[np.bool_]:
-    """Which known moves shorten the way to the goal, (n_states, n_actions) bool; all ties count.
-
-    Rows are all False where no way is known, and at the goal itself.
-    """
-    distance = goal_distances(model.target, explorer.place)
-    known = model.target >= 0
-    after = np.where(known, distance[model.target], -1)
-    return known & (after >= 0) & (after == distance[:, None] - 1)
-
-
-def known_policy(model: Model, explorer: Explorer) -> NDArray[np.int32]:
-    """The greedy policy of what is known: (n_states,) first best move, -1 where no way is known."""
-    best = best_known_actions(model, explorer)
-    return np.where(best.any(axis=1), best.argmax(axis=1), -1).astype(np.int32)
 
 
 def check_deterministic(tables: Tables) -> None:

@@ -8,7 +8,7 @@ bits as the compiled code without a warning about overflow.
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.jit import inlined
+from lifelore.core.jit import inlined, kernel
 
 _HALF = np.uint64(0xFFFFFFFF)
 _32 = np.uint64(32)
@@ -37,3 +37,9 @@ def next_uniform(state):
     state[0] = ((s0 << _24) | (s0 >> _40)) ^ s1 ^ (s1 << _16)
     state[1] = (s1 << _37) | (s1 >> _27)
     return np.float64(total >> _11) * (1.0 / 9007199254740992.0)
+
+
+@kernel
+def one_of(random, n):
+    """One of 0 … n - 1, each as likely; advances `random` in place."""
+    return np.int64(next_uniform(random) * n)

@@ -25,7 +25,8 @@ _MODEL = """
 import time
 import numpy as np
 from lifelore.core.curve import new_curve
-from lifelore.core.model_learning import Manner, Perceived, blank_model, explore, known_policy, new_explorer
+from lifelore.core.known_world import blank_model, known_policy
+from lifelore.core.model_learning import Manner, Perceived, explore, new_explorer
 from lifelore.core.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 from lifelore.experiments.bench.lattice_case import lattice_task
@@ -36,7 +37,7 @@ n = tables.n_states
 model, explorer = blank_model(n, 4), new_explorer(n, 4, stream(0, "world"), stream(0, "own"))
 seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 4)))
 explore(tables, model, seen, Manner(), explorer, new_curve(20), 1000, 0.95, 10**9)
-policy_values(tables, known_policy(model, explorer), 0.95)
+policy_values(tables, known_policy(model, explorer.place), 0.95)
 print(time.perf_counter() - started)
 """
 

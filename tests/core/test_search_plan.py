@@ -9,21 +9,20 @@ import scipy.sparse.csgraph
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.model_learning import (
+from lifelore.core.known_world import (
     DEAD_END,
     GOAL,
     LOOKED,
-    NO_CRUMBS,
     NOT_LOOKED,
     UNKNOWN,
     Model,
-    _plan,
     best_known_actions,
     goal_distances,
     known_policy,
-    new_explorer,
 )
+from lifelore.core.model_learning import new_explorer
 from lifelore.core.random_state import random_state
+from lifelore.core.search_plan import NO_CRUMBS, plan_search
 from lifelore.core.streams import stream
 
 seeds = st.integers(0, 10**6)
@@ -47,7 +46,7 @@ def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0
     """The actions of `_plan`, first one first."""
     desk = new_explorer(*target.shape, stream(0, "world"), stream(0, "own"))
     own = random_state(stream(seed, "own"))
-    length = _plan(
+    length = plan_search(
         start,
         target,
         place,
@@ -219,8 +218,8 @@ def test_best_known_actions_shorten_the_way_and_leave_none_out(seed):
     expected = [
         [t != UNKNOWN and distance[s] > 0 and distance[t] == distance[s] - 1 for t in target[s]] for s in range(15)
     ]
-    best = best_known_actions(model, explorer)
+    best = best_known_actions(model, explorer.place)
     assert best.tolist() == expected
     assert (best.any(axis=1) == (distance > 0)).all()
-    policy = known_policy(model, explorer)
+    policy = known_policy(model, explorer.place)
     assert policy.tolist() == [row.index(True) if True in row else -1 for row in expected]

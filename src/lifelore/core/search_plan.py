@@ -1,0 +1,80 @@
+"""Planned search: the cheapest thing to do next in a world known in part."""
+
+import numpy as np
+
+from lifelore.core.jit import inlined, kernel
+from lifelore.core.known_world import DEAD_END, GOAL, NOT_LOOKED, UNKNOWN
+from lifelore.core.random_state import one_of
+
+NO_CRUMBS = 0.2
+"""Among places equally near, first those with fewest others not looked at beside them (Warnsdorff's rule).
+Measured on three buildings: the mean search falls from 0.67 to 0.59 of the number of places, where 0.5 is the
+least any searcher can need that must enter a place to see whether the goal is there. At most 1 / (moves + 1), so
+that a nearer place always comes first: with more than four moves a crumb weighs less."""
+
+
+@kernel
+def plan_search(start, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random):
+    """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0."""
+    goal_known = False
+    for s in range(place.size):
+        parent[s] = UNKNOWN
+        goal_known |= place[s] == GOAL
+    crumb = min(NO_CRUMBS, 1.0 / (target.shape[1] + 1))
+    best_cost, best_state, best_action, ties = np.inf, -1, 0, 0
+    goal_state, goal_action = -1, 0
+    head, tail = 0, 1
+    queue[0] = start
+    parent[start] = start
+    level_end, depth = 1, 1.0
+    while head < tail and depth <= best_cost:
+        s = queue[head]
+        head += 1
+        for a in range(target.shape[1]):
+            t = target[s, a]
+            cost = np.inf
+            if t == UNKNOWN:
+                cost = depth + try_cost[cost_row[s], a]
+            elif place[t] == GOAL:
+                if exhaustive:
+                    if goal_state < 0:
+                        goal_state, goal_action = s, a
+                else:
+                    cost = depth
+            elif place[t] == NOT_LOOKED and not goal_known:
+                cost = depth + crumb * _not_looked_around(t, target, place)
+            elif place[t] != DEAD_END and parent[t] == UNKNOWN:
+                parent[t] = s
+                parent_action[t] = a
+                queue[tail] = t
+                tail += 1
+            if cost < best_cost:
+                best_cost, best_state, best_action, ties = cost, s, a, 1
+            elif cost == best_cost and cost < np.inf:
+                ties += 1
+                if one_of(random, ties) == 0:
+                    best_state, best_action = s, a
+        if head == level_end:
+            level_end = tail
+            depth += 1.0
+    if best_state < 0:
+        best_state, best_action = goal_state, goal_action
+    if best_state < 0:
+        return np.int64(0)
+    plan[0] = best_action
+    length, s = 1, best_state
+    while s != start:
+        plan[length] = parent_action[s]
+        length += 1
+        s = parent[s]
+    return np.int64(length)
+
+
+@inlined
+def _not_looked_around(s, target, place):
+    count = 0
+    for a in range(target.shape[1]):
+        t = target[s, a]
+        if t >= 0 and t != s and place[t] == NOT_LOOKED:
+            count += 1
+    return count
