@@ -173,7 +173,7 @@ def test_fixed_start_and_destinations(tmp_path):
         ({"start": (1, 99)}, "free cell"),
         ({"destinations": 341}, None),
         ({"destinations": 342}, "at most the 341 free places"),
-        ({"map": "x.yaml"}, "map applies to domain building"),
+        ({"map": "x.yaml"}, "map does not apply to domain"),
         ({"agent": "model", "learner": "q"}, "learner 'q' has agents"),
         ({"alpha0": 0.0}, "alpha0 must be positive"),
     ],
@@ -190,7 +190,8 @@ def test_settings_that_break_a_rule(tmp_path, changes, message):
 @pytest.mark.parametrize(
     "changes",
     [{"tasks": 0}, {"learner": "x"}, {"prior": "x"}, {"form": "x"}, {"ties": "x"}, {"robot": " "}, {"jobs": 0},
-     {"episodes": 10**9}, {"goal_reward": -1.0}, {"wall_reward": float("nan")},
+     {"episodes": 10**9}, {"tasks": 2.5}, {"wall_reward": 5.0}, {"robot": "a\nb"}, {"robot": "x" * 201},
+     {"goal_reward": -1.0}, {"wall_reward": float("nan")},
      {"wall_reward": -1e7}, {"epsilon": 1.5}, {"learning_rate": float("nan")}, {"cell": float("inf")},
      {"alpha0": 1e7}],
 )  # fmt: skip

@@ -11,7 +11,8 @@ def test_companions():
     assert companions("prior", "model") == ["prior", "scratch"]
     assert companions("scratch", "model") == ["scratch"]
     assert companions("all", "model") == list(ROSTER)
-    assert companions("all", "q") == companions("prior", "q") == ["lore", "scratch"]
+    assert companions("all", "q") == ["lore", "scratch"]
+    assert companions("prior", "q") == ["prior", "scratch"]
     assert companions("scratch", "q") == ["scratch"]
 
 

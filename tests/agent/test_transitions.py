@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.agent.transitions import agreement, cells_of, from_record, model_table, to_record
+from lifelore.agent.transitions import agreement, cells_of, frame_key, from_record, model_table, to_record
 from lifelore.core.known_world import UNKNOWN, blank_model
 from lifelore.domains.grid_world import GridWorld
 
@@ -26,12 +26,13 @@ def test_slots_and_values_by_hand():
     floor = world("..#\n...")
     model = blank_model(floor.n_states, 4)
     model.target[0, 2] = 1  # from cell 0 east to cell 1
-    model.target[1, 1] = 3  # from cell 1 south to cell 4, which is state 3
+    model.target[1, 1] = 3  # from cell 1 south to the middle of the lower row, which is state 3
     model.percept[3] = 77
     record = record_of(floor, model)
-    # slot = cell * 5 + action, the percept being action 4
-    assert record.slots.tolist() == [0 * 5 + 2, 1 * 5 + 1, 4 * 5 + 4]
-    assert record.values.tolist() == [1, 4, 77]
+    # slot = cell * 5 + action, the percept being action 4; the upper row is row 1 from the bottom
+    upper = 1 << 20
+    assert record.slots.tolist() == [1 * 5 + 4, upper * 5 + 2, (upper + 1) * 5 + 1]
+    assert record.values.tolist() == [77, upper + 1, 1]
     assert (record.merge, record.key) == ("newest", floor.fingerprint)
 
 
@@ -67,4 +68,13 @@ def test_agreement_is_the_share_of_cells_that_show_the_same():
     # The corner is gone; its west, north-west and north neighbours see it occupied: 4 of 8 differ.
     assert agreement(new, record_of(old, knowing(old))) == 0.5
     assert agreement(old, record_of(old, knowing(old))) == 1.0
-    assert cells_of(new).tolist() == [0, 1, 2, 3, 4, 5, 6]
+    assert cells_of(new).tolist() == [(1 << 20) + column for column in range(4)] + [0, 1, 2]
+
+
+def test_a_picture_that_has_grown_is_the_same_place():
+    old, new = world("..\n.."), world("....\n..##\n..##")  # a row above and two columns to the right
+    assert frame_key(old) == frame_key(new)
+    back = from_record(new, record_of(old, knowing(old)))
+    corner = new.state_of[2, 0]  # the lower left corner is where it was
+    assert back.percept[corner] == old.percepts[old.state_of[1, 0]]
+    assert back.target[corner, 0] == new.state_of[1, 0]

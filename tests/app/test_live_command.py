@@ -108,11 +108,17 @@ def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
         "robot": "rosie", "episodes": 20, "max_steps": 50, "seed": 9, "jobs": 1, "density": 0.6,
         "discount": 0.9, "goal_reward": 50.0, "wall_reward": -2.0, "alpha0": 0.5, "weight": 2.0,
         "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
-        "epsilon_floor": 0.1, "cell": 0.5, "robot_radius": 0.2,
+        "epsilon_floor": 0.1,
     }  # fmt: skip
     options = [f"--{name.replace('_', '-')}={value}" for name, value in told.items()]
     settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
-    assert settings == told | {"memory": str(tmp_path / "life.db"), "map": None, "start": None}
+    unused = dict.fromkeys(("map", "start", "cell", "robot_radius"))
+    assert settings == told | unused | {"memory": str(tmp_path / "life.db")}
+
+
+def test_the_report_names_the_defaults_a_building_was_made_with(ask, tmp_path):
+    settings = ask("live", "--tasks", 1, "--memory", tmp_path / "life.db", "--json").document["settings"]
+    assert (settings["cell"], settings["robot_radius"], settings["episodes"]) == (0.5, 0.2, 100)
 
 
 def repeatable(life: dict) -> dict:

@@ -143,7 +143,7 @@ NAMES = {
     "bench kernels --repeats x": "'--repeats'",
 }
 MAPS = {
-    f"{LATTICE} --map {{map}}": "map applies to domain building",
+    f"{LATTICE} --map {{map}}": "map does not apply to domain",
     f"{BUILDING} --map missing.yaml": "no such file: missing.yaml",
     f"{BUILDING} --map ''": "no such file",
     f"{BUILDING} --map {{folder}}": "no such file",

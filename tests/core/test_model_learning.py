@@ -354,8 +354,8 @@ def test_threads_change_no_bit(draw_world):
 
 def test_worlds_it_cannot_plan_in(draw_world):
     check_deterministic(draw_world(0))
-    with pytest.raises(InputError, match="one outcome, this world has 3: use learner 'q'"):
+    with pytest.raises(InputError, match="one outcome a move to be planned with, got 3"):
         check_deterministic(draw_world(0, n_outcomes=3))
     for n_actions in (0, 128):
-        with pytest.raises(InputError, match=f"takes 1 to 127 actions, got {n_actions}"):
+        with pytest.raises(InputError, match=rf"n_actions must lie in \[1, 127\], got {n_actions}"):
             new_explorer(5, n_actions, stream(0), stream(1))

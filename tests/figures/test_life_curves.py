@@ -13,8 +13,8 @@ def _agents(n: int, reached: bool = True) -> dict:
     return dict.fromkeys(("lore", "scratch"), values)
 
 
-def test_running_median_narrows_towards_the_ends():
-    assert running_median([9, 1, 5, 2, 8, 0]).tolist() == [9, 5, 5, 2, 2, 0]
+def test_running_median_narrows_towards_the_start():
+    assert running_median([9, 1, 5, 2, 8, 0]).tolist() == [9, 5, 5, 2, 3.5, 2]
     assert running_median([4]).tolist() == [4]
 
 

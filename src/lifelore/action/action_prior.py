@@ -42,7 +42,7 @@ class ActionPrior:
     Notes
     -----
     A context is an int64 code of magnitude at most 2**63 / (n_actions + 1). A context without counts has the
-    uniform distribution in every form.
+    uniform distribution in every form but ``dirichlet``, which is drawn around it, far from it where α⁰ is small.
 
     Examples
     --------

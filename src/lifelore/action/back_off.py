@@ -1,6 +1,6 @@
 """Rare contexts back off to simpler features: a posterior mean drawn towards that of a coarser context.
 
-    θ_c = (α-counts of c + m θ_coarser(c)) / (n_c + m)
+    θ_c = (counts of c + m θ_coarser(c)) / (n_c + m)
 
 level by level, from the full context to no context at all (uniform).
 """

@@ -6,6 +6,7 @@ import shutil
 import tempfile
 import time
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 
 import numpy as np
 
@@ -15,6 +16,7 @@ from lifelore.core.q_learner import QLearning
 from lifelore.core.streams import stream
 from lifelore.domains.worlds import make_world
 from lifelore.memory import open_memory
+from lifelore.memory.location import locate
 
 PACKAGES = {
     "numpy": "arrays",
@@ -79,6 +81,9 @@ def _kernel_cache() -> dict:
 
 
 def _memory(where: str | None) -> dict:
+    place = locate(where)
+    if isinstance(place, Path) and not place.exists():
+        return _check("memory", True, f"none yet; the first life begins {place}")
     try:
         with open_memory(where) as opened:
             return _check("memory", True, f"{opened.location}, {len(opened.robots())} robots")

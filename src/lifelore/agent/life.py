@@ -5,7 +5,7 @@ import time
 import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, dataclass, field, fields
 from threading import Event
 
 import numpy as np
@@ -28,11 +28,14 @@ from lifelore.core.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Record
 from lifelore.core.q_learner import QLearning
 from lifelore.core.q_learning import new_learner, uniform_rows
+from lifelore.core.streams import stream
 from lifelore.domains.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory, open_memory
 
 Progress = Callable[[int, int, str], None]
+KEPT = 4
+"""Last tasks whose policies are kept for pictures: a long life in a large world must not fill the machine."""
 
 
 @dataclass
@@ -43,7 +46,7 @@ class Life:
         The JSON document of ``lifelore live``.
     world : GridWorld
     results : list of dict
-        For each task: agent name to `TaskResult`.
+        For each task: agent name to `TaskResult`; policies only in the last `KEPT`.
     lore : Lore
         What the first agent knows at the end.
     stopped : bool
@@ -88,15 +91,9 @@ def live(settings: LifeSettings, *, progress: Progress | None = None, stop: Even
 
 
 def _world_settings(settings: LifeSettings) -> WorldSettings:
-    shared = {
-        name: getattr(settings, name) for name in ("domain", "discount", "goal_reward", "wall_reward", "seed")
-    }
-    if settings.domain == "building":
-        building = {name: getattr(settings, name) for name in ("map", "cell", "robot_radius", "density")}
-        return WorldSettings(**shared, **building)
-    if settings.map is not None:
-        raise InputError(f"map applies to domain building, not to '{settings.domain}'; leave one of them out")
-    return WorldSettings(**shared, density=settings.density)
+    """Every setting that the world knows too; what it has no use for it refuses."""
+    names = {field.name for field in fields(WorldSettings)} & {field.name for field in fields(LifeSettings)}
+    return WorldSettings(**{name: getattr(settings, name) for name in names})
 
 
 class _Living:
@@ -121,6 +118,9 @@ class _Living:
                 break
             try:
                 results.append(self._live_task(self.tasks_before + done, done, pool, stop))
+                if done >= KEPT:
+                    for result in results[done - KEPT].values():
+                        result.drop_arrays()
             except Stopped:
                 break
             if progress:
@@ -198,7 +198,7 @@ class _Trial:
             self._perceived(kind, lore),
             kind.manner,
             explorer,
-            settings.episode_cap,
+            settings.episode_cap(world.n_states),
             settings.step_cap,
             self.stop,
         )
@@ -216,14 +216,16 @@ class _Trial:
         own = self.living.stream.own_stream(self.index)
         rows = uniform_rows(self.tables)
         if kind.uses_prior and settings.prior != "none":
+            # A stream of its own: drawing a prior must not move the choices shared with the other agents.
+            drawn = stream(settings.seed, "task", self.index, "prior")
             rows = prior_rows(
                 self.tables,
                 lore.scope.contexts,
-                lambda codes: lore.prior.probs(codes, settings.form, generator=own),
+                lambda codes: lore.prior.probs(codes, settings.form, generator=drawn),
                 settings.ties,
             )
         method = QLearning(
-            settings.episode_cap,
+            settings.episode_cap(self.tables.n_states),
             settings.step_cap,
             settings.learning_rate,
             settings.epsilon,
@@ -245,11 +247,12 @@ def _report(settings: LifeSettings, world: GridWorld, life: _Living, results: li
         "n_states": world.n_states,
         "seed": settings.seed,
         "settings": asdict(settings)
+        | world.about
         | {
             "discount": world.discount,
             "goal_reward": world.goal_reward,
             "wall_reward": world.wall_reward,
-            "episodes": settings.episode_cap,
+            "episodes": settings.episode_cap(world.n_states),
             "max_steps": settings.step_cap,
             "memory": life.memory.location,
         },

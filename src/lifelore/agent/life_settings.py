@@ -1,7 +1,7 @@
 """Everything a life can be told, with the defaults that work."""
 
 from dataclasses import dataclass
-from math import isfinite
+from math import ceil, isfinite
 
 from lifelore.action.action_prior import FORMS
 from lifelore.core.errors import InputError
@@ -32,13 +32,13 @@ class LifeSettings:
     Parameters
     ----------
     domain : str
-        A name of `lifelore.domains.DOMAINS`: building, lattice, noise.
+        One of `lifelore.domains.worlds.domain_names()`: building, lattice, noise.
     map : str, optional
         ROS map (YAML); None generates an office from `seed`.
     tasks : int
         Tasks to live through now, ≥ 1.
-    cell, robot_radius : float
-        Metres.
+    cell, robot_radius : float, optional
+        Metres, in buildings: 0.5 and 0.2.
     destinations : int
         Goals lie among this many recurring places; 0: anywhere.
     learner : {"model", "q"}
@@ -47,7 +47,7 @@ class LifeSettings:
     agent : str
         Who lives; `scratch` always lives beside. ``all``: everybody.
     robot : str
-        Name under which memory keeps this life.
+        Name under which memory keeps this life; one for each robot that runs at a time.
     start : (row, column), optional
         Every episode starts here; None: anywhere.
     memory : str, optional
@@ -57,6 +57,8 @@ class LifeSettings:
     seed : int
     jobs : int
         Threads; results do not depend on it.
+    density : float, optional
+        Share of obstacles in a noise maze, in (0, 1).
     discount, goal_reward, wall_reward : float, optional
     alpha0, weight : float
         Pseudo-count α⁰ and weight w(π) of the prior (Eq. 3.4).
@@ -69,8 +71,8 @@ class LifeSettings:
     domain: str = "building"
     map: str | None = None
     tasks: int = 30
-    cell: float = 0.5
-    robot_radius: float = 0.2
+    cell: float | None = None
+    robot_radius: float | None = None
     destinations: int = 0
     learner: str = "model"
     prior: str = "observation"
@@ -106,7 +108,7 @@ class LifeSettings:
                 raise InputError(f"{name} must be one of {', '.join(known)}, got '{getattr(self, name)}'")
         for name, (least, most) in WHOLE.items():
             value = getattr(self, name)
-            if value is not None and not least <= value <= most:
+            if value is not None and not (isinstance(value, int) and least <= value <= most):
                 raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
         # Also what this life has no use for: it stands in the report.
         for name, most in LARGEST.items():
@@ -120,13 +122,17 @@ class LifeSettings:
                 raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
         if self.goal_reward is not None and self.goal_reward <= 0:
             raise InputError(f"goal_reward must be positive, got {self.goal_reward}")
-        if not self.robot.strip():
-            raise InputError("robot must have a name, got an empty one")
+        if self.wall_reward is not None and self.wall_reward > 0:
+            raise InputError(f"wall_reward must be at most 0, got {self.wall_reward}")
+        if not (self.robot.strip() and self.robot.isprintable() and len(self.robot) <= 200):
+            raise InputError(f"robot must be a name of 1 to 200 printable characters, got {self.robot[:40]!r}")
 
-    @property
-    def episode_cap(self) -> int:
-        """Episodes of a task at most."""
-        return self.episodes or (100 if self.learner == "model" else 1000)
+    def episode_cap(self, n_states: int) -> int:
+        """Episodes of a task at most in a world of `n_states`: 1,000 for learner q; for learner model 100, or as
+        many as ten steps a state need where that is more."""
+        if self.episodes is not None:
+            return self.episodes
+        return max(100, ceil(10 * n_states / self.step_cap)) if self.learner == "model" else 1000
 
     @property
     def step_cap(self) -> int:

@@ -2,7 +2,6 @@
 
 import hashlib
 from dataclasses import dataclass, field
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,14 +13,7 @@ from lifelore.agent import transitions
 from lifelore.core.known_world import Model
 from lifelore.core.protocols import Record
 from lifelore.domains.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
-
-
-class Recalls(Protocol):
-    """The part of a memory that remembering needs."""
-
-    def recall(self, kind: str, key: str, version: int) -> Record | None: ...
-
-    def keys(self, kind: str) -> list: ...
+from lifelore.memory import Memory
 
 
 @dataclass(frozen=True)
@@ -50,7 +42,7 @@ def prior_scope(world: GridWorld, prior: str) -> PriorScope:
 
 @dataclass
 class Lore:
-    """One agent's lore in one world. `task_records` gives what the last task added, for memory."""
+    """One agent's lore in one world. `learn_prior` and `model_news` give what the last task added, for memory."""
 
     world: GridWorld
     scope: PriorScope
@@ -59,19 +51,19 @@ class Lore:
     _stored: NDArray[np.int64] = field(repr=False)
 
     @classmethod
-    def recalled(cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Recalls | None) -> "Lore":
+    def recalled(cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Memory) -> "Lore":
         """What memory holds that bears on this world."""
         n_actions = world.neighbour.shape[1]
-        record = memory.recall(PRIOR_KIND, scope.key, PRIOR_VERSION) if memory else None
+        record = memory.recall(PRIOR_KIND, scope.key, PRIOR_VERSION)
         prior = (
             ActionPrior.from_record(record, n_actions, alpha0)
             if record
             else ActionPrior(n_actions, alpha0, scope.key)
         )
-        own = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION) if memory else None
+        own = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
         model = transitions.from_record(world, own)
         stored = transitions.model_table(world, model)
-        if own is None and memory:
+        if own is None:
             changed = same_place(world, memory)
             model = transitions.from_record(world, changed)
         return cls(world, scope, prior, model, stored)
@@ -99,7 +91,7 @@ class Lore:
         return record
 
 
-def same_place(world: GridWorld, memory: Recalls) -> Record | None:
+def same_place(world: GridWorld, memory: Memory) -> Record | None:
     """The remembered transitions of this place before it changed, if memory has them."""
     best, best_share = None, transitions.SAME_PLACE
     for key, version, about in memory.keys(transitions.KIND):

@@ -45,7 +45,7 @@ def live_model_task(
         first_return=float(curve.returns[0] if episode > 0 else running),
         collisions=int(curve.collisions.sum()),
         steps_to_80=total if reached else episodes * max_steps,
-        episodes_to_80=min(episode + 1, episodes) if reached else episodes,
+        episodes_to_80=episode + int(explorer.cursor[1] > 0) if reached else episodes,
         reached=bool(reached),
         final_return=value,
         policy=policy,

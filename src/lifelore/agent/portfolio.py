@@ -8,7 +8,7 @@ from pathlib import Path
 
 from lifelore.agent.exports import write_paths, write_prior_map
 from lifelore.agent.greedy_paths import Ways, ways_of
-from lifelore.agent.life import Life
+from lifelore.agent.life import KEPT, Life
 from lifelore.agent.roster import ROSTER
 from lifelore.agent.summary import third
 from lifelore.agent.task_result import THRESHOLD, TaskResult
@@ -22,8 +22,6 @@ from lifelore.figures.world_map import draw_world_map
 PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml")
 FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES)
 """All that a portfolio may hold; the prior's files only where the agent has one."""
-SHOWN_TASKS = 4
-"""Tasks, the last ones, whose paths are shown and exported."""
 
 
 def check_folder(path: str) -> None:
@@ -98,7 +96,7 @@ def _folder(path: str) -> Path:
 
 
 def _write_all(life: Life, folder: Path) -> None:
-    text = json.dumps(life.report, indent=2, ensure_ascii=False, allow_nan=False)
+    text = json.dumps(life.report, indent=2, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     if not life.results:
         return
@@ -120,7 +118,7 @@ def _place(life: Life) -> str:
     report = life.report
     if report["map"]:
         return Path(report["map"]).stem
-    return f"an office (seed {report['seed']})" if report["domain"] == "building" else report["domain"]
+    return f"office {report['seed']}" if report["domain"] == "building" else report["domain"]
 
 
 def _metres(life: Life) -> float | None:
@@ -185,7 +183,7 @@ def _ways(life: Life) -> list[Ways]:
     world, name = life.world, _agents(life)[0]
     start = life.report["settings"]["start"]
     fixed = None if start is None else int(world.state_of[tuple(start)])
-    last = zip(life.report["tasks"][-SHOWN_TASKS:], life.results[-SHOWN_TASKS:], strict=True)
+    last = zip(life.report["tasks"][-KEPT:], life.results[-KEPT:], strict=True)
     return [
         ways_of(world, result[name].policy, task["index"], int(world.state_of[tuple(task["goal"])]), fixed)
         for task, result in last

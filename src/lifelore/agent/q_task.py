@@ -30,7 +30,8 @@ def live_q_task(
             share = _greedy_value(tables, learner, schedule.discount) / optimal
             trace.append((total, share))
             if share >= THRESHOLD:
-                reached_at = total, int(learner.cursor[0]) + 1, int(curve.collisions.sum())
+                begun = int(learner.cursor[0]) + int(learner.cursor[1] > 0)
+                reached_at = total, begun, int(curve.collisions.sum())
     final = _greedy_value(tables, learner, schedule.discount)
     episodes = len(curve.returns)
     cap = episodes * schedule.max_steps, episodes, int(curve.collisions.sum())
@@ -39,7 +40,7 @@ def live_q_task(
         first_return=float(curve.returns[0]),
         collisions=collisions,
         steps_to_80=steps_to_80,
-        episodes_to_80=min(episodes_to_80, episodes),
+        episodes_to_80=episodes_to_80,
         reached=reached_at is not None,
         final_return=final,
         policy=greedy_policy(learner.q),

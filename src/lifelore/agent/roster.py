@@ -19,10 +19,6 @@ class Kind:
     remembers: bool = False
     manner: Manner = field(default_factory=Manner)
 
-    @property
-    def learns_for_life(self) -> bool:
-        return self.uses_prior or self.remembers
-
 
 ROSTER = {
     "lore": Kind(uses_prior=True, remembers=True),
@@ -36,18 +32,19 @@ ROSTER = {
 """`scratch` has everybody's planner and nothing else. `undirected` takes the least-tried move, unplanned; `rmax`
 prefers any unknown to a known goal; `frontier` is told what its sensors mean: a visit shows where moves lead."""
 
-Q_AGENTS = ("lore", "scratch")
-"""A Q-learner keeps no model: with the prior it is the agent, without it is scratch."""
+Q_AGENTS = ("lore", "prior", "scratch")
+"""A Q-learner keeps no model: with the prior it is `lore` and `prior` alike, without it is scratch."""
 
 
 def companions(agent: str, learner: str) -> list[str]:
-    """Names of the agents that live when `agent` is asked for, itself first."""
+    """Names of the agents that live when `agent` is asked for, the one that memory keeps first."""
     if agent != "all" and agent not in ROSTER:
         raise NotFoundError(f"agent must be one of {', '.join(ROSTER)}, all; got '{agent}'")
     if learner == "q":
-        if agent not in (*Q_AGENTS, "prior", "all"):
+        if agent not in (*Q_AGENTS, "all"):
             raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
-        return ["scratch"] if agent == "scratch" else list(Q_AGENTS)
+        if agent == "all":
+            return ["lore", "scratch"]
     if agent == "all":
         return list(ROSTER)
     return ["scratch"] if agent == "scratch" else [agent, "scratch"]

@@ -36,6 +36,10 @@ class TaskResult:
     best: NDArray[np.bool_] = field(repr=False)
     trace: NDArray[np.float64] = field(repr=False)
 
+    def drop_arrays(self) -> None:
+        """Forget the policy, which is as large as the world."""
+        self.policy, self.best = np.empty(0, np.int32), np.empty((0, 0), np.bool_)
+
     def to_dict(self) -> dict:
         """The numbers as plain data."""
         return {

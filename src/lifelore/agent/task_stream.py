@@ -3,6 +3,7 @@
 import numpy as np
 
 from lifelore.agent.life_settings import LifeSettings
+from lifelore.agent.transitions import frame_key
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import Task
 from lifelore.core.streams import stream
@@ -22,8 +23,10 @@ class TaskStream:
                 f"got {settings.destinations}"
             )
         if settings.destinations:
-            generator = stream(self.seed, "destinations", world.fingerprint)
-            places = generator.choice(places, settings.destinations, replace=False)
+            # Drawn over all cells of the frame: a map that changed in places keeps its destinations.
+            order = stream(self.seed, "destinations", frame_key(world)).permutation(world.state_of.size)
+            states = world.state_of.ravel()[order]
+            places = states[np.isin(states, places)][: settings.destinations]
         self._places = places
 
     def goal(self, index: int) -> int:

@@ -1,6 +1,7 @@
 """A learnt model of a grid as a record of memory, and back; and the same place after it changed.
 
-Slots are cells, not state numbers, so that a model still fits when a changed map numbers its states anew:
+Slots are cells, not state numbers, and cells are counted from the frame's lower left corner, so that a model still
+fits when a changed map numbers its states anew or its picture has grown:
 slot = cell · (actions + 1) + action holds the cell a move leads to, and action = n_actions holds the percept.
 """
 
@@ -14,6 +15,7 @@ from lifelore.core.protocols import Record
 from lifelore.domains.grid_world import MOVE_NAMES, GridWorld
 
 KIND, VERSION = "transitions", 1
+COLUMN_BITS = 20
 SAME_PLACE = 0.8
 """A remembered grid of the same frame is the same place, changed, where at least this share of its remembered
 cells still shows what it showed. Two different buildings on one frame agree in far fewer: by chance about a
@@ -21,13 +23,21 @@ third, most of it open floor."""
 
 
 def cells_of(world: GridWorld) -> NDArray[np.int64]:
-    """One number for each state's cell, (n_states,)."""
-    return world.cells[:, 0].astype(np.int64) * world.shape[1] + world.cells[:, 1]
+    """One number for each state's cell, (n_states,): 2²⁰ · row from the bottom + column."""
+    return ((world.shape[0] - 1 - world.cells[:, 0].astype(np.int64)) << COLUMN_BITS) | world.cells[:, 1]
+
+
+def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The state in each of `cells`, -1 where this world has none."""
+    own = cells_of(world)
+    order = np.argsort(own)
+    place = np.minimum(np.searchsorted(own[order], cells), len(own) - 1)
+    return np.where(own[order][place] == cells, order[place], -1)
 
 
 def frame_key(world: GridWorld) -> str:
-    """Hash of all that two versions of one place share: frame, shape, actions, settings; not the grid."""
-    parts = (world.name, world.shape, world.frame, MOVE_NAMES, sorted(world.about.items()))
+    """Hash of all that two versions of one place share: frame, actions, settings; not the grid nor its size."""
+    parts = (world.name, world.frame, MOVE_NAMES, sorted(world.about.items()))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -54,11 +64,10 @@ def from_record(world: GridWorld, record: Record | None) -> Model:
     if record is None:
         return model
     width = model.target.shape[1] + 1
-    states = _state_by_cell(world)
-    state, column = states[record.slots // width], record.slots % width
+    state, column = states_in(world, record.slots // width), record.slots % width
     known = (state >= 0) & (record.values >= 0)
     moves, percepts = known & (column < width - 1), known & (column == width - 1)
-    model.target[state[moves], column[moves]] = states[record.values[moves]]
+    model.target[state[moves], column[moves]] = states_in(world, record.values[moves])
     model.percept[state[percepts]] = record.values[percepts]
     return model
 
@@ -67,10 +76,6 @@ def agreement(world: GridWorld, record: Record) -> float:
     """Share of the record's cells that still show what they showed, in [0, 1]."""
     width = world.neighbour.shape[1] + 1
     percepts = (record.slots % width == width - 1) & (record.values >= 0)
-    state = _state_by_cell(world)[record.slots[percepts] // width]
+    state = states_in(world, record.slots[percepts] // width)
     same = (state >= 0) & (world.percepts[state] == record.values[percepts])
     return float(same.mean()) if same.size else 0.0
-
-
-def _state_by_cell(world: GridWorld) -> NDArray[np.int32]:
-    return world.state_of.ravel()

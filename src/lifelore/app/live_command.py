@@ -11,8 +11,8 @@ def live(
     domain: Annotated[str, Option(help="building, or the thesis's worlds: lattice, noise.")] = "building",
     map: Annotated[str | None, Option(metavar="YAML", help="ROS map; without it a generated office.")] = None,
     tasks: Annotated[int, Option(help="Tasks to live through now.")] = 30,
-    cell: Annotated[float, Option(help="Side of a grid cell, metres.")] = 0.5,
-    robot_radius: Annotated[float, Option(help="Metres.")] = 0.2,
+    cell: Annotated[float | None, Option(help="Side of a grid cell, metres [building: 0.5].")] = None,
+    robot_radius: Annotated[float | None, Option(help="Metres [building: 0.2].")] = None,
     destinations: Annotated[int, Option(help="Goals lie among so many recurring places; 0: anywhere.")] = 0,
     learner: Annotated[
         str, Option(help="model (plans on what it learnt) or q (the thesis's Q-learning).")
@@ -21,12 +21,12 @@ def live(
     agent: Annotated[
         str, Option(help="lore, model, prior, scratch, undirected, rmax, frontier, or all.")
     ] = "lore",
-    robot: Annotated[str, Option(help="Name under which memory keeps this life.")] = "robot",
+    robot: Annotated[str, Option(help="Name in memory; one for each robot that runs at a time.")] = "robot",
     start: Annotated[
         str | None, Option(metavar="ROW,COL", help="Every episode starts here; else anywhere.")
     ] = None,
     memory: Annotated[str | None, Option(metavar="FILE|URL", help="SQLite file or postgresql:// URL.")] = None,
-    episodes: Annotated[int | None, Option(help="Episodes of a task at most [model: 100, q: 1000].")] = None,
+    episodes: Annotated[int | None, Option(help="Episodes of a task [model: 100 or more, q: 1000].")] = None,
     max_steps: Annotated[int | None, Option(help="Steps of an episode [building: 2000, else 1000].")] = None,
     out: Annotated[
         str | None, Option(metavar="DIR", help="Write summary.json, pictures and exports here.")
@@ -64,7 +64,7 @@ def live(
         check_folder(out)
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
         life = live_through(told, progress=progress, stop=stop)
-        written = write_portfolio(life, out) if out is not None and life.results else []
+        written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
     else:

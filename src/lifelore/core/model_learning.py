@@ -61,7 +61,7 @@ class Explorer(NamedTuple):
     place : (n_states,) int8, NOT_LOOKED | LOOKED | DEAD_END | GOAL
     tried : (n_states, n_actions) int64, how often each move was made in this task
     plan : (n_states + 1,) int8, actions still to do, the next one last
-    queue, parent : (n_states,) int32; parent_action : (n_states,) int8; the planner's desk
+    queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`
     world_random, own_random : (2,) uint64
     cursor : (5,) int64, episode, step in it, state, length of plan, total steps
     running : (2,) float64, return so far and the discount it has reached
@@ -82,7 +82,8 @@ class Explorer(NamedTuple):
 def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
     """A learner at the start of a task; `world` and `own` are numpy generators."""
     if not 1 <= n_actions <= MOST_ACTIONS:
-        raise InputError(f"learner 'model' takes 1 to {MOST_ACTIONS} actions, got {n_actions}: use learner 'q'")
+        raise InputError(f"n_actions must lie in [1, {MOST_ACTIONS}], got {n_actions}: learn by Q-learning")
+
     return Explorer(
         np.zeros(n_states, np.int8),
         np.zeros((n_states, n_actions), np.int64),
@@ -202,6 +203,6 @@ def check_deterministic(tables: Tables) -> None:
     """Raise unless each move has one outcome, which is what this learner can plan with."""
     if tables.outcome_cum.size != 1:
         raise InputError(
-            f"learner 'model' needs moves with one outcome, this world has {tables.outcome_cum.size}: "
-            "use learner 'q'"
+            f"tables must have one outcome a move to be planned with, got {tables.outcome_cum.size}: "
+            "learn them by Q-learning"
         )

@@ -15,10 +15,12 @@ from scipy.sparse import csgraph
 from lifelore.core.errors import InputError
 from lifelore.domains.grid_world import Frame, GridWorld
 from lifelore.domains.inflation import inflate
-from lifelore.domains.occupancy_map import FREE, OccupancyMap
+from lifelore.domains.occupancy_map import FREE, UNKNOWN, OccupancyMap
 from lifelore.domains.slivers import without_slivers
 
 MAX_STATES = 2_000_000
+SPECK = 0.01
+"""Square metres: unknown pixels that hang together (also by corners) and cover no more are a speck."""
 _MAX_CELL, _MAX_RADIUS = 1000.0, 100.0  # metres; larger is a slip of units
 _EDGE = 1e-9  # a pixel centre on a cell's border belongs to the cell above it, whatever the floats say
 
@@ -36,7 +38,8 @@ def building_from_map(
 
     The robot's disc must lie in space known to be free: all other pixels, occupied or unknown, are grown by
     its radius at full resolution (pixel centre to pixel centre, as in ROS costmaps), which also cuts off the
-    stray beams that a laser throws through windows. A cell of `cell` metres is its largest
+    stray beams that a laser throws through windows. Specks of unknown (`SPECK`) are not free, but do not
+    grow: they are a mapper's noise in open floor. A cell of `cell` metres is its largest
     4-connected piece of free pixels (of equal ones, the first from the top left). A move exists exactly
     where the pieces of two neighbouring cells touch across their border. The largest connected region of
     cells is kept (of equal ones, the first from the top left), less its slivers (`min_free`).
@@ -53,7 +56,7 @@ def building_from_map(
         γ in [0, 1) and the rewards, as in `GridWorld`.
     min_free : float
         In [0, 1]: cells whose piece covers less than this share of the square are no places of their own and
-        stay only where they join larger ones. Never cuts off what can be reached; 0 keeps every sliver.
+        stay only where they join larger ones or lead on for more than two cells; 0 keeps every sliver.
 
     Returns
     -------
@@ -67,7 +70,7 @@ def building_from_map(
         `MAX_STATES` cells are.
     """
     _check(occupancy, cell, robot_radius, min_free)
-    free = ~inflate(occupancy.state != FREE, robot_radius / occupancy.resolution)
+    free = ~inflate(_solid(occupancy), robot_radius / occupancy.resolution) & (occupancy.state == FREE)
     if not free.any():
         raise InputError(
             f"map: no free cell is left for robot_radius {robot_radius} m at {occupancy.resolution} m a pixel "
@@ -107,6 +110,14 @@ def _check(occupancy: OccupancyMap, cell: float, robot_radius: float, min_free: 
         raise InputError(f"robot_radius must lie in [0, {_MAX_RADIUS:g}] metres, got {robot_radius}")
     if not 0 <= min_free <= 1:
         raise InputError(f"min_free must be a share of the cell in [0, 1], got {min_free}")
+
+
+def _solid(occupancy: OccupancyMap) -> NDArray[np.bool_]:
+    """Pixels that grow: all that are not free, but for specks of unknown."""
+    unknown = occupancy.state == UNKNOWN
+    piece = np.asarray(ndimage.label(unknown, np.ones((3, 3)))[0], np.int64)  # type: ignore[index]
+    small = np.bincount(piece.ravel()) * occupancy.resolution**2 <= SPECK * (1 + _EDGE)
+    return (occupancy.state != FREE) & ~(unknown & small[piece])
 
 
 class _SquareGrid(NamedTuple):
@@ -170,11 +181,11 @@ def _largest_region(exists: NDArray[np.bool_], south: NDArray[np.bool_], east: N
     pairs = [(number[:-1][south], number[1:][south]), (number[:, :-1][east], number[:, 1:][east])]
     a, b = np.concatenate([pairs[0], pairs[1]], axis=1)
     n = int(exists.sum())
+    if n > MAX_STATES:
+        raise InputError(f"map: at most {MAX_STATES} cells are supported, got {n}; use a larger cell")
     graph = sparse.coo_matrix((np.ones(len(a), bool), (a, b)), shape=(n, n))
     region = csgraph.connected_components(graph, directed=False)[1]
     kept = region == np.argmax(np.bincount(region, minlength=1))
-    if kept.sum() > MAX_STATES:
-        raise InputError(f"map: at most {MAX_STATES} cells are supported, got {kept.sum()}; use a larger cell")
     state = np.where(kept, np.cumsum(kept) - 1, -1)
     neighbour = np.full((n, 4), -1, np.int32)
     for (near, far), (there, back) in zip(pairs, ((1, 0), (2, 3)), strict=True):

@@ -20,7 +20,6 @@ MOVES = np.array([(-1, 0), (1, 0), (0, 1), (0, -1)])
 MOVE_NAMES = ("north", "south", "east", "west")
 DIAGONALS = np.array([(-1, 1), (-1, -1), (1, 1), (1, -1)])
 PERCEPT = "grid-8: bits 0-3 N,S,E,W move passable; bits 4-7 NE,NW,SE,SW cell occupied"
-PERCEPT_SIZE = 256
 MOVE_BITS = 0b1111
 """The part of a percept that tells which moves are passable."""
 

@@ -1,7 +1,8 @@
 """Obstacles grown by a robot's radius, so that the robot may be planned for as a point.
 
 As in ROS costmaps, distances run from pixel centre to pixel centre: a pixel is blocked when the centre of
-an occupied pixel lies within the radius. Only occupied pixels grow; unknown ones do not.
+an occupied pixel lies within the radius. What counts as occupied is the
+caller's to say.
 """
 
 import math

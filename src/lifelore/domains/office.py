@@ -30,7 +30,7 @@ def office_map(seed: int = 0, width_m: float = 32.0, height_m: float = 22.0) -> 
     seed : int
         The same seed gives the same building.
     width_m, height_m : float
-        Space the floor may take, in metres, 12 to 150 each; the default gives some 1,600–2,600 states
+        Space the floor may take, in metres, 12 to 150 each; the default gives some 1,400–2,400 states
         at cells of 0.5 m.
 
     Raises

@@ -10,6 +10,9 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
+RIM = 2
+"""Cells: how far slivers may reach from larger places and still be no more than their ragged rim."""
+
 
 def without_slivers(neighbour: NDArray[np.int32], share: NDArray[np.float64], least: float) -> NDArray[np.bool_]:
     """Which cells of a connected region to keep, (n,) bool; what is kept is connected.
@@ -22,7 +25,8 @@ def without_slivers(neighbour: NDArray[np.int32], share: NDArray[np.float64], le
         Part of its square that each cell's free piece covers, in (0, 1].
     least : float
         Cells covering at least this stay; smaller ones only where larger places are joined by nothing else,
-        along the shortest way. Where fewer than two cells are large enough, all stay.
+        along the shortest way, and where they lead on for more than `RIM` cells: an aisle, no rim. Where
+        fewer than two cells are large enough, all stay.
     """
     large = share >= least
     if large.all() or large.sum() < 2:
@@ -39,10 +43,16 @@ def without_slivers(neighbour: NDArray[np.int32], share: NDArray[np.float64], le
     region = csgraph.connected_components(joined, directed=False)[1][source]
     keep = large.copy()
     for end in _shortest_bridges(region, tail, head, steps):
-        while not keep[end]:
-            keep[end] = True
-            end = before[end]
+        _keep_way(end, keep, before)
+    for end in np.flatnonzero(steps > RIM):
+        _keep_way(end, keep, before)
     return keep
+
+
+def _keep_way(end, keep: NDArray[np.bool_], before: NDArray) -> None:
+    while not keep[end]:
+        keep[end] = True
+        end = before[end]
 
 
 def _shortest_bridges(region: NDArray, tail: NDArray, head: NDArray, steps: NDArray) -> NDArray:

@@ -27,7 +27,7 @@ class WorldSettings:
     cell, robot_radius : float, optional
         In metres, for ``building``; 0.5 and 0.2.
     min_free : float, optional
-        Share of a cell that must be free, for ``building``; 0.
+        As in `building_from_map`, for ``building``; 0.25.
     discount, goal_reward, wall_reward : float, optional
         γ 0.99 in buildings, 0.95 in the thesis's worlds; 100 and -10.
     seed : int

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.core.errors import InputError
-from lifelore.figures.style import INK, colour_of
+from lifelore.figures.style import INK, colour_of, width_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,7 +40,8 @@ def draw_curve(
     colour = colour_of(name)
     if interval is not None:
         axes.fill_between(x, *interval, color=colour, alpha=0.18, linewidth=0)
-    axes.plot(x, mean, color=colour, label=label or name)
+    width = width_of(name)
+    axes.plot(x, mean, color=colour, label=label or name, linewidth=width, zorder=10 - width)
 
 
 def draw_optimal(axes: "Axes", value: float) -> None:

@@ -7,15 +7,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.figures.style import INK, PAPER, colour_of, house_style, new_figure
+from lifelore.figures.style import INK, PAPER, colour_of, house_style, new_figure, width_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
-
-_WIDTH = {"scratch": 3.6, "lore": 2.4}
-"""Width of lines in points; thin ones lie upon thick ones, so that lines that coincide are all seen."""
-_THIN = 1.3
 
 
 def draw_life(
@@ -63,18 +59,19 @@ def draw_life(
 def running_median(values: ArrayLike) -> NDArray[np.float64]:
     """Median over a window around each value: of 5, or a twelfth of them if that is more.
 
-    Towards either end the window narrows evenly, so that the first and last value are themselves.
+    At the start the window narrows, so that the first value is itself: a life's first task is like no other. At
+    the end it keeps what lies behind, so that one lucky last task is no trend.
     """
     values = np.asarray(values, float)
     n, most = len(values), max(2, len(values) // 24)
-    half = [min(most, i, n - 1 - i) for i in range(n)]
+    half = [min(most, i) for i in range(n)]
     return np.array([np.median(values[i - h : i + h + 1]) for i, h in enumerate(half)])
 
 
 def _draw_agent(axes: "Axes", tasks: NDArray, name: str, values: NDArray, reached: NDArray[np.bool_]) -> None:
     if not len(tasks) == len(values) == len(reached):
         raise InputError(f"{name} must have one value a task, got {len(values)} for {len(tasks)} tasks")
-    colour, width = colour_of(name), _WIDTH.get(name, _THIN)
+    colour, width = colour_of(name), width_of(name)
     size = float(np.clip(90 / len(tasks), 2.0, 4.5))
     alone = len(tasks) == 1
     axes.plot(
@@ -105,7 +102,7 @@ def _dress(axes: "Axes", tasks: NDArray, may_be_zero: bool) -> None:
         axes.yaxis.set_minor_formatter(FuncFormatter(lambda value, _: _plain(value, shown)))
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:,.0f}"))
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, nbins=8, min_n_ticks=1))
-    axes.set(xlim=(tasks.min() - 0.6, tasks.max() + 0.6), xlabel="task")
+    axes.set(xlim=(tasks.min() - 0.6, tasks.max() + 0.6), xlabel="task (points), running median (lines)")
     axes.grid(axis="y")
 
 

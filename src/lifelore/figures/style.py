@@ -82,11 +82,19 @@ _PARAMETERS = {
 }
 
 
+WIDTHS = {"scratch": 3.6, "lore": 2.4}
+
+
 def colour_of(name: str) -> str:
     """The fixed colour of an agent or method."""
     if name not in COLOURS:
         raise NotFoundError(f"no colour for '{name}'; add it to figures/style.py, beside {', '.join(COLOURS)}")
     return COLOURS[name]
+
+
+def width_of(name: str) -> float:
+    """The fixed width of an agent's line, in points; drawn thick below thin, lines that coincide are all seen."""
+    return WIDTHS.get(name, 1.5)
 
 
 @contextmanager

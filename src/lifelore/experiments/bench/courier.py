@@ -9,11 +9,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from statistics import median
 
-import numpy as np
-
 from lifelore.agent.life import live
 from lifelore.agent.life_settings import LifeSettings
 from lifelore.agent.summary import third
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.bench.rounds import at_most, row
 
 TASKS, VISITS = 30, 3
@@ -40,7 +39,12 @@ def bench_courier(repeats: int, progress: Callable[[int, int, str], None], map: 
             progress(2 * seed + 2, 2 * repeats, f"visit {seed}")
     home = [task for report in lives for task in third(report["tasks"], "last")]
     abroad = [task for report in visits for task in report["tasks"]]
-    rows = [*_rows("at home", home), *_rows("in another building", abroad)]
+    arrivals = [report["tasks"][0] for report in visits]
+    rows = [
+        *_rows("at home", home),
+        *_rows("in another building", abroad),
+        *_rows("in the first task there", arrivals),
+    ]
     seconds = median(report["seconds"] for report in lives)
     rows.append(row(f"a life of {TASKS} tasks with every agent", seconds, "s"))
     return {
@@ -49,25 +53,30 @@ def bench_courier(repeats: int, progress: Callable[[int, int, str], None], map: 
     }
 
 
-def _mean(tasks: Sequence[dict], agent: str, measure: str) -> float:
-    return float(np.mean([task["agents"][agent][measure] for task in tasks]))
+def _column(tasks: Sequence[dict], agent: str, measure: str) -> list[float]:
+    return [task["agents"][agent][measure] for task in tasks]
 
 
-def _ratio(tasks: Sequence[dict], agent: str, measure: str) -> float:
-    return _mean(tasks, agent, measure) / _mean(tasks, "scratch", measure)
+def _ratio(tasks: Sequence[dict], agent: str, measure: str) -> Estimate:
+    return ratio_estimate(_column(tasks, agent, measure), _column(tasks, "scratch", measure))
 
 
 def _rows(where: str, tasks: Sequence[dict]) -> list[dict]:
+    """Means and ratios to scratch with their 95 % intervals, then how many tasks met the cap."""
     rows = []
     for measure, unit in (("steps_to_80", "steps to 80 %"), ("collisions", "collisions")):
         for agent in tasks[0]["agents"]:
             name, scratch = (f"{who} {where}, {unit}" for who in (agent, "scratch"))
-            ratio = None if agent == "scratch" else _ratio(tasks, agent, measure)
-            rows.append(
-                row(name, _mean(tasks, agent, measure), unit, scratch if ratio is not None else None, ratio)
-            )
+            mean = mean_estimate(_column(tasks, agent, measure))
+            spread = {"ci95": mean.to_dict()["ci95"]}
+            if agent == "scratch":
+                rows.append(row(name, mean.value, unit) | spread)
+                continue
+            ratio = _ratio(tasks, agent, measure)
+            spread["ratio_ci95"] = ratio.to_dict()["ci95"]
+            rows.append(row(name, mean.value, unit, scratch, ratio.value) | spread)
     for agent in tasks[0]["agents"]:
-        capped = sum(not task["agents"][agent]["reached"] for task in tasks)
+        capped = sum(not reached for reached in _column(tasks, agent, "reached"))
         rows.append(row(f"{agent} {where}, capped tasks of {len(tasks)}", float(capped), "tasks"))
     return rows
 
@@ -75,9 +84,11 @@ def _rows(where: str, tasks: Sequence[dict]) -> list[dict]:
 def _home_goals(tasks: Sequence[dict]) -> list[dict]:
     goals = []
     for agent, (steps, collisions) in GOALS.items():
-        goals.append(at_most(f"{agent} / scratch, steps at home", steps, _ratio(tasks, agent, "steps_to_80")))
         goals.append(
-            at_most(f"{agent} / scratch, collisions at home", collisions, _ratio(tasks, agent, "collisions"))
+            at_most(f"{agent} / scratch, steps at home", steps, _ratio(tasks, agent, "steps_to_80").value)
+        )
+        goals.append(
+            at_most(f"{agent} / scratch, collisions at home", collisions, _ratio(tasks, agent, "collisions").value)
         )
     return goals
 
@@ -86,7 +97,9 @@ def _visit_goals(tasks: Sequence[dict]) -> list[dict]:
     steps, collisions = VISIT_GOALS
     capped = sum(not task["agents"]["lore"]["reached"] for task in tasks)
     return [
-        at_most("lore / scratch, steps in another building", steps, _ratio(tasks, "lore", "steps_to_80")),
-        at_most("lore / scratch, collisions in another building", collisions, _ratio(tasks, "lore", "collisions")),
+        at_most("lore / scratch, steps in another building", steps, _ratio(tasks, "lore", "steps_to_80").value),
+        at_most(
+            "lore / scratch, collisions in another building", collisions, _ratio(tasks, "lore", "collisions").value
+        ),
         at_most("lore capped in another building", 0, float(capped)),
     ]
