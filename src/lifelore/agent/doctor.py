@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lifelore.core.curve import TOTAL
 from lifelore.core.errors import LifeloreError
 from lifelore.core.jit import kernel_cache_dir
 from lifelore.core.q_learner import QLearning
@@ -65,7 +66,7 @@ def _kernels() -> dict:
     for attempt in range(3):
         began = time.perf_counter()
         learner, _ = method.learn(tables, 0.95, world=stream(0, "world"), own=stream(0, "own", attempt))
-        speeds.append(learner.cursor[-1] / (time.perf_counter() - began) / 1e6)
+        speeds.append(learner.cursor[TOTAL] / (time.perf_counter() - began) / 1e6)
     speed = float(np.max(speeds))
     return _check("kernels", speed > SLOW, f"{speed:.0f} million Q-learning steps a second on one core")
 

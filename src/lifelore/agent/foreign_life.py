@@ -4,7 +4,7 @@ import hashlib
 import os
 import time
 import uuid
-from collections.abc import Callable, Hashable
+from collections.abc import Hashable
 from contextlib import nullcontext
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -21,7 +21,7 @@ from lifelore.agent.summary import plain, third
 from lifelore.agent.task_result import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import mean_estimate
-from lifelore.core.protocols import Record, World
+from lifelore.core.protocols import Progress, Record, World
 from lifelore.core.q_learner import QLearning
 from lifelore.core.streams import stream
 from lifelore.memory import Memory, open_memory
@@ -49,7 +49,7 @@ def live_in(
     weight: float = 1.0,
     form: str = "proportion",
     ties: str = "uniform",
-    progress: Callable[[int, int, str], None] | None = None,
+    progress: Progress | None = None,
     stop: Event | None = None,
 ) -> dict:
     """Live through `tasks` tasks of a world, `scratch` beside on the same random streams; keep what was learnt.
@@ -179,7 +179,7 @@ class _ForeignLife:
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
 
-    def run(self, progress: Callable[[int, int, str], None] | None, stop: Event) -> None:
+    def run(self, progress: Progress | None, stop: Event) -> None:
         total = self.settings.tasks
         for done in range(total):
             index = self.tasks_before + done

@@ -18,7 +18,7 @@ from lifelore.action.exploration import TIES, TRACE
 from lifelore.agent.context_code import ContextCodes
 from lifelore.agent.task_result import Stopped
 from lifelore.core.errors import InputError
-from lifelore.core.planning import best_actions
+from lifelore.core.planning import learnt_best_actions
 from lifelore.core.protocols import World
 from lifelore.core.q_learner import QLearning
 from lifelore.core.q_learning import choose, cumulative
@@ -83,7 +83,7 @@ class ForeignLearner:
         """Contexts (n,) of the states visited, and the best actions there; rows not worth anything are False."""
         codes = np.array([code for _, code in self.visited], np.int64)
         q = np.array([self.q[state][0] for state, _ in self.visited]).reshape(-1, self.n_actions)
-        return codes, best_actions(q) & (q.max(axis=1) > 0)[:, None]
+        return codes, learnt_best_actions(q)
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 import os
 import time
 import uuid
-from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, fields
 from threading import Event
@@ -25,7 +24,7 @@ from lifelore.core.known_world import blank_model
 from lifelore.core.mdp import Tables, Task
 from lifelore.core.model_learning import Perceived, new_explorer
 from lifelore.core.planning import mean_start_value, optimal_q
-from lifelore.core.protocols import Record
+from lifelore.core.protocols import Progress, Record
 from lifelore.core.q_learner import QLearning
 from lifelore.core.q_learning import new_learner, uniform_rows
 from lifelore.core.streams import stream
@@ -33,7 +32,6 @@ from lifelore.domains.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory, open_memory
 
-Progress = Callable[[int, int, str], None]
 KEPT = 4
 """Last tasks whose policies are kept for pictures: a long life in a large world must not fill the machine."""
 

@@ -5,9 +5,9 @@ from threading import Event
 import numpy as np
 
 from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
-from lifelore.core.curve import new_curve
+from lifelore.core.curve import EPISODE, STEP, new_curve
 from lifelore.core.mdp import Tables
-from lifelore.core.planning import best_actions, greedy_policy, mean_start_value, policy_values
+from lifelore.core.planning import greedy_policy, learnt_best_actions, mean_start_value, policy_values
 from lifelore.core.q_learning import Learner, Rows, Schedule, learn
 
 CHUNK = 100_000
@@ -30,7 +30,7 @@ def live_q_task(
             share = _greedy_value(tables, learner, schedule.discount) / optimal
             trace.append((total, share))
             if share >= THRESHOLD:
-                begun = int(learner.cursor[0]) + int(learner.cursor[1] > 0)
+                begun = int(learner.cursor[EPISODE]) + int(learner.cursor[STEP] > 0)
                 reached_at = total, begun, int(curve.collisions.sum())
     final = _greedy_value(tables, learner, schedule.discount)
     episodes = len(curve.returns)
@@ -44,7 +44,7 @@ def live_q_task(
         reached=reached_at is not None,
         final_return=final,
         policy=greedy_policy(learner.q),
-        best=best_actions(learner.q) & (learner.q.max(axis=1) > 0)[:, None],
+        best=learnt_best_actions(learner.q),
         trace=np.array(trace, float).reshape(-1, 2),
     )
 

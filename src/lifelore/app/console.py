@@ -3,10 +3,13 @@
 import json
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from threading import Event
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lifelore.core.protocols import Progress
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as shells have it."""
@@ -18,7 +21,7 @@ def print_json(document: Any) -> None:
 
 
 @contextmanager
-def progress_bar(what: str) -> Iterator[Callable[[int, int, str], None] | None]:
+def progress_bar(what: str) -> "Iterator[Progress | None]":
     """A callback ``(done, total, label)`` that draws a bar on stderr; None where stderr is no terminal."""
     if not sys.stderr.isatty():
         yield None

@@ -5,6 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+EPISODE, STEP, STATE, TOTAL = 0, 1, 2, 4
+"""Places in the cursors of `Learner` and `Explorer`: episode and step under way, state, steps in all."""
+
 
 class Curve(NamedTuple):
     """Per episode, all (n_episodes,): discounted return, summed reward, steps, collisions, goal reached."""

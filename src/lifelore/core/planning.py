@@ -63,6 +63,11 @@ def best_actions(q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE) -> ND
     return q >= best - tolerance * np.maximum(np.abs(best), 1e-300)
 
 
+def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """`best_actions` of a learnt Q; rows that promise nothing above zero are all False: it has no policy there."""
+    return best_actions(q) & (q.max(axis=1, keepdims=True) > 0)
+
+
 def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
     """The first best action where some action promises something; -1 where none does.
 

@@ -1,6 +1,6 @@
 """The shapes in which strangers meet: what joins two rooms passes these, and nothing else."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, Literal, Protocol, runtime_checkable
 
@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 Merge = Literal["add", "newest", "union"]
+Progress = Callable[[int, int, str], None]
+"""How long work reports itself: ``progress(done, total, label)``, called from the caller's own thread."""
 
 
 @runtime_checkable

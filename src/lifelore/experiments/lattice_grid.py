@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.action.action_prior import ActionPrior
-from lifelore.core.planning import best_actions, mean_start_value
+from lifelore.core.planning import learnt_best_actions, mean_start_value
 from lifelore.core.q_learning import Rows, Schedule
 from lifelore.experiments.lattice_learning import (
     Problem,
@@ -111,7 +111,7 @@ def online_priors(run: Run, settings: Mapping, schedule: Schedule) -> list[Actio
     for problem in run.training[: max(settings["online_tasks"])]:
         rows = rows_of(problem, prior, default["form"], default["ties"])
         q = learn_task(problem, rows, schedule)[1].q
-        prior.update(states, best_actions(q) & (q.max(axis=1, keepdims=True) > 0))
+        prior.update(states, learnt_best_actions(q))
         after.append(ActionPrior.merged([prior]))
     return after
 

@@ -6,7 +6,7 @@ Results do not depend on the number of threads, nor on whether a run was stopped
 import json
 import os
 import platform
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from importlib.metadata import version
 from pathlib import Path
@@ -14,6 +14,7 @@ from time import perf_counter
 from typing import Any
 
 from lifelore.core.errors import InputError
+from lifelore.core.protocols import Progress
 from lifelore.experiments.cell_store import CellStore, write_atomically
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.registry import built_ids, claim_of, list_claims
@@ -26,8 +27,6 @@ RESULT_KEYS = (
 )  # fmt: skip
 MAX_BYTES = 200_000
 """Largest ``result.json``: results are committed."""
-
-Progress = Callable[[int, int, str], None]
 
 
 def reproduce(

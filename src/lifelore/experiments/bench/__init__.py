@@ -3,8 +3,8 @@
 from collections.abc import Callable
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Progress
 
-Progress = Callable[[int, int, str], None]
 MOST_REPEATS = 1000
 
 

@@ -5,7 +5,7 @@ the life has never seen, with the memory of home. Ratios are of means over all r
 """
 
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
@@ -13,6 +13,7 @@ from lifelore.agent.life import live
 from lifelore.agent.life_settings import LifeSettings
 from lifelore.agent.summary import third
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.rounds import at_most, row
 
 TASKS, VISITS = 30, 3
@@ -26,7 +27,7 @@ SECONDS = 90.0
 """Most seconds of one life."""
 
 
-def bench_courier(repeats: int, progress: Callable[[int, int, str], None], map: str | None = None) -> dict:
+def bench_courier(repeats: int, progress: Progress, map: str | None = None) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`. `map`: a ROS map; default generated offices."""
     lives, visits = [], []
     for seed in range(repeats):

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from statistics import median
 
+from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.c_loop import built_c_loop
 from lifelore.experiments.bench.first_result import LEARNERS, first_result_seconds, help_seconds
 from lifelore.experiments.bench.gymnasium_loop import short_textbook_rate, textbook_rate
@@ -25,7 +26,7 @@ UNIT = "Msteps/s"
 ONE, SEVERAL = "8 learners, 1 thread", f"8 learners, {THREADS} threads"
 
 
-def bench_kernels(repeats: int, progress: Callable[[int, int, str], None]) -> dict:
+def bench_kernels(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
     contenders = _contenders()
     check_same_bits()
