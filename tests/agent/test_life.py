@@ -43,6 +43,17 @@ def test_a_life_goes_on_where_it_stopped(tmp_path):
     assert first["tasks"] + second["tasks"] == once.report["tasks"]
 
 
+def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
+    place = new_place("postgresql")
+    for tasks in (2, 1):
+        in_file, on_server = (
+            live(settings(tmp_path, tasks=tasks, memory=memory)).report
+            for memory in (str(tmp_path / "file.db"), place)
+        )
+        assert in_file["tasks"] == on_server["tasks"]
+        assert in_file["memory"] == on_server["memory"]
+
+
 def test_another_robot_counts_its_own_tasks_and_shares_the_lore(tmp_path):
     live(settings(tmp_path, tasks=6))
     other = live(settings(tmp_path, tasks=1, robot="other")).report

