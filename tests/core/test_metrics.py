@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import (
     RESAMPLES,
+    entropy,
     episodes_to_threshold,
     jumpstart,
     mean_estimate,
@@ -122,3 +123,8 @@ def test_values_that_break_a_rule(values):
         ratio_estimate(values, [1.0] * len(values))
     with pytest.raises(InputError, match="got 1 and 2"):
         ratio_estimate([1.0], [1.0, 2.0])
+
+
+def test_entropy_by_hand():
+    probs = np.array([[0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [1 / 3, 1 / 3, 1 / 3]])
+    assert entropy(probs) == pytest.approx([np.log(2), 0.0, np.log(3)])

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.metrics import entropy
 from lifelore.core.protocols import Record
 
 MOST_WEIGHT = 1e6
@@ -220,7 +221,7 @@ class ActionPrior:
         counts = self.counts(contexts)
         total = counts.sum(axis=1, keepdims=True)
         share = np.divide(counts, total, out=np.full_like(counts, 1 / self.n_actions), where=total > 0)
-        return -(share * np.log(np.where(share > 0, share, 1.0))).sum(axis=1)
+        return entropy(share)
 
     def marginalise(self, coarser: ArrayLike, key: str = "") -> "ActionPrior":
         """The prior over coarser contexts: `coarser` (len(self),) gives each of `contexts` its new code."""

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.greedy_paths import Ways
+from lifelore.core.metrics import entropy
 from lifelore.domains.grid_world import GridWorld
 from lifelore.domains.occupancy_map import write_occupancy_map
 
@@ -32,8 +33,8 @@ def write_paths(path: Path, world: GridWorld, ways: Sequence[Ways]) -> None:
 
 def decided_percent(world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_]) -> NDArray[np.uint8]:
     """(rows, columns) uint8: 100 · (1 - entropy / log |A|) of a cell's prior, `NO_PRIOR` where there is none."""
-    entropy = -(probs * np.log(np.where(probs > 0, probs, 1.0))).sum(axis=1)
-    percent = np.rint(100 * np.clip(1 - entropy / np.log(probs.shape[1]), 0, 1))
+    nats = entropy(probs)
+    percent = np.rint(100 * np.clip(1 - nats / np.log(probs.shape[1]), 0, 1))
     grey = np.full(world.shape, NO_PRIOR, np.uint8)
     grey[tuple(world.cells.T)] = np.where(counted, percent, NO_PRIOR)
     return grey

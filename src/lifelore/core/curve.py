@@ -5,8 +5,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-EPISODE, STEP, STATE, TOTAL = 0, 1, 2, 4
-"""Places in the cursors of `Learner` and `Explorer`: episode and step under way, state, steps in all."""
+EPISODE, STEP, TOTAL = 0, 1, 4
+"""Places in the cursors of `Learner` and `Explorer`: episode and step under way, steps in all."""
 
 
 class Curve(NamedTuple):

@@ -98,6 +98,11 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
     return float(low), float(high)
 
 
+def entropy(probs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Entropy in nats of each row of `probs` (n, n_outcomes), rows sum to 1; 0 log 0 is 0."""
+    return -(probs * np.log(np.where(probs > 0, probs, 1.0))).sum(axis=1)
+
+
 def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
     """First-episode advantage: mean paired difference of first returns."""
     first, other = _checked(returns), _checked(baseline)

@@ -1,7 +1,6 @@
-"""Which claims are built: every module here named ``c<chapter>_<number>`` holds one, as `CLAIM`."""
+"""Which claims are built: a module named after a claim of the ledger (``c3_1`` for C3.1) holds it, as `CLAIM`."""
 
 import pkgutil
-import re
 from functools import cache
 from importlib import import_module
 from pathlib import Path
@@ -9,8 +8,6 @@ from pathlib import Path
 from lifelore.core.errors import NotFoundError
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.ledger import entries
-
-_MODULE = re.compile(r"c\d+_\d+")
 
 
 def built_ids() -> tuple[str, ...]:

@@ -17,10 +17,8 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
 from lifelore.experiments.cell_store import CellStore, write_atomically
 from lifelore.experiments.claim import Claim
-from lifelore.experiments.registry import built_ids, claim_of, list_claims
+from lifelore.experiments.registry import built_ids, claim_of
 from lifelore.experiments.source_key import source_key
-
-__all__ = ["MAX_BYTES", "RESULT_KEYS", "Progress", "finish", "list_claims", "reproduce"]
 
 RESULT_KEYS = (
     "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "rows",

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.metrics import entropy
 from lifelore.figures.floor_plan import draw_floor_plan, draw_scale_bar, tint, wall_segments
 from lifelore.figures.prior_arrows import draw_prior
 from lifelore.figures.style import BLUE, INK, SKY, VERMILION, house_style, new_figure
@@ -95,7 +96,7 @@ def _panels(aspect: float) -> tuple["Figure", "Axes", "Axes", "Axes"]:
 def open_moves(probs: ArrayLike) -> NDArray[np.float64]:
     """How many moves a prior leaves open, the exponential of its entropy: (n,) in [1, n_actions]."""
     probs = np.asarray(probs, float)
-    return np.exp(-(probs * np.log(np.where(probs > 0, probs, 1.0))).sum(axis=1))
+    return np.exp(entropy(probs))
 
 
 def close_up_corner(
