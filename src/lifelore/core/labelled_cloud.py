@@ -1,0 +1,63 @@
+"""`LabelledCloud`: points and the object each belongs to, in the scene frame; where worlds meet perception."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+
+UNLABELLED = 0
+TABLE = 1
+"""The table's label; objects are 2 and above."""
+
+
+@dataclass(frozen=True, eq=False)
+class LabelledCloud:
+    """A scene as points with labels (thesis §2.3.2).
+
+    Parameters
+    ----------
+    points : (n, 3) float64
+        Metres, finite, z up; z = 0 at the table where one is known.
+    labels : (n,) int64
+        `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and above).
+    colours : (n, 3) uint8, optional
+    camera : (3,) float64, optional
+        Where the camera stands, in the same frame.
+
+    Raises
+    ------
+    InputError
+        A shape or value breaks its rule.
+    """
+
+    points: NDArray[np.float64]
+    labels: NDArray[np.int64]
+    colours: NDArray[np.uint8] | None = None
+    camera: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        if self.points.shape != (n, 3) or not np.isfinite(self.points).all():
+            raise InputError(f"points must be finite and of shape (n, 3), got shape {self.points.shape}")
+        if self.labels.shape != (n,) or (n and self.labels.min() < 0):
+            raise InputError(f"labels must be {n} whole numbers from 0, got shape {self.labels.shape}")
+        if self.colours is not None and self.colours.shape != (n, 3):
+            raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
+        if self.camera is not None and self.camera.shape != (3,):
+            raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+
+    @property
+    def objects(self) -> tuple[int, ...]:
+        """Numbers of the objects that have points, ascending; the table is not among them."""
+        return tuple(int(label) for label in np.unique(self.labels) if label > TABLE)
+
+    @property
+    def has_table(self) -> bool:
+        """Whether any point belongs to the table."""
+        return bool((self.labels == TABLE).any())
+
+    def of(self, label: int) -> NDArray[np.float64]:
+        """The points of one object, shape ``(m, 3)``."""
+        return self.points[self.labels == label]
