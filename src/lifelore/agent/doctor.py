@@ -26,8 +26,16 @@ PACKAGES = {
     "gymnasium": "environments",
     "sqlalchemy": "memory",
     "matplotlib": "figures",
+    "scikit-learn": "learning relations",
+    "networkx": "contact point networks",
+    "pypcd4": "PCD clouds",
+    "trimesh": "PLY clouds and meshes",
+    "clingo": "logic over scenes",
     "psycopg": "memory on PostgreSQL (extra postgres)",
     "minigrid": "MiniGrid worlds (extra envs)",
+    "mujoco": "simulated tabletop scenes (extra sim)",
+    "unified-planning": "solving scenes as planning problems (extra planning)",
+    "rosbags": "clouds from rosbags (extra ros)",
 }
 SLOW = 5.0
 """Million steps a second below which kernels hardly run compiled."""
