@@ -1,0 +1,89 @@
+"""From the label field of a file to ids: 0 nothing, 1 the table, 2 and above objects.
+
+Two conventions exist and a file does not say which is its own:
+
+- ``plain``: the label is the id.
+- ``parts``: 1–9 are parts of the table, 20–29 parts of the first object, 30–39 of the second, and so on;
+  the id is ``label // 10``, and 1 for 1–9 (the modified Object Segmentation Database).
+
+``auto`` takes ``parts`` when some label lies in 20–29, none in 10–19, and at least half of the tens in use
+from 20 on start with their round number (20, 30, …: an object's parts are counted from 0); otherwise
+``plain``. A plain file that numbers its objects 2, 3, 4 … without a gap is therefore never merged: from
+its tenth label on it holds 10–19. Negative labels and NaN mean nothing (0) in both.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, UNLABELLED
+
+RULES = ("auto", "plain", "parts")
+MAX_OBJECTS = 1000
+"""More labels than this are not objects on a table but a field of another meaning."""
+
+
+def ids_from_labels(labels: NDArray, rule: str = "auto") -> NDArray[np.int64]:
+    """Ids of labels by `rule`.
+
+    Parameters
+    ----------
+    labels : (n,) integers or floats
+        Floats must be whole.
+    rule : {"auto", "plain", "parts"}
+
+    Returns
+    -------
+    (n,) int64, ≥ 0
+
+    Raises
+    ------
+    InputError
+        An unknown rule, a label that is no whole number, or more than `MAX_OBJECTS` objects.
+
+    Examples
+    --------
+    >>> ids_from_labels(np.array([0, 1, 2, 20, 21, 30])).tolist()
+    [0, 1, 1, 2, 2, 3]
+    >>> ids_from_labels(np.array([0, 1, 2, 3])).tolist()
+    [0, 1, 2, 3]
+    """
+    if rule not in RULES:
+        raise InputError(f"labels must be one of {', '.join(RULES)}, got {rule!r}")
+    whole = _whole(labels)
+    used = np.unique(_whole(np.unique(labels)))
+    objects = np.count_nonzero(used > TABLE)
+    if objects > MAX_OBJECTS:
+        raise InputError(
+            f"the label field names {objects} objects where at most {MAX_OBJECTS} are possible; "
+            "leave the field out to have the cloud segmented"
+        )
+    if rule == "parts" or (rule == "auto" and is_in_parts(used)):
+        return _merged(whole, used)
+    return whole
+
+
+def is_in_parts(used: NDArray[np.int64]) -> bool:
+    """Whether the labels in use follow the convention of parts; see the module for the rule."""
+    tens = np.unique(used[used >= 20] // 10)
+    if not (tens == 2).any() or ((used >= 10) & (used <= 19)).any():
+        return False
+    return 2 * np.isin(10 * tens, used).sum() >= len(tens)
+
+
+def _whole(labels: NDArray) -> NDArray[np.int64]:
+    if labels.dtype.kind == "f":
+        labels = np.where(np.isnan(labels), UNLABELLED, labels)
+        if (np.abs(labels) > 2**53).any() or (labels != np.rint(labels)).any():
+            raise InputError("labels must be whole numbers, got fractions or numbers beyond 2^53")
+    elif labels.dtype.kind not in "iub":
+        raise InputError(f"labels must be numbers, got {labels.dtype}")
+    elif labels.dtype == np.uint64 and (labels > np.uint64(2**53)).any():
+        raise InputError("labels must be whole numbers up to 2^53")
+    return np.maximum(labels.astype(np.int64), UNLABELLED)
+
+
+def _merged(labels: NDArray[np.int64], used: NDArray[np.int64]) -> NDArray[np.int64]:
+    if ((used >= 10) & (used <= 19)).any():
+        raise InputError("labels 10 to 19 belong to nothing under labels=parts; read the file with labels=plain")
+    return np.where((labels > 0) & (labels < 20), TABLE, labels // 10)

@@ -1,0 +1,129 @@
+"""The table's plane in a cloud: RANSAC for the right one of many, least squares for the right place."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+
+NEAR = 0.01
+"""Metres from a plane within which a point speaks for it: about three sigma of a depth camera at 1.2 m."""
+_HYPOTHESES = 400
+_SAMPLE = 4000
+_BATCH = 50
+_LEAST_SHARE = 0.05
+"""A box of points without order has at most a few hundredths of them in any such slab."""
+
+
+@dataclass(frozen=True, eq=False)
+class Plane:
+    """The points p with ``normal · p + offset = 0``.
+
+    Parameters
+    ----------
+    normal : (3,) float64
+        Unit vector.
+    offset : float
+        Metres; the height of the frame's origin above the plane.
+    """
+
+    normal: NDArray[np.float64]
+    offset: float
+
+    def height(self, points: NDArray[np.floating]) -> NDArray[np.float64]:
+        """(n,) metres above the plane, on the side of the normal."""
+        return points @ self.normal + self.offset
+
+    def flipped(self) -> "Plane":
+        """The same plane seen from below."""
+        return Plane(-self.normal, -self.offset)
+
+
+def dominant_plane(
+    points: NDArray[np.float64],
+    rng: np.random.Generator,
+    up: NDArray[np.float64] | None = None,
+    near: float = NEAR,
+) -> tuple[Plane, float]:
+    """The plane most points lie on, and the share of the points within `near` of it.
+
+    Parameters
+    ----------
+    points : (n, 3) metres, finite
+    rng : Generator
+        Draws the hypotheses.
+    up : (3,) unit vector, optional
+        Only planes whose normal lies within 15° of it count.
+    near : float
+        Metres.
+
+    Raises
+    ------
+    InputError
+        No three points span a plane (fewer than three, or all on one line), none faces `up`, or the best
+        holds less than 5 % of the points.
+    """
+    sample = points if len(points) <= _SAMPLE else points[rng.choice(len(points), _SAMPLE, replace=False)]
+    normals, offsets = _hypotheses(sample, rng, up)
+    if len(normals) == 0:
+        raise InputError("no plane can be found in the cloud; give up as a vector or 'z'")
+    votes = np.concatenate(
+        [
+            (np.abs(sample @ normals[i : i + _BATCH].T + offsets[i : i + _BATCH]) <= near).sum(axis=0)
+            for i in range(0, len(normals), _BATCH)
+        ]
+    )
+    best = int(votes.argmax())
+    if votes[best] < _LEAST_SHARE * len(sample):
+        raise InputError("no plane stands out in the cloud; give up as a vector or 'z'")
+    plane = refined(points, Plane(normals[best], float(offsets[best])), near)
+    return plane, float(np.mean(np.abs(plane.height(points)) <= near))
+
+
+def refined(points: NDArray[np.float64], plane: Plane, near: float = NEAR) -> Plane:
+    """The least-squares plane of the points near `plane`, found anew five times from its own points."""
+    for _ in range(5):
+        close = points[np.abs(plane.height(points)) <= near]
+        if len(close) < 3:
+            return plane
+        centre = close.mean(axis=0)
+        spread = (close - centre).T @ (close - centre)
+        normal = np.linalg.eigh(spread)[1][:, 0]
+        if normal @ plane.normal < 0:
+            normal = -normal
+        plane = Plane(normal, float(-normal @ centre))
+    return plane
+
+
+def _hypotheses(
+    sample: NDArray[np.float64], rng: np.random.Generator, up: NDArray[np.float64] | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    if len(sample) < 3:
+        return np.empty((0, 3)), np.empty(0)
+    # Under a known up most triples are of no use, so more are drawn.
+    draws = _HYPOTHESES * (1 if up is None else 10)
+    a, b, c = sample[rng.integers(0, len(sample), (3, draws))]
+    normals = np.cross(b - a, c - a)
+    lengths = np.linalg.norm(normals, axis=1)
+    # Thin triangles give wild normals: the area must be more than a square of two millimetres.
+    good = lengths > 8e-6
+    normals, a = normals[good] / lengths[good, None], a[good]
+    if up is not None:
+        facing = np.abs(normals @ up) >= np.cos(np.radians(15.0))
+        normals, a = normals[facing][:_HYPOTHESES], a[facing][:_HYPOTHESES]
+    return normals, -np.einsum("ij,ij->i", normals, a)
+
+
+def over_outline(points: NDArray[np.float64], table: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """(n,) bool: whether points (n, 2) lie over the convex outline of table (m, 2); all do where there is none."""
+    from scipy.spatial import ConvexHull, QhullError
+
+    try:
+        equations = ConvexHull(table).equations
+    except (QhullError, ValueError):
+        return np.ones(len(points), bool)
+    inside = np.ones(len(points), bool)
+    for x, y, offset in equations:
+        inside &= points[:, 0] * x + points[:, 1] * y + offset <= 0.0
+    return inside

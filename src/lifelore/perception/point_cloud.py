@@ -1,0 +1,76 @@
+"""`PointCloud`: what a sensor or a file gave, in the sensor's own frame, before anything is known of it."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+
+
+@dataclass(frozen=True, eq=False)
+class PointCloud:
+    """Points as the sensor saw them (thesis §2.3.2).
+
+    Parameters
+    ----------
+    points : (n, 3) float32 or float64
+        Metres, any frame; a point with a coordinate that is not finite was not measured.
+    labels : (n,) int64, optional
+        Ids as in `LabelledCloud`: 0 nothing, 1 the table, 2 and above objects. None where nobody labelled.
+    colours : (n, 3) uint8, optional
+        Red, green, blue.
+    shape : (rows, columns), optional
+        Of the organised image, row by row; None where the points have no such order.
+    camera : (3,) float64, optional
+        Where the camera stands, in the frame of the points.
+
+    Raises
+    ------
+    InputError
+        A shape or value breaks its rule.
+    """
+
+    points: NDArray[np.floating]
+    labels: NDArray[np.int64] | None = None
+    colours: NDArray[np.uint8] | None = None
+    shape: tuple[int, int] | None = None
+    camera: NDArray[np.float64] | None = None
+
+    def __post_init__(self) -> None:
+        n = len(self.points)
+        if self.points.shape != (n, 3) or self.points.dtype.kind != "f":
+            raise InputError(f"points must be floats of shape (n, 3), got {self.points.dtype} {self.points.shape}")
+        if self.labels is not None and (self.labels.shape != (n,) or (n and self.labels.min() < 0)):
+            raise InputError(f"labels must be {n} whole numbers from 0, got shape {self.labels.shape}")
+        if self.colours is not None and self.colours.shape != (n, 3):
+            raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
+        if self.shape is not None and self.shape[0] * self.shape[1] != n:
+            raise InputError(f"shape {self.shape} must hold the {n} points")
+        if self.camera is not None and self.camera.shape != (3,):
+            raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+
+    @property
+    def measured(self) -> NDArray[np.bool_]:
+        """(n,) bool: the points of which all three coordinates are finite."""
+        return finite_rows(self.points)
+
+    @property
+    def is_labelled(self) -> bool:
+        """Whether any point belongs to an object or the table."""
+        return self.labels is not None and bool(self.labels.any())
+
+    def only(self, keep: NDArray) -> "PointCloud":
+        """The points that `keep` ((n,) bool, or indices) names; the order of the image is lost."""
+        return PointCloud(
+            self.points[keep],
+            None if self.labels is None else self.labels[keep],
+            None if self.colours is None else self.colours[keep],
+            camera=self.camera,
+        )
+
+
+def finite_rows(points: NDArray[np.floating]) -> NDArray[np.bool_]:
+    """(n,) bool: rows of (n, 3) whose numbers are all finite."""
+    x, y, z = np.isfinite(points).T
+    return x & y & z
