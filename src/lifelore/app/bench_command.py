@@ -6,7 +6,9 @@ import typer
 
 
 def bench(
-    name: Annotated[str, typer.Argument(help="kernels (speed) or courier (what a past is worth).")],
+    name: Annotated[
+        str, typer.Argument(help="kernels, separator, perceive (speed); relations, pictures, courier (worth).")
+    ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,
     map: Annotated[str | None, typer.Option(metavar="YAML", help="courier: a ROS map; else offices.")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,

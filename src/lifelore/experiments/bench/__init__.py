@@ -1,6 +1,6 @@
 """Speed and worth as ratios, measured side by side: one function a benchmark, plain data out."""
 
-from collections.abc import Callable
+from importlib import import_module
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
@@ -8,22 +8,8 @@ from lifelore.core.protocols import Progress
 MOST_REPEATS = 1000
 
 
-def _kernels(repeats: int, progress: Progress, map: str | None) -> dict:
-    from lifelore.experiments.bench.kernels import bench_kernels
-
-    if map is not None:
-        raise InputError(f"map applies to bench courier, got {map} for kernels; leave it out")
-    return bench_kernels(repeats, progress)
-
-
-def _courier(repeats: int, progress: Progress, map: str | None) -> dict:
-    from lifelore.experiments.bench.courier import bench_courier
-
-    return bench_courier(repeats, progress, map)
-
-
-BENCHES: dict[str, Callable[[int, Progress, str | None], dict]] = {"kernels": _kernels, "courier": _courier}
-"""Name → benchmark; each takes the number of rounds, a callback, and a map or None."""
+BENCHES = ("kernels", "courier", "separator", "perceive", "relations", "pictures")
+"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
 
 def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
@@ -34,7 +20,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     name : str
         One of `BENCHES`.
     repeats : int
-        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives.
+        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives; for
+        ``relations``: lots of scenes, judged together.
     map : str, optional
         For ``courier``: a ROS map to live in; default generated offices.
     progress : callable, optional
@@ -57,7 +44,11 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         raise NotFoundError(f"bench must be one of {', '.join(BENCHES)}, got '{name}'")
     if not 1 <= repeats <= MOST_REPEATS:
         raise InputError(f"repeats must lie in [1, {MOST_REPEATS}], got {repeats}")
-    return {"bench": name, **BENCHES[name](repeats, progress or _silent, map)}
+    if map is not None and name != "courier":
+        raise InputError(f"map applies to bench courier, got {map} for {name}; leave it out")
+    run = getattr(import_module(f"{__name__}.{name}"), f"bench_{name}")
+    options = {"map": map} if name == "courier" else {}
+    return {"bench": name, **run(repeats, progress or _silent, **options)}
 
 
 def _silent(done: int, total: int, label: str) -> None:
