@@ -11,11 +11,15 @@ SLANT = (np.sin(np.radians(60)), 0.0, np.cos(np.radians(60)))
 
 
 def told(contacts, gaps, bottoms, **limits):
-    """The labels of things 2, 3, … that weigh 10 N; a contact is (first, second, normal, force, height)."""
-    first, second, normals, forces, heights = (np.array(column) for column in zip(*contacts, strict=True))
-    borne = bearing(first, second, normals, forces, heights, np.full(len(bottoms), 10.0))
+    """The labels of things 2, 3, …, 100 mm tall, that weigh 10 N.
+
+    A contact is (first, second, normal, force, height).
+    """
+    first, second, normals, forces, places = (np.array(column) for column in zip(*contacts, strict=True))
+    borne = bearing(first, second, normals, forces, places, np.full(len(bottoms), 10.0))
     near = {(gap.a, gap.b): gap for gap in gaps}
-    return judge(borne, near, np.array(bottoms), range(2, 2 + len(bottoms)), **limits)
+    heights = np.array([(bottom, bottom + 0.1) for bottom in bottoms])
+    return judge(borne, near, heights, range(2, 2 + len(bottoms)), **limits)
 
 
 def standing(thing, weight=10.0):
@@ -62,9 +66,19 @@ def test_a_hidden_neighbour_is_doubtful_and_a_far_one_unlisted():
     assert len(far) == 2
 
 
-def test_side_contact_without_load_is_adjacent_even_where_the_gap_is_hidden():
+@pytest.mark.parametrize(("seen", "confidence"), [(0.02, 3), (0.035, 1)])
+def test_side_contact_without_load_is_adjacent_but_doubtful_where_it_cannot_be_seen(seen, confidence):
     contacts = [standing(0), standing(1), (0, 1, SIDE, (0, 0, 0), 0.05)]
-    assert told(contacts, [Gap(0, 1, 0.035, 0.001, True)], [0.0, 0.0])[2] == PairLabel(2, 3, "adjacent", 2)
+    truth = told(contacts, [Gap(0, 1, seen, 0.001, True)], [0.0, 0.0])
+    assert truth[2] == PairLabel(2, 3, "adjacent", confidence)
+
+
+@pytest.mark.parametrize(("bottom", "relation"), [(0.1, "on"), (0.09, "on"), (0.08, "both")])
+def test_an_edge_that_pushes_sideways_makes_no_neighbour_of_what_lies_above(bottom, relation):
+    # Boxes that meet edge to edge get sideways normals; only things that share some height stand side by side.
+    contacts = [standing(0, 20.0), (0, 1, UP, (0, 0, 9.0), 0.1), (0, 1, SLANT, (1.7, 0, 1.0), 0.1)]
+    truth = told(contacts, [Gap(0, 1, 0.001, 0.0, False)], [0.0, bottom])
+    assert truth[2] == PairLabel(3, 2, relation)
 
 
 def test_on_a_foot_and_against_the_upright_is_both():

@@ -144,7 +144,7 @@ def test_lines_by_hand():
 
 
 def test_what_cannot_be_run():
-    with pytest.raises(NotFoundError, match="bench must be one of kernels, .*, got 'speed'"):
+    with pytest.raises(NotFoundError, match=r"bench must be one of kernels, .*, got 'speed'"):
         bench("speed")
     for repeats in (0, 1001):
         with pytest.raises(InputError, match=rf"repeats must lie in \[1, 1000\], got {repeats}"):

@@ -28,9 +28,21 @@ app = typer.Typer(
 
 
 def _register() -> None:
-    from lifelore.app import bench_command, doctor_command, live_command, memory_commands, reproduce_command
+    from lifelore.app import (
+        bench_command,
+        doctor_command,
+        learn_relations_command,
+        live_command,
+        memory_commands,
+        perceive_command,
+        reproduce_command,
+        scenes_command,
+    )
 
     app.command("live")(live_command.live)
+    app.command("perceive")(perceive_command.perceive)
+    app.command("learn-relations")(learn_relations_command.learn_relations)
+    app.command("scenes")(scenes_command.scenes)
     app.add_typer(memory_commands.memory, name="memory")
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)

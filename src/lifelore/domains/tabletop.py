@@ -151,8 +151,8 @@ def settle_scene(
     farthest = 5.0 if settings.arrangement == "apart" else settings.near
     gaps = _gaps(solid, photo, farthest)
     labels = range(FIRST_OBJECT, FIRST_OBJECT + len(placed))
-    bottoms = np.array([outline[:, 2].min() for outline in outlines])
-    truth = judge(borne, gaps, bottoms, labels, settings.adjacent_gap, settings.near)
+    heights = np.array([(outline[:, 2].min(), outline[:, 2].max()) for outline in outlines])
+    truth = judge(borne, gaps, heights, labels, settings.adjacent_gap, settings.near)
     if settings.arrangement == "pair" and _pair_relation(truth) not in ((wanted,) if wanted else CORE_RELATIONS):
         return None
     near = tuple(

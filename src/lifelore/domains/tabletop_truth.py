@@ -1,9 +1,10 @@
 """What is true of a settled scene: who carries whom, from forces and from gaps; labels as a person gives them.
 
 *on*: more than `SHARE` of a's weight comes from b through contacts whose normal lies within 45° of up. *Beside*: a
-contact or near miss with a normal within 45° of horizontal, or a visible gap of at most `adjacent_gap` between
-things side by side. *both*: on and beside, or leaning: b carries part of a, and a reaches well below the
-place where it does. Thesis: §2.3.2, §2.4.1, where a person labels the pictures.
+contact or near miss with a normal within 45° of horizontal between things that overlap in height, or a visible
+gap of at most `adjacent_gap` between things side by side. *both*: on and beside, or leaning: b carries part of a,
+and a reaches well below the place where it does. Where forces and the view disagree (neighbours touch, but the gap
+that is seen is wider than `adjacent_gap`) the label is doubtful. Thesis: §2.3.2, §2.4.1: there a person labels.
 """
 
 from collections.abc import Mapping, Sequence
@@ -26,6 +27,8 @@ UNSEEN = 0.04
 """Metres of visible gap above which a contact is hidden from whoever looks: probable (2) at most."""
 LEAN_DEPTH = 0.015
 """Metres that a leaning thing reaches below the place where it is carried."""
+OVERLAP = 0.015
+"""Metres of height that neighbours share at least: a box's edge on a box pushes sideways, too."""
 _STEEP = np.cos(np.pi / 4)
 
 
@@ -109,7 +112,7 @@ def contact_regions(places: NDArray[np.float64], apart: float = 0.025) -> int:
 def judge(
     borne: Bearing,
     gaps: Mapping[tuple[int, int], Gap],
-    bottoms: NDArray[np.float64],
+    heights: NDArray[np.float64],
     labels: Sequence[int],
     adjacent_gap: float = ADJACENT_GAP,
     near: float = 0.08,
@@ -121,19 +124,19 @@ def judge(
     borne : Bearing
     gaps : mapping
         `Gap` of each pair of numbers i < j that may be near.
-    bottoms : (n,) float64
-        Height of each thing's lowest point, metres.
+    heights : (n, 2) float64
+        Of each thing's lowest and highest point, metres.
     labels : sequence of int
         The label of thing i in the cloud.
     adjacent_gap, near : float
         Metres; pairs that do not touch and are seen further apart than `near` get no label.
     """
-    n = len(bottoms)
+    n = len(heights)
     truth = [_with_table(borne, i, n, labels[i]) for i in range(n)]
     for (i, j), gap in sorted(gaps.items()):
         if borne.touching[i, j] or gap.visible <= near:
             upper, lower = (i, j) if _carried(borne, i, j) >= _carried(borne, j, i) else (j, i)
-            relation, confidence = _relation(borne, upper, lower, gap, bottoms, adjacent_gap)
+            relation, confidence = _relation(borne, upper, lower, gap, heights, adjacent_gap)
             if relation != NONE and gap.visible > UNSEEN:
                 confidence = min(confidence, 2)
             truth.append(PairLabel(labels[upper], labels[lower], relation, confidence))
@@ -150,18 +153,20 @@ def _carried(borne: Bearing, a: int, b: int) -> float:
 
 
 def _relation(
-    borne: Bearing, a: int, b: int, gap: Gap, bottoms: NDArray[np.float64], adjacent_gap: float
+    borne: Bearing, a: int, b: int, gap: Gap, heights: NDArray[np.float64], adjacent_gap: float
 ) -> tuple[str, int]:
-    share, lift, side = float(borne.share[a, b]), float(borne.lift[a, b]), bool(borne.side[a, b])
-    depth = float(borne.height[a, b] - bottoms[a])
+    share, lift = float(borne.share[a, b]), float(borne.lift[a, b])
+    overlap = min(heights[a, 1], heights[b, 1]) - max(heights[a, 0], heights[b, 0])
+    side = bool(borne.side[a, b]) and overlap >= OVERLAP
+    depth = float(borne.height[a, b] - heights[a, 0])
     leaning = depth > LEAN_DEPTH and SHARE < lift < 1 - SHARE
     if share > SHARE:
         beside = side or leaning
         return (BOTH if beside else ON), _by_share(share)
-    if side and lift > SHARE:
-        return BOTH, _by_share(lift)
+    if lift > SHARE and borne.side[a, b]:
+        return (BOTH if side else ON), _by_share(lift)
     if side:
-        return ADJACENT, min(_by_share(lift), 3 if gap.visible <= adjacent_gap else 2)
+        return ADJACENT, _by_share(lift) if gap.visible <= adjacent_gap else 1
     off = abs(gap.visible - adjacent_gap)
     confidence = 1 if off < DOUBTFUL_GAP else 2 if off < PROBABLE_GAP else 3
     if gap.visible <= adjacent_gap:

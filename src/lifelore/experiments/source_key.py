@@ -1,5 +1,7 @@
 """A key of the code that a result rests on: a hash of a module and of everything of ours it imports.
 
+Trained models that ship in a room's folder ``models`` count with that room's modules.
+
 Figures draw results and cannot change them, so they take no part.
 """
 
@@ -16,9 +18,13 @@ _NO_PART = ("lifelore.figures",)
 def source_key(module: str) -> str:
     """Hash of the sources of `module` and of all it imports from this package, at whatever depth."""
     digest = hashlib.sha256()
-    for name in sorted(_closure(module)):
+    sources = {name: path for name in _closure(module) if (path := _path(name))}
+    for name, path in sorted(sources.items()):
         digest.update(name.encode())
-        digest.update(_path(name).read_bytes())  # type: ignore[union-attr]
+        digest.update(path.read_bytes())
+    for model in sorted({model for path in sources.values() for model in path.parent.glob("models/*")}):
+        digest.update(model.name.encode())
+        digest.update(model.read_bytes())
     return digest.hexdigest()[:16]
 
 

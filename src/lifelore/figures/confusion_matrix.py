@@ -39,11 +39,12 @@ def draw_confusions(matrices: Mapping[str, ArrayLike], labels: Sequence[str]) ->
         for axes, (title, matrix) in zip(
             figure.subplots(1, len(matrices), squeeze=False)[0], matrices.items(), strict=True
         ):
-            _draw(axes, np.asarray(matrix), labels, title)
+            draw_confusion(axes, np.asarray(matrix), labels, title)
     return figure
 
 
-def _draw(axes: "Axes", counts: np.ndarray, labels: Sequence[str], title: str) -> None:
+def draw_confusion(axes: "Axes", counts: np.ndarray, labels: Sequence[str], title: str) -> None:
+    """One matrix, within the house style."""
     from matplotlib.colors import LinearSegmentedColormap
 
     size, actual = len(labels), counts.sum(axis=0)

@@ -9,7 +9,7 @@ from lifelore.figures.style import INK, LIGHT, PAPER, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, FigureBase
 
 
 def draw_method_bars(
@@ -37,26 +37,38 @@ def draw_method_bars(
     if not panels:
         raise InputError("panels must name at least one set of scenes, got none")
     names = list(dict.fromkeys(name for panel in panels.values() for name in panel))
-    palette = method_palette(names)
     with house_style():
         figure = new_figure(1.6 + 2.9 * len(panels), 0.95 + 0.3 * len(names))
-        every = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
-        for axes, (title, panel) in zip(every, panels.items(), strict=True):
-            for place, name in enumerate(names):
-                if name in panel:
-                    _bar(axes, place, panel[name], palette[name])
-            sizes = {measured["n"] for measured in panel.values()}
-            axes.set_title(f"{title} ({sizes.pop():,} pairs)" if len(sizes) == 1 else title)
-            axes.set(xlim=(0, 112), xticks=range(0, 101, 20), xlabel=xlabel)
-            axes.grid(axis="x", color=LIGHT)
-            if title in (goals or {}):
-                axes.axvline(100 * (goals or {})[title], color=INK, lw=1.1, ls=(0, (4, 3)), zorder=3)
-        every[0].set_yticks(range(len(names)), names)
-        every[0].set_ylim(len(names) - 0.4, -0.6)
-        for axes in every:
-            axes.tick_params(axis="y", length=0)
-            axes.spines["left"].set_visible(False)
+        draw_bars(figure, panels, goals=goals, xlabel=xlabel)
     return figure
+
+
+def draw_bars(
+    figure: "FigureBase",
+    panels: Mapping[str, Mapping[str, Mapping]],
+    *,
+    goals: Mapping[str, float] | None = None,
+    xlabel: str = "pairs told exactly (%)",
+) -> None:
+    """As `draw_method_bars`, into a figure or a part of one, within the house style."""
+    names = list(dict.fromkeys(name for panel in panels.values() for name in panel))
+    palette = method_palette(names)
+    every = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
+    for axes, (title, panel) in zip(every, panels.items(), strict=True):
+        for place, name in enumerate(names):
+            if name in panel:
+                _bar(axes, place, panel[name], palette[name])
+        sizes = {measured["n"] for measured in panel.values()}
+        axes.set_title(f"{title} ({sizes.pop():,} pairs)" if len(sizes) == 1 else title)
+        axes.set(xlim=(0, 112), xticks=range(0, 101, 20), xlabel=xlabel)
+        axes.grid(axis="x", color=LIGHT)
+        if title in (goals or {}):
+            axes.axvline(100 * (goals or {})[title], color=INK, lw=1.1, ls=(0, (4, 3)), zorder=3)
+    every[0].set_yticks(range(len(names)), names)
+    every[0].set_ylim(len(names) - 0.4, -0.6)
+    for axes in every:
+        axes.tick_params(axis="y", length=0)
+        axes.spines["left"].set_visible(False)
 
 
 def _bar(axes: "Axes", place: int, measured: Mapping, colour: str) -> None:

@@ -108,10 +108,11 @@ def _corner(networks: dict[int, Network], end: Sequence) -> NDArray[np.float64]:
 
 
 def _hole(networks: dict[int, Network], hole: Mapping | Sequence) -> NDArray[np.float64]:
-    """Corners of a hole, given as places (``xyz``) or as contact points, pairs of object and number."""
+    """Corners of a hole: places (``outline`` or ``xyz``), or contact points, pairs of object and number."""
     if isinstance(hole, Mapping):
-        if "xyz" in hole:
-            return np.array(hole["xyz"], float).reshape(-1, 3)
+        for key in ("outline", "xyz"):
+            if key in hole:
+                return np.array(hole[key], float).reshape(-1, 3)
         hole = hole.get("nodes", hole.get("cycle", ()))
     corners = [end if len(end) == 3 else _corner(networks, end) for end in hole]
     return np.array(corners, float).reshape(-1, 3)

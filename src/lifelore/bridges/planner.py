@@ -1,0 +1,84 @@
+"""A real planner for the scenes perceived: PDDL in, a plan out, through `unified-planning` (extra ``planning``).
+
+The engine is Fast Downward, a program of its own that is run as such (GPL; nothing of it is linked in).
+"""
+
+import warnings
+from dataclasses import dataclass
+from typing import Any
+
+from lifelore.core.errors import InputError, LifeloreError, MissingExtraError
+
+ENGINE = "fast-downward"
+
+
+@dataclass(frozen=True)
+class Step:
+    """One action of a plan and the objects it is done to.
+
+    Examples
+    --------
+    >>> str(Step("put-on", ("o2", "o3")))
+    '(put-on o2 o3)'
+    """
+
+    action: str
+    arguments: tuple[str, ...]
+
+    def __str__(self) -> str:
+        return f"({' '.join((self.action, *self.arguments))})"
+
+
+def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ...] | None:
+    """A plan for a problem, both given as PDDL text; None where it is proven that there is none.
+
+    Parameters
+    ----------
+    domain, problem : str
+        Such as `perception.planning_problem.DOMAIN`, and what `planning_problem` makes.
+    timeout : float
+        Seconds, > 0.
+
+    Raises
+    ------
+    MissingExtraError
+        unified-planning or the engine is not installed.
+    InputError
+        The texts are not PDDL that can be read.
+    LifeloreError
+        The engine gave up: out of time or memory.
+    """
+    if not timeout > 0:
+        raise InputError(f"timeout must be above 0 seconds, got {timeout}")
+    shortcuts, task = _read(domain, problem)
+    with shortcuts.OneshotPlanner(name=ENGINE) as planner:
+        result = planner.solve(task, timeout=timeout)
+    if result.status.name in ("UNSOLVABLE_PROVEN", "UNSOLVABLE_INCOMPLETELY"):
+        return None
+    if result.plan is None:
+        raise LifeloreError(f"the planner found no plan in {timeout:g} s: {result.status.name}")
+    return tuple(
+        Step(step.action.name, tuple(str(argument) for argument in step.actual_parameters))
+        for step in result.plan.actions
+    )
+
+
+def _read(domain: str, problem: str) -> tuple[Any, Any]:
+    """The library's entry and the problem as an object of it."""
+    try:
+        import up_fast_downward  # noqa: F401  the engine, found by name
+        from unified_planning import shortcuts
+        from unified_planning.io import PDDLReader
+    except ImportError as error:
+        raise MissingExtraError(
+            f"planning needs the extra planning: pip install 'lifelore[planning]' ({error})"
+        ) from None
+    shortcuts.get_environment().credits_stream = None  # the library otherwise prints who made the engine
+    try:
+        with warnings.catch_warnings():
+            # Its reader calls its own parser by names that the parser has since renamed.
+            warnings.simplefilter("ignore", DeprecationWarning)
+            return shortcuts, PDDLReader().parse_problem_string(domain, problem)
+    except Exception as error:  # the reader raises its parsers' errors of many kinds
+        text = " ".join(str(error).split())
+        raise InputError(f"domain and problem must be PDDL: {text[:300]}") from None

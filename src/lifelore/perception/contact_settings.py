@@ -1,0 +1,56 @@
+"""`ContactSettings`: all lengths by which contacts are looked for, in metres and independent of resolution."""
+
+from dataclasses import dataclass
+
+from lifelore.core.errors import InputError
+
+
+@dataclass(frozen=True)
+class ContactSettings:
+    """How near pairs, separators and contact points are found.
+
+    Parameters
+    ----------
+    voxel : float
+        Side of the cells that the cloud is thinned to, metres; 0 for as it comes. With it a cost per point
+        means the same whatever the sensor's resolution.
+    near : float
+        Pairs whose visible points come no closer are not looked at, metres. True contacts can look 36 mm apart
+        (95th percentile; 72 mm where one object leans), because hidden faces have no points.
+    length, cost : float
+        Kernel length (metres) and cost per point at 3 mm spacing of the separator that contact points come from.
+    wide_length, wide_cost : float
+        The same for the second, wider separator, from which features come as well.
+    linkage : float
+        Support vectors closer than this belong to one contact, metres.
+    min_support : float
+        Smaller contacts are dropped, in support vectors at 3 mm spacing (thesis §2.3.4 drops below 7); the
+        largest contact is never dropped.
+    table_margin : float
+        So much of the table around an object takes part in the pair (object, table), metres.
+
+    Raises
+    ------
+    InputError
+        A length or cost that is not positive (`voxel` and `min_support` may be 0).
+    """
+
+    voxel: float = 0.003
+    near: float = 0.08
+    length: float = 0.06
+    cost: float = 10.0
+    wide_length: float = 0.12
+    wide_cost: float = 1.0
+    linkage: float = 0.025
+    min_support: float = 7.0
+    table_margin: float = 0.04
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if not (value > 0 or (value == 0 and name in ("voxel", "min_support"))):
+                raise InputError(f"{name} must be above 0, got {value!r}")
+
+    @property
+    def scales(self) -> tuple[tuple[float, float], ...]:
+        """(length, cost) of each separator, the one of the contact points first."""
+        return (self.length, self.cost), (self.wide_length, self.wide_cost)

@@ -1,0 +1,139 @@
+"""`Interface`: where two near objects of a scene bear on each other, and how; `interfaces` finds all of a scene.
+
+Thesis: §2.3.4 for a pair, §2.3.6 for a scene. A literal reading (hard margin, every contact of at least 7 support
+vectors) loses most contacts of a real depth camera; here a soft margin gives the contacts, and each separator also
+gives one *dipole*: the α-weighted centroids of all support vectors on either side, which always exist.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.contact_point import ContactPoint
+from lifelore.perception.contact_points import contact_clusters, contact_edges, contact_point
+from lifelore.perception.contact_settings import ContactSettings
+from lifelore.perception.near_pairs import NearPair, near_pairs, split_objects
+from lifelore.perception.separator import Separator, separate
+from lifelore.perception.voxel import voxelised
+
+STANDARD_VOXEL = 0.003
+"""Spacing (metres) at which `ContactSettings.cost` and `min_support` are stated."""
+DEFAULT = ContactSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Dipole:
+    """A separator in brief: where its support vectors lie on either side, and which way it faces.
+
+    Parameters
+    ----------
+    length : float
+        Kernel length of the separator, metres.
+    first, second : (3,) float64
+        α-weighted centroids of the support vectors of a and of b, metres.
+    normal : (3,) float64
+        Unit gradient at the mid-point, out of b into a; zeros where the separator is flat.
+    """
+
+    length: float
+    first: NDArray[np.float64]
+    second: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """Everything that a near pair of objects shows of how they bear on each other.
+
+    Parameters
+    ----------
+    a, b : int
+        Objects, a < b; or an object and `TABLE`.
+    gap : float
+        Smallest visible distance, metres.
+    contacts_a, contacts_b : tuple of ContactPoint
+        Strongest first, at least one each.
+    contact_edges : (m, 2) int64
+        Row (i, j): ``contacts_a[i]`` faces ``contacts_b[j]``.
+    dipoles : tuple of Dipole
+        One of each scale in `ContactSettings.scales`; with the table of the first alone.
+    pair : NearPair, optional
+        The two objects' points; `pair_features` needs them.
+    """
+
+    a: int
+    b: int
+    gap: float
+    contacts_a: tuple[ContactPoint, ...]
+    contacts_b: tuple[ContactPoint, ...]
+    contact_edges: NDArray[np.int64]
+    dipoles: tuple[Dipole, ...] = ()
+    pair: NearPair | None = field(default=None, repr=False)
+
+
+def interfaces(cloud: LabelledCloud, settings: ContactSettings = DEFAULT) -> tuple[Interface, ...]:
+    """The interfaces of all near pairs: objects in ascending order, then each object with the table.
+
+    Deterministic: the same points give the same bits.
+    """
+    if settings.voxel and len(cloud.points):
+        cloud = voxelised(cloud, settings.voxel).cloud
+    pairs = near_pairs(split_objects(cloud), settings.near, settings.table_margin)
+    return tuple(interface(pair, settings) for pair in pairs)
+
+
+def interface(pair: NearPair, settings: ContactSettings = DEFAULT) -> Interface:
+    """One near pair's contacts and dipoles."""
+    # What stands on a table is judged by heights: the narrow separator gives its contacts, the wide one nothing.
+    scales = settings.scales[:1] if pair.second.label == TABLE else settings.scales
+    found = [_separator(pair, length, cost) for length, cost in scales]
+    scale = (STANDARD_VOXEL / settings.voxel) ** 2 if settings.voxel else 1.0
+    sides = list(_contacts(pair, found[0], settings, settings.min_support * scale))
+    points_a, points_b = ([cluster for cluster, _ in side] for side in sides)
+    return Interface(
+        a=pair.first.label,
+        b=pair.second.label,
+        gap=pair.gap,
+        contacts_a=tuple(contact for _, contact in sides[0]),
+        contacts_b=tuple(contact for _, contact in sides[1]),
+        contact_edges=contact_edges(points_a, points_b),
+        dipoles=tuple(_dipole(pair, one, length) for one, (length, _) in zip(found, scales, strict=True)),
+        pair=pair,
+    )
+
+
+def _separator(pair: NearPair, length: float, cost: float) -> Separator:
+    return separate(pair.first.points, pair.second.points, length=length, cost=cost)
+
+
+def _contacts(pair: NearPair, found: Separator, settings: ContactSettings, min_support: float):
+    """(support vectors, contact point) of each contact, on either side."""
+    sides = (
+        (pair.first.points[found.support_first], found.alpha_first, 1.0, pair.second.label),
+        (pair.second.points[found.support_second], found.alpha_second, -1.0, pair.first.label),
+    )
+    for points, alpha, sign, other in sides:
+        clusters = contact_clusters(points, alpha, settings.linkage, min_support)
+        places = np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters])
+        normals = sign * _unit(found.gradient(places))
+        yield [
+            (points[rows], contact_point(points[rows], alpha[rows], normal, other))
+            for rows, normal in zip(clusters, normals, strict=True)
+        ]
+
+
+def _dipole(pair: NearPair, found: Separator, length: float) -> Dipole:
+    ours = pair.first.points[found.support_first]
+    theirs = pair.second.points[found.support_second]
+    first = found.alpha_first @ ours / found.alpha_first.sum()
+    second = found.alpha_second @ theirs / found.alpha_second.sum()
+    normal = _unit(found.gradient((first + second)[None] / 2))[0]
+    return Dipole(length, first, second, normal)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each row at length 1; rows of zeros stay."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(length > 0, length, 1.0)

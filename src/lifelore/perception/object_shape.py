@@ -1,0 +1,80 @@
+"""`ObjectShape`: foot, top and outline of an object's visible points, robust to stray ones."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+N_DIRECTIONS = 16
+SAMPLE = 300
+"""Points of an object that shares are measured on: a share is then good to about 0.03."""
+STRAY = 0.01
+"""This share of the points is let stick out at each end."""
+LOW_BAND = 0.02
+"""Metres above the foot within which a point counts as low."""
+
+_angle = 2 * np.pi * np.arange(N_DIRECTIONS) / N_DIRECTIONS
+DIRECTIONS = np.stack([np.cos(_angle), np.sin(_angle)])
+"""Horizontal unit vectors all round, ``(2, N_DIRECTIONS)``."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectShape:
+    """An object in brief, metres.
+
+    Parameters
+    ----------
+    foot, top : float
+        Heights below and above which a share `STRAY` of the points lies.
+    centre : (3,) float64
+        Middle of the box without stray points.
+    width : float
+        Greatest horizontal breadth.
+    outline : (N_DIRECTIONS,) float64
+        How far the object reaches along each of `DIRECTIONS`.
+    sample : (m, 3) float64
+        At most `SAMPLE` of its points, evenly taken.
+    """
+
+    foot: float
+    top: float
+    centre: NDArray[np.float64]
+    width: float
+    outline: NDArray[np.float64]
+    sample: NDArray[np.float64]
+
+    @property
+    def height(self) -> float:
+        """From foot to top, at least a millimetre."""
+        return max(self.top - self.foot, 1e-3)
+
+    def over(self, other: "ObjectShape") -> NDArray[np.bool_]:
+        """Which of the sample lie within the outline of `other` as seen from above, (m,)."""
+        return np.all(self.sample[:, :2] @ DIRECTIONS <= other.outline, axis=1)
+
+    @property
+    def low(self) -> NDArray[np.bool_]:
+        """Which of the sample lie within `LOW_BAND` of the foot, (m,)."""
+        return self.sample[:, 2] <= self.foot + LOW_BAND
+
+
+def shape_of(points: NDArray[np.float64]) -> ObjectShape:
+    """The shape of ``(n, 3)`` points, n ≥ 1."""
+    sample = points[:: -(-len(points) // SAMPLE)]
+    low, high = _quantiles(points, STRAY), _quantiles(points, 1 - STRAY)
+    reach = np.sort(points[:: -(-len(points) // (4 * SAMPLE)), :2] @ DIRECTIONS, axis=0)
+    outline = reach[-1 - int(STRAY * len(reach))]
+    half = N_DIRECTIONS // 2
+    return ObjectShape(
+        foot=float(low[2]),
+        top=float(high[2]),
+        centre=(low + high) / 2,
+        width=float((outline[:half] + outline[half:]).max()),
+        outline=outline,
+        sample=sample,
+    )
+
+
+def _quantiles(points: NDArray[np.float64], share: float) -> NDArray[np.float64]:
+    row = round(share * (len(points) - 1))
+    return np.partition(points, row, axis=0)[row]

@@ -1,0 +1,62 @@
+"""The rule many systems ship: boxes along the axes, what is above what, and nothing learnt."""
+
+from collections.abc import Sequence
+from typing import Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
+from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.peers.peer import Peer, SeenPair
+from lifelore.perception.relation import Relation
+
+TOLERANCE = 0.02
+"""Metres by which a thing may start under the top of what carries it, or over the table."""
+OVERLAP = 0.15
+"""Share of the smaller ground plan that has to lie in the other for one thing to be over the other."""
+
+
+def boxes(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Bottom and top of either, metres, and the share of the smaller ground plan in common; shape ``(5,)``.
+
+    Heights from the 1st to the 99th percentile.
+    """
+    heights = [np.quantile(points[:, 2], [0.01, 0.99]) for points in (first, second)]
+    low = np.array([points[:, :2].min(axis=0) for points in (first, second)])
+    high = np.array([points[:, :2].max(axis=0) for points in (first, second)])
+    common = np.maximum(high.min(axis=0) - low.max(axis=0), 0).prod()
+    return np.array([*heights[0], *heights[1], common / max((high - low).prod(axis=1).min(), 1e-12)])
+
+
+class BoundingBoxRule(Peer):
+    """Relations read off axis-aligned boxes.
+
+    The boxes' ground plans overlap, and one starts no lower than `TOLERANCE` under the top of the other: on. They
+    overlap without that, and one hangs higher than `TOLERANCE` over the table: both. Otherwise adjacent up to
+    `ADJACENT_GAP`, else none. On the table: starts within `TOLERANCE` of it.
+    """
+
+    describe = staticmethod(boxes)
+
+    def fit_pairs(self, scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+        """Nothing is learnt."""
+        return self
+
+    def predict_pairs(self, scene: Sequence[SeenPair]) -> tuple[Relation, ...]:
+        """The relation of every near pair, each with confidence 1."""
+        return tuple(pair.relation(_name(pair), 1.0) for pair in scene)
+
+
+def _name(pair: SeenPair) -> str:
+    bottom, top, other_bottom, other_top, overlap = pair.rows[0].tolist()
+    if pair.with_table:
+        return ON if bottom <= TOLERANCE else NONE
+    if overlap >= OVERLAP:
+        if bottom >= other_top - TOLERANCE:
+            return ON
+        if other_bottom >= top - TOLERANCE:
+            return REVERSED + ON
+        if max(bottom, other_bottom) > TOLERANCE:
+            return BOTH if bottom > other_bottom else REVERSED + BOTH
+    return ADJACENT if pair.gap <= ADJACENT_GAP else NONE

@@ -1,0 +1,92 @@
+"""`PairClassifier`: a peer that learns with a scikit-learn estimator; mirrored rows, pairs with the table apart.
+
+Every labelled pair trains twice, once in either order, so that no method can learn which of the two a file names
+first. Asked about a pair, the estimator judges both orders, and the sum of what they say decides.
+"""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.relations import SYMMETRIC, PairLabel
+from lifelore.perception.directed_label import mirrored
+from lifelore.perception.peers.peer import Describe, Peer, SeenPair, labelled
+from lifelore.perception.relation import Relation
+
+
+class PairClassifier(Peer):
+    """Learns relations from descriptions of pairs.
+
+    Parameters
+    ----------
+    describe : callable
+    estimator : callable
+        Given the number of training rows, a fresh scikit-learn classifier with ``predict_proba`` or, failing
+        that, ``decision_function``.
+    """
+
+    def __init__(self, describe: Describe, estimator: Callable[[int], Any]) -> None:
+        self.describe = describe
+        self._new_estimator = estimator
+        self._estimators: dict[bool, Any] = {}
+
+    def fit_pairs(self, scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+        """As `fit`, from scenes that were looked at before."""
+        rows: dict[bool, list[NDArray]] = {False: [], True: []}
+        names: dict[bool, list[str]] = {False: [], True: []}
+        for pair, name in labelled(scenes, truths):
+            rows[pair.with_table] += list(pair.rows)
+            names[pair.with_table] += [name, mirrored(name, SYMMETRIC)]
+        self._estimators = {kind: self._fitted(rows[kind], names[kind]) for kind in rows if rows[kind]}
+        return self
+
+    def predict_pairs(self, scene: Sequence[SeenPair]) -> tuple[Relation, ...]:
+        """As `predict`, from a scene that was looked at before."""
+        if not self._estimators:
+            raise InputError("a classifier must be fitted before it is asked; call fit first")
+        judged: dict[int, Relation] = {}
+        for kind, model in self._estimators.items():
+            places = [at for at, pair in enumerate(scene) if pair.with_table == kind]
+            if places:
+                shares = _shares(model, np.concatenate([scene[at].rows for at in places]))
+                for at, both in zip(places, shares.reshape(len(places), 2, -1), strict=True):
+                    judged[at] = _judged(scene[at], model.classes_.tolist(), both)
+        return tuple(judged[at] for at in sorted(judged))
+
+    def _fitted(self, rows: list[NDArray], names: list[str]) -> Any:
+        from sklearn.dummy import DummyClassifier
+
+        model = self._new_estimator(len(rows)) if len(set(names)) > 1 else DummyClassifier()
+        return model.fit(np.array(rows), np.array(names))
+
+
+def _judged(pair: SeenPair, classes: list[str], both: NDArray[np.float64]) -> Relation:
+    """The class with the largest share, the shares of the turned pair turned back."""
+    votes: dict[str, float] = {}
+    for name, forward, backward in zip(classes, *both, strict=True):
+        turned = mirrored(name, SYMMETRIC)
+        votes[name] = votes.get(name, 0.0) + forward / 2
+        votes[turned] = votes.get(turned, 0.0) + backward / 2
+    best = max(sorted(votes), key=votes.__getitem__)
+    return pair.relation(best, float(votes[best]))
+
+
+def _shares(model: Any, rows: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What the model gives each class, ``(n, n_classes)``, rows sum to 1."""
+    if hasattr(model, "predict_proba"):
+        return model.predict_proba(rows)
+    margins = model.decision_function(rows)
+    if margins.ndim == 1:
+        margins = np.stack([-margins, margins], axis=1)
+    shares = np.exp(margins - margins.max(axis=1, keepdims=True))
+    return shares / shares.sum(axis=1, keepdims=True)
+
+
+def neighbours(n_rows: int) -> Any:
+    """The thesis's k-nearest neighbours, k = 4, weighted by inverse distance so that votes seldom tie (§2.3.5)."""
+    from sklearn.neighbors import KNeighborsClassifier
+
+    return KNeighborsClassifier(min(4, n_rows), weights="distance")

@@ -1,0 +1,134 @@
+"""`Scene`: one object with every layer of a scene, from the points up to what bears on what.
+
+The layers of thesis Fig. 2.8: the cloud; the contact point networks, one an object, merged over all the pairs it
+takes part in (§2.3.6), with the contact edges between them; the relations. What is computed from these (holes,
+facts, planning problems, …) lives in files of its own and takes a `Scene`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import NONE
+from lifelore.perception.contact_network import ContactPointNetwork
+from lifelore.perception.contact_point import ContactPoint
+from lifelore.perception.interface import Interface
+from lifelore.perception.relation import Relation
+
+TABLE_NAME = "table"
+
+
+@dataclass(frozen=True)
+class ContactEdge:
+    """Node `node_a` of object `a`'s network faces node `node_b` of `b`'s, `length` metres away.
+
+    The dashed lines of thesis Fig. 2.2. Node numbers are those of the merged networks.
+    """
+
+    a: int
+    node_a: int
+    b: int
+    node_b: int
+    length: float
+
+
+@dataclass(frozen=True, eq=False)
+class Scene:
+    """A scene in layers (thesis §2.5, Fig. 2.8).
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+        The lowest layer; its objects are the scene's objects.
+    interfaces : tuple of Interface
+        Where the objects, and the table, come near each other, pair by pair; each pair at most once.
+    relations : tuple of Relation
+        The predicates; see `scene_logic.most_likely_scene` for making them consistent.
+
+    Raises
+    ------
+    InputError
+        An interface or a relation names an object that has no points, or a pair has two interfaces.
+    """
+
+    cloud: LabelledCloud
+    interfaces: tuple[Interface, ...] = ()
+    relations: tuple[Relation, ...] = ()
+
+    def __post_init__(self) -> None:
+        known = {*self.objects, TABLE}
+        for what, parts in (("interface", self.interfaces), ("relation", self.relations)):
+            for part in parts:
+                if not {part.a, part.b} <= known:
+                    raise InputError(
+                        f"{what} ({part.a}, {part.b}) must join objects that have points: {sorted(known)}"
+                    )
+        pairs = [frozenset((part.a, part.b)) for part in self.interfaces]
+        if len(set(pairs)) < len(pairs):
+            raise InputError("interfaces must name each pair once; merge the contacts of a pair before")
+
+    @cached_property
+    def objects(self) -> tuple[int, ...]:
+        """Numbers of the objects, ascending; the table is not among them."""
+        return self.cloud.objects
+
+    @cached_property
+    def _sides(self) -> tuple[tuple[int, tuple[ContactPoint, ...], int], ...]:
+        """For each interface its two sides in turn: (object, contacts, number of its first node)."""
+        filled: dict[int, int] = {}
+        sides = []
+        for interface in self.interfaces:
+            for label, contacts in ((interface.a, interface.contacts_a), (interface.b, interface.contacts_b)):
+                sides.append((label, tuple(contacts), filled.get(label, 0)))
+                filled[label] = filled.get(label, 0) + len(contacts)
+        return tuple(sides)
+
+    @cached_property
+    def networks(self) -> dict[int, ContactPointNetwork]:
+        """The merged network of every object (thesis §2.3.6), of the table too where it has contacts.
+
+        Nodes stand in the order of the interfaces; an object that touches nothing has an empty network.
+        """
+        nodes: dict[int, list[ContactPoint]] = {label: [] for label in self.objects}
+        for label, contacts, _ in self._sides:
+            nodes.setdefault(label, []).extend(contacts)
+        return {label: ContactPointNetwork.from_contacts(label, nodes[label]) for label in sorted(nodes)}
+
+    @cached_property
+    def contact_edges(self) -> tuple[ContactEdge, ...]:
+        """Which node faces which, over all pairs, in the order of the interfaces."""
+        edges = []
+        for number, interface in enumerate(self.interfaces):
+            (a, contacts_a, first_a), (b, contacts_b, first_b) = self._sides[2 * number : 2 * number + 2]
+            for i, j in np.asarray(interface.contact_edges, np.int64).reshape(-1, 2).tolist():
+                apart = float(np.linalg.norm(contacts_a[i].position - contacts_b[j].position))
+                edges.append(ContactEdge(a, first_a + i, b, first_b + j, apart))
+        return tuple(edges)
+
+    @cached_property
+    def bearing(self) -> "Scene":
+        """The same scene without the interfaces of pairs that are near, but related by *none*.
+
+        Separators find facing points between strangers too, up to `ContactSettings.near` apart; in this scene's
+        networks they have no nodes. Pairs without a relation stay.
+        """
+        strangers = {frozenset((r.a, r.b)) for r in self.relations if r.relation == NONE}
+        near = tuple(part for part in self.interfaces if frozenset((part.a, part.b)) not in strangers)
+        return Scene(self.cloud, near, self.relations)
+
+    def position(self, label: int, node: int) -> NDArray[np.float64]:
+        """Where a node of an object's network is, shape ``(3,)``, metres."""
+        return self.networks[label].nodes[node].position
+
+    def relation_of(self, a: int, b: int) -> Relation | None:
+        """The first relation that joins the two, whatever its direction; None where none is known."""
+        return next((r for r in self.relations if {r.a, r.b} == {a, b}), None)
+
+
+def object_name(label: int) -> str:
+    """What an object is called where names are wanted: ``table``, or its number."""
+    return TABLE_NAME if label == TABLE else str(label)

@@ -1,0 +1,16 @@
+"""Every fact of a scene in one list: relations, compound and geometric ones, and the region calculus."""
+
+from lifelore.core.relations import NONE
+from lifelore.perception.compound_relations import compound_relations
+from lifelore.perception.fact import Fact
+from lifelore.perception.geometric_relations import geometric_relations
+from lifelore.perception.region_calculus import region_relations
+from lifelore.perception.scene import Scene
+
+
+def scene_facts(scene: Scene) -> tuple[Fact, ...]:
+    """The facts of a scene, sorted by name and objects, each once; *none* is not a fact."""
+    stated = (Fact(r.relation, (r.a, r.b)) for r in scene.relations if r.relation != NONE)
+    derived = compound_relations(scene.relations, scene.objects)
+    regions = region_relations(scene.relations, scene.objects)
+    return tuple(sorted({*stated, *derived, *geometric_relations(scene), *regions}))

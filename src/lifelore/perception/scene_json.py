@@ -1,0 +1,113 @@
+"""A scene as JSON: the document that ``lifelore perceive --json`` prints.
+
+``{"objects": [{"id", "n_points", "centroid", "contact_points": [{"xyz", "normal", "extent", "strength", "other"}],
+"edges", "grasp_seeds": [{"kind", "xyz", "approach", "closing", "width"}]}], "relations": [{"a", "b", "relation",
+"confidence", "gap"}], "facts": ["clear(3)", …], "holes": [{"objects", "nodes", "xyz", "size", "opening",
+"centre", "outline"}], "contact_edges": [[[a, i], [b, j]]], "seconds"}``.
+
+Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
+``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a
+faces contact point j of b; a hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their
+places, ``outline`` the border of its opening. Numbers are finite: an unknown gap is null.
+"""
+
+import math
+from collections.abc import Iterable
+
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.perception.contact_point import ContactPoint
+from lifelore.perception.grasp_seeds import GraspSeed, grasp_seeds
+from lifelore.perception.holes import Hole, find_holes
+from lifelore.perception.relation import Relation
+from lifelore.perception.scene import TABLE_NAME, Scene
+from lifelore.perception.scene_facts import scene_facts
+
+DIGITS = 6
+"""Decimals of a metre: a micrometre, far below any sensor's noise."""
+
+
+def scene_document(scene: Scene, *, seconds: float | None = None) -> dict:
+    """The scene as plain data that ``json.dumps(…, allow_nan=False)`` takes.
+
+    Parameters
+    ----------
+    scene : Scene
+    seconds : float, optional
+        How long perception took; null where left out.
+    """
+    holes = find_holes(scene)
+    seeds = grasp_seeds(scene, holes)
+    return {
+        "objects": [_object(scene, label, seeds) for label in scene.objects],
+        "relations": [_relation(relation) for relation in scene.relations],
+        "facts": [str(fact) for fact in scene_facts(scene)],
+        "holes": [_hole(scene, hole) for hole in holes],
+        "contact_edges": [[[_name(e.a), e.node_a], [_name(e.b), e.node_b]] for e in scene.contact_edges],
+        "seconds": _number(seconds),
+    }
+
+
+def _object(scene: Scene, label: int, seeds: Iterable[GraspSeed]) -> dict:
+    points, network = scene.cloud.of(label), scene.networks[label]
+    return {
+        "id": _name(label),
+        "n_points": len(points),
+        "centroid": _numbers(points.mean(axis=0)),
+        "contact_points": [_contact(node) for node in network.nodes],
+        "edges": network.edges.tolist(),
+        "grasp_seeds": [_seed(seed) for seed in seeds if seed.object_id == label],
+    }
+
+
+def _contact(node: ContactPoint) -> dict:
+    return {
+        "xyz": _numbers(node.position),
+        "normal": _numbers(node.normal),
+        "extent": _numbers(node.extent),
+        "strength": _number(node.strength),
+        "other": _name(node.other),
+    }
+
+
+def _seed(seed: GraspSeed) -> dict:
+    return {
+        "kind": seed.kind,
+        "xyz": _numbers(seed.position),
+        "approach": _numbers(seed.approach),
+        "closing": _numbers(seed.closing),
+        "width": _number(seed.width),
+    }
+
+
+def _relation(relation: Relation) -> dict:
+    return {
+        "a": _name(relation.a),
+        "b": _name(relation.b),
+        "relation": relation.relation,
+        "confidence": _number(relation.confidence),
+        "gap": _number(relation.gap),
+    }
+
+
+def _hole(scene: Scene, hole: Hole) -> dict:
+    return {
+        "objects": [_name(label) for label in hole.objects],
+        "nodes": [[_name(label), number] for label, number in hole.nodes],
+        "xyz": [_numbers(scene.position(label, number)) for label, number in hole.nodes],
+        "size": _number(hole.size),
+        "opening": _number(hole.opening),
+        "centre": _numbers(hole.centre),
+        "outline": [_numbers(place) for place in hole.outline],
+    }
+
+
+def _name(label: int) -> int | str:
+    return TABLE_NAME if label == TABLE else int(label)
+
+
+def _number(value: float | None) -> float | None:
+    return round(float(value), DIGITS) if value is not None and math.isfinite(value) else None
+
+
+def _numbers(values: Iterable[float]) -> list[float | None]:
+    return [_number(value) for value in values]

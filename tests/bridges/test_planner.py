@@ -1,0 +1,140 @@
+"""A real planner on PDDL of real scenes; every plan is replayed by a simulator of ours."""
+
+import csv
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+from lifelore.bridges.planner import Step, solve
+from lifelore.core.errors import InputError, MissingExtraError
+from lifelore.perception.planning_problem import DOMAIN, planning_problem
+from lifelore.perception.relation import Relation
+from lifelore.perception.scene_logic import contradictions
+
+pytestmark = pytest.mark.planning
+
+TRUTH = Path(os.environ.get("LIFELORE_DATA", "nowhere")) / "osd" / "relations.csv"
+PILE = [Relation(a, b, "on", 1.0, 0.0) for a, b in ((2, 1), (3, 2), (4, 3), (5, 1))]
+
+
+def replay(plan, relations, things):
+    """On, on-table and holding after the plan; an assertion fails where a step may not be taken."""
+    on = {(f"o{r.a}", f"o{r.b}") for r in relations if r.relation in ("on", "both") and r.b != 1}
+    table = {f"o{r.a}" for r in relations if r.relation in ("on", "both") and r.b == 1}
+    beside = {
+        frozenset((f"o{r.a}", f"o{r.b}")) for r in relations if r.relation in ("adjacent", "both") and r.b != 1
+    }
+    held = None
+    for step in plan:
+        a, *rest = step.arguments
+        if step.action == "pick-up":
+            assert held is None
+            assert not any(below == a for _, below in on)
+            on, table, held = {pair for pair in on if pair[0] != a}, table - {a}, a
+            beside = {pair for pair in beside if a not in pair}
+            continue
+        assert held == a
+        held = None
+        if step.action == "put-on":
+            assert rest[0] != a
+            assert not any(below == rest[0] for _, below in on)
+            on.add((a, rest[0]))
+        else:
+            table.add(a)
+            if step.action == "put-beside":
+                assert rest[0] in table
+                beside.add(frozenset((a, rest[0])))
+    return on, table, held, beside
+
+
+def real_scene(name):
+    with TRUTH.open() as file:
+        rows = [row for row in csv.DictReader(file) if row["scene"] == name]
+    return [Relation(int(r["a"]), int(r["b"]), r["relation"], int(r["confidence"]) / 3, 0.0) for r in rows]
+
+
+def scenes_with_piles():
+    """Real scenes in which something rests on an object, by the hand-made truth; none without the data."""
+    if not TRUTH.exists():
+        return []
+    with TRUTH.open() as file:
+        carried = {r["scene"] for r in csv.DictReader(file) if r["relation"] in ("on", "both") and r["b"] != "1"}
+    return sorted(carried)
+
+
+def test_a_pile_is_turned_over():
+    plan = solve(DOMAIN, planning_problem(PILE, goal="(and (on o2 o3) (on o3 o4))"))
+    on, table, held, _ = replay(plan, PILE, range(2, 6))
+    assert on == {("o2", "o3"), ("o3", "o4")}
+    assert {"o4", "o5"} <= table
+    assert held is None
+    assert str(plan[0]) == "(pick-up o4)"
+
+
+def test_an_object_between_two_is_clear_only_when_both_are_gone():
+    rows = [Relation(a, b, "on", 1.0, 0.0) for a, b in ((2, 1), (3, 2), (4, 2))]
+    plan = solve(DOMAIN, planning_problem(rows, goal="(holding o2)"))
+    *_, held, _ = replay(plan, rows, range(2, 5))
+    assert held == "o2"
+    assert len(plan) == 5
+
+
+def test_a_goal_that_cannot_be_has_no_plan():
+    assert solve(DOMAIN, planning_problem(PILE, goal="(and (on o2 o3) (on o3 o2))")) is None
+
+
+def test_beside_is_reached_and_left():
+    rows = [*PILE, Relation(2, 5, "adjacent", 1.0, 0.0)]
+    plan = solve(DOMAIN, planning_problem(rows, goal="(and (adjacent o4 o5) (not (adjacent o2 o5)))"))
+    *_, beside = replay(plan, rows, range(2, 6))
+    assert frozenset(("o4", "o5")) in beside
+    assert frozenset(("o2", "o5")) not in beside
+
+
+@pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")
+@pytest.mark.parametrize("name", ["learn21", "test47", "test53"])
+def test_a_real_scene_is_planned_in(name):
+    """An object that lies on top and the one below it change places."""
+    relations = real_scene(name)
+    assert contradictions(relations) == ()
+    things = sorted({x for r in relations for x in (r.a, r.b)} - {1})
+    on = {r.a: r.b for r in relations if r.relation == "on" and r.b != 1}
+    top = next(thing for thing in things if thing in on and thing not in on.values())
+    bottom = on[top]
+    goal = f"(and (on o{bottom} o{top}) (clear o{bottom}))"
+    plan = solve(DOMAIN, planning_problem(relations, goal=goal))
+    after, *_ = replay(plan, relations, things)
+    assert (f"o{bottom}", f"o{top}") in after
+    assert not any(below == f"o{bottom}" for _, below in after)
+
+
+@pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")
+def test_the_truth_of_every_real_scene_is_consistent():
+    assert scenes_with_piles()
+    for name in scenes_with_piles():
+        assert contradictions(real_scene(name)) == (), name
+
+
+@pytest.mark.parametrize(
+    ("domain", "problem"), [("(define", ""), (DOMAIN, "(define (problem x) (:domain nowhere"), ("", "")]
+)
+def test_what_is_no_pddl_is_refused(domain, problem):
+    with pytest.raises(InputError, match="PDDL"):
+        solve(domain, problem)
+
+
+def test_without_the_library_the_extra_is_named(monkeypatch):
+    monkeypatch.setitem(sys.modules, "unified_planning", None)
+    with pytest.raises(MissingExtraError, match=r"lifelore\[planning\]"):
+        solve(DOMAIN, planning_problem(PILE))
+
+
+def test_a_step_is_written_as_in_pddl():
+    assert str(Step("put-on-table", ("o2",))) == "(put-on-table o2)"
+
+
+def test_timeout_must_be_a_time():
+    with pytest.raises(InputError, match="timeout"):
+        solve(DOMAIN, planning_problem(PILE), timeout=0)
