@@ -39,3 +39,12 @@ def test_the_key_changes_with_the_code_it_rests_on(copy, changed, matters):
     with (copy / changed).open("a", encoding="utf-8") as file:
         file.write("# changed\n")
     assert (fresh("lifelore.experiments.lattice_grid") != before) is matters
+
+
+@pytest.mark.parametrize(("name", "matters"), [("lattice_grid", False), ("skeleton_pairs", True)])
+def test_the_key_changes_with_the_trained_model_it_rests_on(copy, name, matters):
+    fresh = source_key.__wrapped__
+    before = fresh(f"lifelore.experiments.{name}")
+    with (copy / "perception" / "models" / "tabletop.npz").open("ab") as file:
+        file.write(b"more")
+    assert (fresh(f"lifelore.experiments.{name}") != before) is matters

@@ -1,0 +1,53 @@
+"""Average precision of a ranking with ties, and its mean over queries that come in clusters."""
+
+from collections.abc import Hashable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate, ratio_estimate
+
+
+def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
+    """Expected average precision where things of equal score are ordered by chance (McSherry and Najork 2008).
+
+    Parameters
+    ----------
+    scores : (n,) array
+        Higher comes first.
+    relevant : (n,) array of bool
+        At least one is true.
+
+    Returns
+    -------
+    float
+        In (0, 1]; the mean over the relevant of the precision at their place.
+
+    Raises
+    ------
+    InputError
+        Nothing is relevant.
+    """
+    scores, hit = np.asarray(scores, float), np.asarray(relevant, bool)
+    if not hit.any():
+        raise InputError("relevant must name at least one thing, got none")
+    total, before, found = 0.0, 0, 0
+    for score in np.unique(scores)[::-1]:
+        tied = scores == score
+        n, right = int(tied.sum()), int(hit[tied].sum())
+        if right:
+            # At a place of the group: the one there, those found before, and its share of those tied before it.
+            place = np.arange(n)
+            share = (right - 1) / (n - 1) if n > 1 else 0.0
+            total += right / n * float(((found + 1 + place * share) / (before + 1 + place)).sum())
+        before, found = before + n, found + right
+    return total / int(hit.sum())
+
+
+def mean_by_cluster(values: Sequence[float], clusters: Sequence[Hashable]) -> Estimate:
+    """Mean of values with an interval that resamples clusters; `n` counts clusters."""
+    order = {name: number for number, name in enumerate(dict.fromkeys(clusters))}
+    at = np.array([order[name] for name in clusters])
+    sums = np.bincount(at, np.asarray(values, float), len(order))
+    return ratio_estimate(sums, np.bincount(at, minlength=len(order)).astype(float))
