@@ -11,6 +11,7 @@ from lifelore.perception.contact_points import (
     contact_edges,
     contact_point,
     extent,
+    facing_clusters,
     linked,
 )
 
@@ -39,6 +40,20 @@ def test_small_clusters_go_but_the_strongest_stays():
     ]
     assert [len(rows) for rows in contact_clusters(points, alpha, 0.025, 100)] == [3]
     assert len(contact_clusters(points, alpha, 0.025, 1)) == 3
+
+
+def test_a_contact_cut_in_two_on_one_object_is_one_where_the_other_holds_it_together():
+    cut, whole, ones = np.vstack([strip(0.0, 5), strip(0.0, 5) + np.array([0, 0.1, 0])]), strip(0.01, 15), np.ones(15)
+    assert [len(rows) for rows in contact_clusters(cut, ones[:10], 0.025, 1)] == [5, 5]
+    assert [[len(rows) for rows in side] for side in facing_clusters(cut, ones[:10], whole, ones, 0.025, 1)] == [
+        [10],
+        [15],
+    ]
+    # Too far away to hold anything together, and with more in it than faces anything.
+    away = np.vstack([strip(0.03, 15), strip(0.3, 15)])
+    found = facing_clusters(cut, ones[:10], away, np.repeat([1.0, 2.0], 15), 0.025, 1)
+    assert [rows.tolist() for rows in found[0]] == [list(range(5)), list(range(5, 10))]
+    assert [rows.tolist() for rows in found[1]] == [list(range(15, 30)), list(range(15))]
 
 
 def test_a_contact_is_the_weighted_centroid_with_its_extent():

@@ -2,6 +2,8 @@
 
 Thesis: §2.3.4. Clusters are connected components under a length (single linkage), which keeps the same clusters
 when most points are thrown away; X-means and density clusterings cut one continuous strip of contact at random.
+The thesis clusters each object by itself; here the support vectors of both take part (`facing_clusters`), since a
+contact belongs to two: what hides a piece of it on one object leaves one contact where the other is seen whole.
 """
 
 import numpy as np
@@ -43,7 +45,7 @@ def linked(points: NDArray[np.float64], reach: float) -> NDArray[np.int64]:
 def contact_clusters(
     points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, min_support: float
 ) -> list[NDArray[np.int64]]:
-    """Rows of each contact's support vectors, strongest contact first.
+    """Rows of each contact's support vectors on one object by itself, strongest contact first (thesis §2.3.4).
 
     Parameters
     ----------
@@ -56,10 +58,40 @@ def contact_clusters(
     min_support : float
         Smaller clusters are left out, but the strongest of all is always kept.
     """
-    component = linked(np.ascontiguousarray(points), linkage)
+    return _strongest_first(linked(np.ascontiguousarray(points), linkage), alpha, min_support)
+
+
+def facing_clusters(
+    first: NDArray[np.float64],
+    alpha_first: NDArray[np.float64],
+    second: NDArray[np.float64],
+    alpha_second: NDArray[np.float64],
+    linkage: float,
+    min_support: float,
+) -> tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]]:
+    """As `contact_clusters` on either object, where links may lead through the other's support vectors.
+
+    Parameters
+    ----------
+    first, second : (k, 3), (m, 3) float64
+        Support vectors of the two objects, metres.
+    alpha_first, alpha_second : (k,), (m,) float64
+    linkage, min_support : float
+    """
+    component = linked(np.concatenate([first, second]), linkage)
+    return (
+        _strongest_first(component[: len(first)], alpha_first, min_support),
+        _strongest_first(component[len(first) :], alpha_second, min_support),
+    )
+
+
+def _strongest_first(
+    component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float
+) -> list[NDArray[np.int64]]:
+    """Rows of each component that has any, by strength; those of too few rows go, but never the strongest."""
     strength = np.bincount(component, weights=alpha)
     rows = [np.flatnonzero(component == number) for number in np.argsort(-strength, kind="stable")]
-    kept = [cluster for cluster in rows if len(cluster) >= min_support]
+    kept = [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
     return kept or rows[:1]
 
 

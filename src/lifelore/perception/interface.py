@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.contact_point import ContactPoint
-from lifelore.perception.contact_points import contact_clusters, contact_edges, contact_point
+from lifelore.perception.contact_points import contact_edges, contact_point, facing_clusters
 from lifelore.perception.contact_settings import ContactSettings
 from lifelore.perception.near_pairs import NearPair, near_pairs, split_objects
 from lifelore.perception.separator import Separator, separate
@@ -114,8 +114,8 @@ def _contacts(pair: NearPair, found: Separator, settings: ContactSettings, min_s
         (pair.first.points[found.support_first], found.alpha_first, 1.0, pair.second.label),
         (pair.second.points[found.support_second], found.alpha_second, -1.0, pair.first.label),
     )
-    for points, alpha, sign, other in sides:
-        clusters = contact_clusters(points, alpha, settings.linkage, min_support)
+    both = facing_clusters(*sides[0][:2], *sides[1][:2], settings.linkage, min_support)
+    for (points, alpha, sign, other), clusters in zip(sides, both, strict=True):
         places = np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters])
         normals = sign * _unit(found.gradient(places))
         yield [
