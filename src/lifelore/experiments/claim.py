@@ -50,6 +50,9 @@ class Claim:
         Likely cause by condition, said where the condition is not met.
     check : callable, optional
         ``check(settings)`` raises `InputError` for overridden settings that cannot be run.
+    timed : bool
+        Whether it measures time, which no two runs share: measures whose names start with ``seconds`` may then
+        differ between runs of one seed; no other may.
     """
 
     id: str
@@ -64,6 +67,7 @@ class Claim:
     draw: Callable[[Mapping], "Figure"]
     causes: Mapping[str, str] = field(default_factory=dict)
     check: Callable[[Settings], None] | None = None
+    timed: bool = False
 
     def settings(self, mode: str, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """The settings of a mode, with some of them overridden.

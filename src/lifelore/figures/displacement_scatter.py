@@ -37,7 +37,7 @@ def draw_displacements(
     centres : mapping of relation to (right, up), optional
         A cluster's middle, marked by a cross.
     bands : mapping of relation to (low, high), optional
-        Heights between which a relation's displacements lie, shaded.
+        Heights between which a relation's displacements lie, shaded; either may be infinite.
     unit : str
     title : str
 
@@ -46,27 +46,77 @@ def draw_displacements(
     InputError
         Displacements and relations do not correspond.
     """
+    panel = {"displacements": displacements, "relations": relations, "centres": centres, "bands": bands}
+    return draw_displacement_panels({title: panel}, unit=unit)
+
+
+def draw_displacement_panels(panels: Mapping[str, Mapping], *, unit: str = "mm") -> "Figure":
+    """As `draw_displacements`, several sets of scenes or views of one, two in a row, each at its own scale.
+
+    Parameters
+    ----------
+    panels : mapping of title to mapping
+        Each ``{"displacements", "relations"}`` and, optional, ``"centres"``, ``"bands"`` and ``"reach"``: how far
+        from the origin is shown.
+    unit : str
+
+    Raises
+    ------
+    InputError
+        Displacements and relations of a panel do not correspond.
+    """
+    every_at = [_checked(panel["displacements"], panel["relations"]) for panel in panels.values()]
+    with house_style():
+        spans = [np.ptp(at, axis=0) if len(at) else np.ones(2) for at in every_at]
+        tallest = max(float(np.clip(high / max(wide, 1e-9), 0.35, 1.1)) for wide, high in spans)
+        columns = min(2, len(panels))
+        n_rows = -(-len(panels) // columns)
+        figure = new_figure(
+            6.4 if columns == 1 else 10.0, n_rows * (1.3 + (4.6 if columns == 1 else 3.2) * tallest)
+        )
+        every = figure.subplots(n_rows, columns, squeeze=False).ravel()
+        for axes in every[len(panels) :]:
+            axes.set_axis_off()
+        for axes, at, (title, panel) in zip(every, every_at, panels.items(), strict=False):
+            _panel(axes, at, panel)
+            axes.set(xlabel=f"to the right of b ({unit})", ylabel=f"above b ({unit})", title=title)
+    return figure
+
+
+def _checked(displacements: ArrayLike, relations: Sequence[str]) -> np.ndarray:
     at = np.asarray(displacements, float)
     if at.shape != (len(relations), 2):
         raise InputError(f"displacements must have shape ({len(relations)}, 2), one a relation, got {at.shape}")
+    return at
+
+
+def _panel(axes: "Axes", at: np.ndarray, panel: Mapping) -> None:
+    relations = panel["relations"]
     palette = relation_palette(relations)
-    names = [name for name in palette if name in set(relations)]
-    with house_style():
-        wide, high = np.ptp(at, axis=0) if len(at) else (1.0, 1.0)
-        figure = new_figure(6.4, 1.3 + 4.6 * float(np.clip(high / max(wide, 1e-9), 0.35, 1.1)))
-        axes = figure.subplots()
-        axes.axhline(0, color=LIGHT, lw=1, zorder=0)
-        axes.axvline(0, color=LIGHT, lw=1, zorder=0)
-        for name, (low, high) in (bands or {}).items():
-            axes.axhspan(low, high, color=mixed(palette[name], PAPER, 0.85), lw=0, zorder=-1)
-        for name in names:
+    axes.axhline(0, color=LIGHT, lw=1, zorder=0)
+    axes.axvline(0, color=LIGHT, lw=1, zorder=0)
+    for name in palette:
+        if name in set(relations):
             _scatter(axes, at[np.array(relations) == name], name, palette[name])
-        for name, centre in (centres or {}).items():
-            _cross(axes, centre, palette.get(name, INK))
-        axes.set(xlabel=f"to the right of b ({unit})", ylabel=f"above b ({unit})", title=title)
-        axes.set_aspect("equal", adjustable="datalim")
+    if panel.get("reach"):
+        axes.set(xlim=(-panel["reach"], panel["reach"]), ylim=(-panel["reach"], panel["reach"]))
+    for name, (low, high) in (panel.get("bands") or {}).items():
+        _band(axes, low, high, mixed(palette[name], PAPER, 0.85))
+    for name, centre in (panel.get("centres") or {}).items():
+        _cross(axes, centre, palette.get(name, INK))
+    axes.set_aspect("equal", adjustable="box" if panel.get("reach") else "datalim")
+    if not panel.get("reach"):
         axes.legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), handletextpad=0.2)
-    return figure
+
+
+def _band(axes: "Axes", low: float, high: float, colour: str) -> None:
+    seen = axes.get_ylim()
+    beyond = 10 * (seen[1] - seen[0])
+    axes.axhspan(max(low, seen[0] - beyond), min(high, seen[1] + beyond), color=colour, lw=0, zorder=-1)
+    # A band without an end reaches beyond the picture and does not widen it.
+    axes.set_ylim(
+        min(seen[0], low) if np.isfinite(low) else seen[0], max(seen[1], high) if np.isfinite(high) else seen[1]
+    )
 
 
 def _scatter(axes: "Axes", at: np.ndarray, name: str, colour: str) -> None:
@@ -82,8 +132,9 @@ def _scatter(axes: "Axes", at: np.ndarray, name: str, colour: str) -> None:
 def _cross(axes: "Axes", centre: tuple[float, float], colour: str) -> None:
     axes.plot(*centre, "+", ms=17, mew=5, color=PAPER, zorder=4)
     axes.plot(*centre, "+", ms=15, mew=2.2, color=mixed(colour, INK, 0.45), zorder=5)
+    right, up = (at + 0.0 for at in centre)  # no minus before a zero
     axes.annotate(
-        f"({centre[0]:.2g}, {centre[1]:.2g})", centre, (9, -3), textcoords="offset points", fontsize=7.5,
+        f"({right:.2g}, {up:.2g})", centre, (9, -3), textcoords="offset points", fontsize=7.5,
         va="top", color=INK, zorder=5,
         bbox={"facecolor": PAPER, "alpha": 0.75, "edgecolor": GREY, "lw": 0.4, "pad": 1.5},
     )  # fmt: skip
