@@ -11,6 +11,7 @@ from lifelore.figures.object_palette import method_palette, mixed, object_palett
 from lifelore.figures.robustness_curves import draw_robustness
 from lifelore.figures.scene_gallery import draw_gallery
 from lifelore.figures.separation_curve import draw_separation
+from lifelore.perception.peers import PEERS
 
 THESIS = [[64, 6, 13, 0], [2, 20, 5, 0], [4, 5, 12, 0], [0, 1, 0, 0]]
 LABELS = ["on", "adjacent", "both", "none"]
@@ -98,3 +99,5 @@ def test_colours_are_fixed_and_differ():
     palette = method_palette(["lifelore", "mine", "yours"])
     assert palette["lifelore"] == method_palette(["lifelore"])["lifelore"]
     assert len(set(palette.values())) == 3
+    everybody = [*PEERS, "thesis", "lifelore"]
+    assert len(set(method_palette(everybody).values())) == len(everybody)

@@ -43,7 +43,11 @@ def test_small_clusters_go_but_the_strongest_stays():
 
 
 def test_a_contact_cut_in_two_on_one_object_is_one_where_the_other_holds_it_together():
-    cut, whole, ones = np.vstack([strip(0.0, 5), strip(0.0, 5) + np.array([0, 0.1, 0])]), strip(0.01, 15), np.ones(15)
+    cut, whole, ones = (
+        np.vstack([strip(0.0, 5), strip(0.0, 5) + np.array([0, 0.1, 0])]),
+        strip(0.01, 15),
+        np.ones(15),
+    )
     assert [len(rows) for rows in contact_clusters(cut, ones[:10], 0.025, 1)] == [5, 5]
     assert [[len(rows) for rows in side] for side in facing_clusters(cut, ones[:10], whole, ones, 0.025, 1)] == [
         [10],

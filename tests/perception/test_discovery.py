@@ -106,5 +106,6 @@ def test_each_pair_stands_once_the_higher_first_and_never_with_the_table():
 def test_few_pairs_are_no_trouble_and_none_are_refused(method):
     one = [scene((2, 3, {"centre_rise": 0.1}))]
     assert method(one, np.random.default_rng(0)).labels.tolist() == [0]
+    assert method(one * 8, np.random.default_rng(0)).labels.tolist() == [0] * 8
     with pytest.raises(InputError, match="at least one pair"):
         method([scene((2, TABLE, {"centre_rise": 0.1}))], np.random.default_rng(0))

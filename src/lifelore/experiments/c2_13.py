@@ -45,8 +45,8 @@ SHOWN = {
     CONTACTS: "thesis",
     CENTRES: "centroid k-NN",
     OURS: "lifelore",
-    "closest_points": "closest point k-NN",
-    "bounding_boxes": "bounding boxes",
+    "closest_points": "closest-point k-NN",
+    "bounding_boxes": "bounding-box rule",
 }
 """Names in the figure."""
 TITLES = {"every contact": "every contact", "strong": f"contacts of at least {THRESHOLD} support vectors"}

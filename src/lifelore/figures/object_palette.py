@@ -15,11 +15,11 @@ _RELATIONS = {"on": BLUE, "adjacent": ORANGE, "both": GREEN, "none": GREY}
 _METHODS = {
     "lifelore": BLUE,
     "thesis": VERMILION,
-    "closest point k-NN": GREEN,
+    "closest-point k-NN": GREEN,
     "centroid k-NN": PURPLE,
-    "bounding boxes": ORANGE,
-    "Fichtl": SKY,
-    "Mees": YELLOW,
+    "bounding-box rule": ORANGE,
+    "orientation histogram": SKY,
+    "angle-distance histogram": YELLOW,
     "majority": GREY,
 }
 _OTHERS = (VERMILION, PURPLE, SKY, YELLOW, INK)

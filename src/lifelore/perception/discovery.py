@@ -80,6 +80,7 @@ def discover_by_displacement(
 def discover(features: Sequence[PairFeatures], rng: np.random.Generator, *, most: int = 10) -> Discovery:
     """The better discovery: a mixture of Gaussians; arguments and errors as in `discover_by_displacement`."""
     from sklearn.mixture import GaussianMixture
+    from threadpoolctl import threadpool_limits
 
     scenes, pairs, rows = upright_rows(features, LIKENESS)
     if len(rows) == 1:
@@ -89,10 +90,13 @@ def discover(features: Sequence[PairFeatures], rng: np.random.Generator, *, most
     spread = rows.std(axis=0)
     rows = (rows - rows.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
     seed = int(rng.integers(2**31))
-    models = [
-        GaussianMixture(parts, reg_covar=ROUGHNESS, n_init=STARTS, max_iter=500, random_state=seed).fit(rows)
-        for parts in range(1, min(most, max(1, len(rows) // 2)) + 1)
-    ]
+    # Duplicates are no ground for more parts than there are different rows; small matrices gain nothing by threads.
+    largest = min(most, max(1, len(rows) // 2), len(np.unique(rows, axis=0)))
+    with threadpool_limits(limits=1):
+        models = [
+            GaussianMixture(parts, reg_covar=ROUGHNESS, n_init=STARTS, max_iter=500, random_state=seed).fit(rows)
+            for parts in range(1, largest + 1)
+        ]
     best = min(models, key=lambda model: _completed_criterion(model, rows))
     return Discovery(_by_size(best.predict(rows)), scenes, pairs)
 
