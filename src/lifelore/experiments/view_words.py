@@ -12,8 +12,9 @@ Each word holds of a and b when
 - ``dwarfs``: they stand side by side and a reaches at least twice as high as b: a word that a user made up;
 - ``between`` (b; a, c): b stands side by side with both and near both; seen from above the way from a's place to
   c's crosses b's outline, and b sees them at least 120° apart;
-- ``in`` (a; b): half way up from a's lowest point to the lower of the two tops, b stands around a's place in at
-  least three quarters of the horizontal directions, and a's place is not within b itself.
+- ``in`` (a; b): a reaches at least 10 mm below b's top, so that no lid is in its pot; half way up from a's lowest
+  point to the lower of the two tops, b stands around a's place, and farther out than a itself, in at least three
+  quarters of the horizontal directions; and a's place is not within b itself.
 
 *Side by side*: their heights overlap by at least half of the lower thing's. Sectors of 60° to either side overlap,
 so that a thing may be ``behind`` and ``right_of`` at once, and every pair side by side has a word. Thesis: §2.4.1,
@@ -31,7 +32,7 @@ from lifelore.core.relations import NONE, PairLabel
 SECTOR = np.deg2rad(60.0)
 SHARED, BESIDE, TWICE = 0.25, 0.5, 2.0
 OPPOSITE = np.deg2rad(120.0)
-AROUND, SURROUNDED = 24, 0.75
+AROUND, SURROUNDED, DEPTH = 24, 0.75, 0.01
 VIEW_WORDS = ("left_of", "right_of", "in_front_of", "behind")
 USER_WORD = "dwarfs"
 WORDS = ("under", *VIEW_WORDS, USER_WORD)
@@ -107,21 +108,25 @@ def is_between(b: Points, a: Points, c: Points) -> bool:
 def is_in(a: Points, parts: Sequence[Points]) -> bool:
     """Whether a is in a thing made of convex `parts`, each points ``(n, 3)``."""
     low, top = a[:, 2].min(), min(a[:, 2].max(), max(part[:, 2].max() for part in parts))
-    if top <= low:
+    if top - low < DEPTH:
         return False
     start = np.array([_middle(a[:, 0]), _middle(a[:, 1]), (low + top) / 2])
     turns = 2 * np.pi * np.arange(AROUND) / AROUND
     rays = np.column_stack([np.cos(turns), np.sin(turns), np.zeros(AROUND)])
-    hit = np.zeros(AROUND, bool)
+    beyond = np.zeros(AROUND)
     for hull in (ConvexHull(part, qhull_options="QJ") for part in parts):
         if _within(hull, start[None])[0]:
             return False  # a place inside the material is no hollow: a cup is not in its ball
-        hit |= _hits(hull, start, rays)
-    return bool(hit.mean() >= SURROUNDED)
+        beyond = np.maximum(beyond, _exits(hull, start, rays))
+    reach = _exits(ConvexHull(a, qhull_options="QJ"), start, rays)
+    return bool(((beyond > 0) & (beyond >= reach)).mean() >= SURROUNDED)
 
 
-def _hits(hull: ConvexHull, start: Points, rays: Points) -> NDArray[np.bool_]:
-    """Which rays from `start` meet a convex body ahead: the stretch left when every face has cut it."""
+def _exits(hull: ConvexHull, start: Points, rays: Points) -> NDArray[np.float64]:
+    """How far along each ray from `start` it leaves a convex body, metres; 0 where it never meets it.
+
+    What a body has of a ray is the stretch left when every face has cut it.
+    """
     distance = hull.equations[:, :-1] @ start + hull.equations[:, -1]
     speed = rays @ hull.equations[:, :-1].T
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -129,7 +134,7 @@ def _hits(hull: ConvexHull, start: Points, rays: Points) -> NDArray[np.bool_]:
     near = np.where(speed < 0, at, 0.0).max(axis=1)
     far = np.where(speed > 0, at, np.inf).min(axis=1)
     passes_by = ((np.abs(speed) < 1e-12) & (distance > 0)).any(axis=1)
-    return (near <= far) & ~passes_by
+    return np.where((near <= far) & ~passes_by, far, 0.0)
 
 
 def _within(hull: ConvexHull, points: Points) -> NDArray[np.bool_]:

@@ -1,0 +1,193 @@
+"""C2.11: shares and means on rows made by hand; and what a separator of things far apart must have (errata)."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.c2_11 import CLAIM as C2_11
+from lifelore.experiments.c2_11 import (
+    curves_of,
+    gap_number,
+    measure,
+    nothing,
+    nothing_at_all,
+    rows,
+    something,
+    support,
+    table_of,
+)
+from lifelore.perception.contact_points import linked
+from lifelore.perception.interface import DEFAULT
+from lifelore.perception.separator import separate
+
+COUNTS = np.array(
+    [
+        # Support vectors and contacts of a and b, contacts of 7 of a and b, violation.
+        [8, 8, 8, 8, 0, 0, 0.0],
+        [20, 10, 2, 1, 1, 0, 0.0],
+        [14, 8, 2, 1, 2, 1, 0.0],
+        [3, 0, 1, 0, 0, 0, 0.0],
+    ]
+)
+SETTINGS = {"gaps": [0.1, 1.0], "sizes": [], "lengths": [0.06, 0.25], "costs": [10.0]}
+
+
+def test_pairs_are_told_apart_by_hand():
+    assert nothing(COUNTS) == [True, False, False, True]
+    assert something(COUNTS) == [False, False, True, False]
+    assert nothing_at_all(COUNTS) == [False, False, False, True]
+    assert support(COUNTS).tolist() == [8, 15, 11, 1.5]
+
+
+def pair(*found: tuple, size: float = 0.1) -> dict:
+    """A pair's row: by gap (as seen, 0.1 m, 1 m) and kernel (60 and 250 mm) what was counted."""
+    numbered = [[gap, kernel, *found[2 * gap + kernel]] for gap in range(3) for kernel in range(2)]
+    return {"relation": "on", "size": size, "gaps": [0.005, 0.1, 1.0], "found": numbered}
+
+
+BOTH_SIDES = (30, 10, 1, 1, 1, 1, 0.0)
+ONE_SIDE = (10, 6, 1, 1, 1, 0, 0.0)
+WEAK = (6, 4, 6, 4, 0, 0, 0.0)
+STRONG_UNFINISHED = (6, 4, 6, 4, 1, 0, 0.01)
+
+
+@pytest.fixture
+def results() -> list[dict]:
+    """Four pairs: under 60 mm contacts as seen of 3 and none far of 3; under 250 mm of 4 and of 1."""
+    # As seen, at 0.1 m and at 1 m; of each 60 mm, then 250 mm.
+    pairs = [
+        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, WEAK),
+        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, ONE_SIDE),
+        pair(BOTH_SIDES, BOTH_SIDES, WEAK, WEAK, WEAK, ONE_SIDE, size=0.2),
+        pair(ONE_SIDE, BOTH_SIDES, WEAK, WEAK, BOTH_SIDES, STRONG_UNFINISHED, size=0.2),
+    ]
+    return [{"kind": "simulated", "pairs": pairs[:3]}, {"kind": "simulated", "pairs": pairs[3:]}]
+
+
+def test_a_table_holds_every_pair_of_its_kind(results):
+    table = table_of(SETTINGS, [*results, {"kind": "real", "pairs": [pair(*[WEAK] * 6)]}], "simulated")
+    assert set(table) == {(gap, kernel) for gap in range(3) for kernel in range(2)}
+    assert table[0, 0].tolist() == [list(map(float, one)) for one in (BOTH_SIDES,) * 3 + (ONE_SIDE,)]
+    assert table_of(SETTINGS, results, "real") == {}
+
+
+def test_measures_by_hand(results):
+    found = measure(SETTINGS, results)
+    values = {name: one.value for name, one in found.items()}
+    assert values["no_contacts_far_standard_simulated"] == 3 / 4
+    assert values["contacts_as_seen_standard_simulated"] == 3 / 4
+    assert values["no_contacts_far_250 mm, C 10_simulated"] == 1 / 4
+    assert values["contacts_as_seen_250 mm, C 10_simulated"] == 1.0
+    # Means of a thing: weak 5 (three pairs), both sides 20; as seen 20 (three pairs), one side 8.
+    assert values["support_vectors_far_standard_simulated"] == pytest.approx((5 + 5 + 5 + 20) / 4)
+    assert values["far_over_seen_standard_simulated"] == pytest.approx((0.25 * 3 + 20 / 8) / 4)
+    # The best kernel is the one whose worse share is the better: 3/4 and 3/4 against 1 and 1/4.
+    assert values["contacts_as_seen_best_kernel_simulated"] == 3 / 4
+    assert values["no_contacts_far_best_kernel_simulated"] == 3 / 4
+    assert values["no_support_vectors_on_a_side_far_simulated"] == 0
+    # 4 pairs, 3 gaps, 2 kernels; one of the 24 separators is not optimal.
+    assert found["not_optimal_simulated"].value == 1 / 24
+    assert found["not_optimal_simulated"].n == 24
+    assert found["no_support_vectors_on_a_side_far_simulated"].n == 8
+    # 1 m is 10 sizes of two pairs and 5 of the others.
+    assert values["far_in_sizes_simulated"] == pytest.approx(7.5)
+    assert not any(name.endswith("real") for name in found)
+    interval = found["no_contacts_far_standard_simulated"].ci95
+    # Clopper and Pearson of 3 in 4, from tables.
+    assert interval == pytest.approx((0.1941, 0.9937), abs=1e-4)
+
+
+def test_gap_numbers_count_the_pair_as_seen_first():
+    assert [gap_number(SETTINGS, gap) for gap in (0.1, 1.0)] == [1, 2]
+
+
+def test_rows_and_curves_by_hand(results):
+    made = rows(SETTINGS, results)
+    assert len(made) == 6
+    first = made[0]
+    assert (first["kernel"], first["gap"], first["unit"], first["pairs"]) == ("60 mm, C 10", 0.005, "as seen", 4)
+    # Support as seen: 20, 20, 20, 8; its median 20, its lower quartile 8 + 3/4 of the way to 20.
+    assert first["support"] == [20, 17, 20]
+    assert first["none_of_7"] == 0
+    assert made[2]["none_of_7"] == 0.75
+    curves = curves_of(made, lambda kernel: kernel.startswith("60"))
+    assert list(curves) == ["60 mm, C 10"]
+    assert curves["60 mm, C 10"]["gap"] == [0.005, 0.1, 1.0]
+    assert curves["60 mm, C 10"]["support_vectors"][0] == [20, 17, 20]
+
+
+@pytest.mark.parametrize(
+    ("settings", "rule"),
+    [
+        ({"pairs": 0}, "pairs must be at least 1"),
+        ({"gaps": [0.1]}, "gaps must hold 1 m"),
+        ({"gaps": [1.0, -1.0]}, "gaps must be positive"),
+        ({"lengths": []}, "lengths must be positive"),
+        ({"camera": "none"}, "camera must be one of"),
+    ],
+)
+def test_settings_that_cannot_be_run(settings, rule):
+    with pytest.raises(InputError, match=rule):
+        C2_11.settings("quick", settings)
+
+
+# --- far apart there are support vectors all the same (errata) ---------------------------------------------
+
+
+def cube(side: float, *corner: float, step: float = 0.006) -> np.ndarray:
+    """The surface of a cube as points `step` apart."""
+    axis = np.arange(round(side / step) + 1) * step
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
+    return grid[((grid == axis[0]) | (grid == axis[-1])).any(axis=1)] + np.array(corner or (0, 0, 0))
+
+
+@pytest.mark.parametrize("distance", [0.05, 1.0, 10.0])
+def test_two_points_are_two_support_vectors_however_far_apart(distance):
+    found = separate([[0, 0, 0]], [[distance, 0, 0]], length=0.06, cost=1e4)
+    # Most of 2 α - α² (1 - k): α = 1 / (1 - k), k what the kernel says of the two, which is 0 from afar.
+    alpha = 1 / (1 - np.exp(-((distance / 0.06) ** 2) / 2))
+    assert found.alpha_first == pytest.approx([alpha], rel=1e-3)
+    assert found.alpha_second == pytest.approx([alpha], rel=1e-3)
+
+
+@pytest.mark.parametrize("apart", [1.0, 2.0])
+def test_far_apart_a_separator_describes_each_thing_by_its_own_corners(apart):
+    side = DEFAULT.length
+    found = separate(cube(side, 0, 0, side + apart), cube(side), length=side, cost=DEFAULT.cost, tolerance=1e-6)
+    corners = {tuple(map(float, corner)) for corner in np.ndindex(2, 2, 2)}
+    for points, alpha, foot in (
+        (found.points_first, found.alpha_first, side + apart),
+        (found.points_second, found.alpha_second, 0.0),
+    ):
+        places = np.round((points - [0, 0, foot]) / side, 6)
+        assert {tuple(place.tolist()) for place in places} == corners
+        # Eight alike: α times the sum of a corner's kernels with all of them, (1 + e^-1/2)³, is 1.
+        assert alpha == pytest.approx(np.full(8, (1 + np.exp(-0.5)) ** -3), abs=1e-5)
+        # Each is a contact of its own, of one support vector: the rule of 7 removes them, not the distance.
+        assert np.bincount(linked(np.ascontiguousarray(points), DEFAULT.linkage)).tolist() == [1] * 8
+
+
+@pytest.mark.parametrize("length", [0.03, 0.06, 0.12, 0.25, 1.0])
+@pytest.mark.parametrize("cost", [1.0, 1e4])
+def test_no_kernel_leaves_a_side_without_support_vectors(length, cost):
+    first, second = cube(0.06, 0, 0, 1.06), cube(0.06)
+    found = separate(first, second, length=length, cost=cost)
+    assert found.max_violation <= 1e-3
+    assert min(len(found.alpha_first), len(found.alpha_second)) > 0
+    # The multipliers of both sides have one sum, and it is not zero.
+    assert found.alpha_first.sum() == pytest.approx(found.alpha_second.sum())
+    assert found.alpha_first.sum() > 0.5
+    # They are what separates: every point lies on its side.
+    assert (found.decision(first) > 0).all()
+    assert (found.decision(second) < 0).all()
+
+
+def test_a_long_kernel_takes_few_points_far_apart_and_hundreds_near():
+    def strongest(gap: float) -> tuple[int, int]:
+        found = separate(cube(0.06, 0, 0, 0.06 + gap, step=0.003), cube(0.06, step=0.003), length=0.25, cost=10.0)
+        sizes = [np.bincount(linked(side, DEFAULT.linkage)) for side in (found.points_first, found.points_second)]
+        return max(map(len, (found.points_first, found.points_second))), int(max(map(max, sizes)))
+
+    near, far = strongest(0.006), strongest(1.0)
+    assert near[1] >= 7 > far[1] >= 1
+    assert 1 <= far[0] <= 8 < near[0]
