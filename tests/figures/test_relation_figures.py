@@ -99,5 +99,6 @@ def test_colours_are_fixed_and_differ():
     palette = method_palette(["lifelore", "mine", "yours"])
     assert palette["lifelore"] == method_palette(["lifelore"])["lifelore"]
     assert len(set(palette.values())) == 3
+    assert method_palette(["thesis", "mine"])["mine"] != method_palette(["thesis"])["thesis"]
     everybody = [*PEERS, "thesis", "lifelore"]
     assert len(set(method_palette(everybody).values())) == len(everybody)

@@ -52,8 +52,8 @@ QUICK = {**FULL, "scenes": 3, "lessons": 6, "levels": {DISCARDED: [0.3, 0.5, 0.7
 PANELS = {
     DISCARDED: ("points discarded", "points discarded (%)", 100),
     NOISE: ("depth noise added", "standard deviation (mm)", 1000),
-    BORDER: ("labels swapped within 5 mm", "points of the border (%)", 100),
-    MASKS: ("masks grown over others", "width (mm)", 1000),
+    BORDER: ("labels swapped", "of points within 5 mm (%)", 100),
+    MASKS: ("masks grown", "over others by (mm)", 1000),
 }
 """Of each way a title, the name of its axis and the factor from its levels to that axis."""
 Answers = dict[str, dict[str, dict[str, list[JudgedPair]]]]

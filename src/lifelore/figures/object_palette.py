@@ -1,6 +1,7 @@
 """Colours of objects, relations and methods, told apart by people with any common colour blindness."""
 
 from collections.abc import Iterable
+from itertools import cycle
 
 import numpy as np
 from numpy.typing import NDArray
@@ -42,7 +43,9 @@ def relation_palette(relations: Iterable[str]) -> dict[str, str]:
 
 def method_palette(methods: Iterable[str]) -> dict[str, str]:
     """A colour for each way of telling relations: fixed for those we know, in the order given for others."""
-    free = iter(_OTHERS * 9)
+    methods = list(methods)
+    taken = {_METHODS[name] for name in methods if name in _METHODS}
+    free = cycle([colour for colour in _OTHERS if colour not in taken] or _OTHERS)
     return {name: _METHODS.get(name) or next(free) for name in methods}
 
 
