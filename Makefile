@@ -46,7 +46,7 @@ format: setup-test ## Mend formatting and what lint can mend
 bench: setup-test ## Speed beside peers, side by side in one process
 	$(BIN)/lifelore bench kernels
 
-soak: setup-test ## Long runs: 200 kills
+soak: setup-test ## Long runs: 200 kills, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
 docs: setup-test ## docs/reproduction.md from the committed results

@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from lifelore.agent.foreign_life import live_in as live_in
     from lifelore.agent.life import live as live
     from lifelore.agent.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.perceive import PerceiveSettings as PerceiveSettings
+    from lifelore.agent.perceive import perceive as perceive
     from lifelore.bridges.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.core.errors import LifeloreError as LifeloreError
+    from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
     from lifelore.core.mdp import Domain as Domain
     from lifelore.core.mdp import Tables as Tables
     from lifelore.core.mdp import Task as Task
@@ -24,9 +27,15 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import SignalModel as SignalModel
     from lifelore.core.protocols import World as World
     from lifelore.core.q_learner import QLearning as QLearning
+    from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.worlds import make_world as make_world
     from lifelore.memory import Memory as Memory
     from lifelore.memory import open_memory as open_memory
+    from lifelore.perception.cloud_file import read_cloud as read_cloud
+    from lifelore.perception.perceived_scene import perceived_scene as perceived_scene
+    from lifelore.perception.relation_classifier import RelationClassifier as RelationClassifier
+    from lifelore.perception.scene import Scene as Scene
+    from lifelore.perception.table_frame import to_scene as to_scene
 
 __version__ = "0.1.0"
 
@@ -34,12 +43,17 @@ _HOME = {
     "ActionPrior": "lifelore.action.action_prior",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
+    "LabelledCloud": "lifelore.core.labelled_cloud",
     "LifeSettings": "lifelore.agent.life_settings",
     "LifeloreError": "lifelore.core.errors",
     "Memory": "lifelore.memory",
+    "PairLabel": "lifelore.core.relations",
+    "PerceiveSettings": "lifelore.agent.perceive",
     "Policy": "lifelore.core.protocols",
     "QLearning": "lifelore.core.q_learner",
     "Record": "lifelore.core.protocols",
+    "RelationClassifier": "lifelore.perception.relation_classifier",
+    "Scene": "lifelore.perception.scene",
     "SignalModel": "lifelore.core.protocols",
     "Tables": "lifelore.core.mdp",
     "Task": "lifelore.core.mdp",
@@ -48,6 +62,10 @@ _HOME = {
     "live_in": "lifelore.agent.foreign_life",
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
+    "perceive": "lifelore.agent.perceive",
+    "perceived_scene": "lifelore.perception.perceived_scene",
+    "read_cloud": "lifelore.perception.cloud_file",
+    "to_scene": "lifelore.perception.table_frame",
 }
 
 __all__ = ["__version__", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

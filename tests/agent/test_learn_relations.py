@@ -1,5 +1,7 @@
 """The verb from a folder of clouds to a model in memory and in a file."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -84,9 +86,56 @@ def test_a_truth_that_does_not_fit_the_clouds_is_refused(folder, row, said):
         learn_relations(RelationLesson(str(folder), str(folder / "wrong.csv")), str(folder / "m.db"))
 
 
+def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
+    away = cloud((0.25, 0, 0))
+    np.savez(folder / "away.npz", points=away.points, labels=away.labels)
+    more = "away,2,3,none,3\naway,3,2,beyond,2\naway,2,1,on,1\n"
+    (folder / "more.csv").write_text(TRUTH + more)
+    report = learn_relations(RelationLesson(str(folder), str(folder / "more.csv")), out=str(folder / "m.npz"))
+    assert report["pairs"] == {"adjacent": 1, "none": 2, "on": 2}
+    assert report["not_near"] == {"beyond": 1, "none": 1}
+
+
+def test_clouds_in_millimetres_with_parts_and_no_table(folder):
+    """What `perceive` reads by an option, this reads by the same option."""
+    for name, place in PLACES.items():
+        one = cloud(place)
+        kept = one.labels != TABLE
+        labels = np.where(one.labels == 2, 20, 31)[kept]
+        labels[:40] = 21
+        np.savez(folder / f"{name}.npz", points=1000 * one.points[kept], labels=labels)
+    (folder / "truth.csv").write_text("\n".join(row for row in TRUTH.splitlines() if ",1," not in row))
+    (folder / "planes.csv").write_text("scene,nx,ny,nz,d\nstack,1,0,0,0\n")
+    told = []
+    fits = {"units": "mm", "up": (0, 0, 1), "labels": "parts"}
+    lesson = RelationLesson(str(folder), str(folder / "truth.csv"), **fits)
+    assert learn_relations(lesson, out=str(folder / "m.npz"), notice=told.append)["pairs"]["on"] == 1
+    assert told == []
+    model = RelationClassifier.load(folder / "m.npz")
+    assert {(r.a, r.b, r.relation) for r in model.predict(cloud(PLACES["stack"]))} >= {(3, 2, "on")}
+    learn_relations(replace(lesson, labels="auto"), out=str(folder / "m.npz"), notice=told.append)
+    assert len(told) == 1
+    assert "labels of 3 of 3 clouds were taken as parts" in told[0]
+    for change, said in (
+        ({"units": "m"}, "millimetres"),
+        ({"up": None}, "scene 'near'.*up is not known"),
+        ({"labels": "plain"}, "names an object that the cloud does not have; it has 20, 21, 31"),
+    ):
+        with pytest.raises(InputError, match=said):
+            learn_relations(replace(lesson, **change), out=str(folder / "m.npz"))
+
+
+def test_what_perceive_could_not_name_is_refused(folder):
+    with pytest.raises(InputError, match=r"name must not end in \.npz"):
+        RelationLesson(str(folder), str(folder / "truth.csv"), "m.npz")
+    with pytest.raises(InputError, match=r"out must end in \.npz"):
+        learn_relations(RelationLesson(str(folder), str(folder / "truth.csv")), out=str(folder / "m.foo"))
+
+
 def test_a_place_that_cannot_be_written_is_refused_before_the_work(folder):
     lesson = RelationLesson(str(folder), str(folder / "truth.csv"))
-    for out in (folder, folder / "none" / "m.npz"):
+    (folder / "d.npz").mkdir()
+    for out in (folder / "d.npz", folder / "none" / "m.npz"):
         with pytest.raises(InputError, match="out must be a file"):
             learn_relations(lesson, out=str(out), progress=lambda *step: pytest.fail("worked"))
 

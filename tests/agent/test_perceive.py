@@ -1,16 +1,20 @@
 """The verb perceive: a box on a slab told from its points alone, the files it writes, and models by name."""
 
 import json
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from lifelore.agent.learn_relations import remember
-from lifelore.agent.perceive import PerceiveSettings, domain_path, perceive
+from lifelore.agent.perceive import STAGES, PerceiveSettings, perceive
+from lifelore.agent.scene_files import domain_path
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory
+from lifelore.perception.point_cloud import PointCloud
 from lifelore.perception.relation_model_file import SHIPPED, shipped_model
+from lifelore.perception.segmentation import SegmentationSettings
 
 CAMERA = np.array([0.3, -0.9, 0.7])
 
@@ -92,6 +96,63 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
     assert said(perceive(pile, PerceiveSettings(up="z", model="mine", memory=place))) == said(document)
     with pytest.raises(NotFoundError, match="mine"):
         perceive(pile, PerceiveSettings(model="other", memory=place))
+
+
+def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
+    from lifelore.agent import perceive as verb
+
+    def slow(scene):
+        time.sleep(0.4)
+        return {"made": "late"}
+
+    monkeypatch.setattr(verb, "scene_document", slow)
+    document = perceive(pile, PerceiveSettings(up="z"))
+    assert document.pop("seconds") > 0.4
+    assert document == {"made": "late"}
+
+
+def test_each_stage_is_told_as_it_begins(pile):
+    told = []
+    perceive(pile, PerceiveSettings(up="z"), progress=lambda *step: told.append(step))
+    assert told == [(number, len(STAGES), stage) for number, stage in enumerate(STAGES)]
+
+
+@pytest.mark.parametrize(
+    ("rule", "objects", "notices"), [("auto", [2], 1), ("parts", [2], 0), ("plain", [20, 21], 0)]
+)
+def test_a_guess_of_parts_is_told(tmp_path, rule, objects, notices):
+    cube = seen_box([0, 0, 0], [0.05, 0.05, 0.05], 0.005)
+    np.savez(tmp_path / "c.npz", points=np.vstack([cube, cube + 0.2]), labels=np.repeat([20, 21], len(cube)))
+    told = []
+    document = perceive(tmp_path / "c.npz", PerceiveSettings(up="z", labels=rule), notice=told.append)
+    assert [entry["id"] for entry in document["objects"]] == objects
+    assert len(told) == notices
+    assert all("--labels plain" in line for line in told)
+
+
+def test_a_memory_that_is_not_there_is_not_made(tmp_path):
+    place = tmp_path / "no" / "m.db"
+    with pytest.raises(NotFoundError, match=f"no relation model 'mine': there is no memory at {place}"):
+        perceive("cloud.pcd", PerceiveSettings(model="mine", memory=str(place)))
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("model", [None, "mine.npz"])
+def test_a_memory_that_would_not_be_asked_is_refused(model):
+    with pytest.raises(InputError, match="leave memory out"):
+        PerceiveSettings(model=model, memory="m.db")
+
+
+def test_a_cut_that_would_not_be_made_is_refused(pile):
+    with pytest.raises(InputError, match="leave it out"):
+        perceive(pile, PerceiveSettings(segmentation=SegmentationSettings()))
+
+
+@pytest.mark.parametrize("camera", [1e200, -1e9])
+def test_a_camera_beyond_the_world_is_refused(camera):
+    cloud = PointCloud(np.eye(3), camera=np.array([0.0, 0, camera]))
+    with pytest.raises(InputError, match="camera must stand within"):
+        perceive(cloud, PerceiveSettings(up="z"))
 
 
 @pytest.mark.parametrize("output", ["pddl", "dot", "plot"])

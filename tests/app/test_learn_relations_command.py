@@ -18,7 +18,7 @@ def folder(tmp_path):
             labels=np.repeat([2, 3, 1], [400, 400, 900]),
         )
     (tmp_path / "truth.csv").write_text(
-        "scene,a,b,relation,confidence\non,3,2,on,3\non,2,1,on,3\noff,2,1,on,3\noff,3,1,none,3\n"
+        "scene,a,b,relation,confidence\non,3,2,on,3\non,2,1,on,3\noff,2,1,on,3\noff,3,1,none,3\noff,3,2,apart,2\n"
     )
     return tmp_path
 
@@ -30,13 +30,41 @@ def test_it_learns_and_says_what_and_where(ask, folder):
     report = json.loads(answer.out)
     assert report["name"] == "kitchen"
     assert report["pairs"] == {"none": 1, "on": 3}
+    assert report["not_near"] == {"apart": 1}
     told = ask(*options, "--out", folder / "m.npz")
     assert "2 scenes" in told.out
+    assert "1 labels are of things too far apart" in told.out
     assert str(folder / "m.npz") in told.out
 
 
+def test_labels_units_and_up_as_perceive_has_them(ask, folder):
+    for path in folder.glob("*.npz"):
+        with np.load(path) as held:
+            labels, points = held["labels"], held["points"]
+        np.savez(path, points=1000 * points[:, [2, 0, 1]], labels=np.where(labels > 1, 10 * labels, labels))
+    options = ("learn-relations", folder, "--truth", folder / "truth.csv", "--out", folder / "m.npz")
+    answer = ask(*options, "--units", "mm", "--up", "1,0,0", "--json")
+    assert answer.status == 0
+    assert answer.document["scenes"] == 2
+    assert answer.err.startswith("lifelore: the labels of 2 of 2 clouds were taken as parts")
+    assert answer.err.count("\n") == 1
+    assert ask(*options, "--units", "mm", "--up", "1,0,0", "--labels", "parts").err == ""
+    assert "units" in ask(*options).refusal
+    assert "names an object" in ask(*options, "--units", "mm", "--labels", "plain").refusal
+    assert "X,Y,Z" in ask(*options, "--units", "mm", "--up", "1,0,x").refusal
+
+
 def test_mistakes_are_one_line(ask, folder):
-    for options in (("--truth", folder / "none.csv"), ("--truth", folder / "truth.csv", "--method", "magic")):
+    truth = ("--truth", folder / "truth.csv")
+    for options in (
+        ("--truth", folder / "none.csv"),
+        (*truth, "--method", "magic"),
+        (*truth, "--out", folder / "m.foo"),
+        (*truth, "--name", "m.npz"),
+        (*truth, "--labels", "odd"),
+        (*truth, "--units", "inch"),
+        (*truth, "--up", "down"),
+    ):
         answer = ask("learn-relations", folder, *options, "--memory", folder / "m.db")
         assert answer.status == 2
         assert answer.err.count("\n") == 1

@@ -1,7 +1,8 @@
 """Whatever a person may get wrong: exit 2, one line that names what was wrong, and nothing lost.
 
 Each case is a command and what its line must say. `{new}` is a memory not yet there, `{known}` one of two tasks,
-`{text}` a text file, `{folder}` a folder, `{map}` a sound map of a small room.
+`{text}` a text file, `{folder}` a folder with the one cloud that `{truth}` speaks of, `{map}` a sound map of a
+small room, `{cloud}` a labelled cloud, `{bag}` a rosbag that is not called one.
 """
 
 import os
@@ -196,7 +197,33 @@ PLACES = {
     "memory merge mysql://h/d --memory {known}": "got mysql://",
     "memory merge missing.db --memory {known}": "does not exist",
 }
-CASES = ASKED_WRONGLY | NUMBERS | NAMES | MAPS | PLACES
+LOOK = "perceive {cloud} --up z"
+LEARN = "learn-relations {folder} --truth {truth}"
+SCENES = {
+    f"{LOOK} --model nobody": "memory has no relation model 'nobody': there is no memory at",
+    f"{LOOK} --model nobody --memory {{new}}": "memory has no relation model 'nobody': there is no memory at",
+    f"{LOOK} --model nobody --memory {{folder}}/below/m.db": "there is no memory at",
+    f"{LOOK} --model nobody --memory {LONG}": "there is no memory at",
+    f"{LOOK} --model nobody --memory {{known}}": "memory has no relation model 'nobody': it has none",
+    f"{LOOK} --model nobody --memory {{damaged}}": "is damaged",
+    f"{LOOK} --model nobody --memory {{foreign}}": "belongs to another program",
+    f"{LOOK} --memory {{known}}": "leave memory out",
+    f"{LOOK} --topic /camera": "topic and index choose a cloud of a rosbag",
+    f"{LOOK} --index 1": "topic and index choose a cloud of a rosbag",
+    f"{LOOK} --colours 4": "colours belongs to --segment colour",
+    f"{LOOK} --segment clusters": "cuts a cloud without labels",
+    f"{LOOK} --plot {{folder}}/scene.svg": "plot must name a PNG file",
+    f"{LOOK} --dot {{cloud}}": "would be written over",
+    f"{LOOK} --pddl {{folder}}/a --dot {{folder}}/a-domain.pddl": "would be written over",
+    "perceive {bag}": "is a rosbag, not a cloud",
+    f"{LEARN} --out {{folder}}/m.foo": "out must end in .npz",
+    f"{LEARN} --name m.npz": "name must not end in .npz",
+    f"{LEARN} --labels odd": "labels must be one of",
+    f"{LEARN} --units inch --memory {{new}}": "units must be m or mm",
+    f"{LEARN} --up 1,2": "up must be three finite numbers",
+    f"{LEARN} --up 1,2,x": "up must be table, z or X,Y,Z",
+}
+CASES = ASKED_WRONGLY | NUMBERS | NAMES | MAPS | PLACES | SCENES
 
 
 def room(path: Path, state: int) -> Path:
@@ -213,7 +240,8 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
         name: folder / f"{name}{ending}"
         for ending, names in {
             ".txt": ["text"], "": ["folder"], ".db": ["new", "known", "foreign", "damaged", "newer"],
-            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"],
+            ".yaml": ["map", "broken", "imageless", "spoilt", "walled"], ".npz": ["cloud"], ".csv": ["truth"],
+            ".dat": ["bag"],
         }.items()
         for name in names
     }  # fmt: skip
@@ -231,6 +259,10 @@ def make_things(folder: Path, two_tasks: Path) -> dict[str, Path]:
     for name in ("map", "imageless", "spoilt"):
         room(things[name], 0)
     room(things["walled"], 1)
+    np.savez(things["cloud"], points=np.eye(3), labels=np.array([2, 2, 3]))
+    shutil.copy(things["cloud"], things["folder"])
+    things["truth"].write_text("scene,a,b,relation,confidence\ncloud,2,3,on,3\n")
+    things["bag"].write_bytes(b"#ROSBAG V2.0\n")
     things["broken"].write_text("image: [map.pgm\n")
     things["imageless"].write_text(things["map"].read_text().replace("map.pgm", "gone.pgm"))
     things["spoilt"].with_suffix(".pgm").write_text("P5 nothing else")

@@ -61,6 +61,14 @@ def test_truth_and_gaps_come_back(written):
 def test_a_folder_with_scenes_or_a_file_is_refused(written, tmp_path):
     with pytest.raises(InputError, match=r"relations\.csv"):
         SceneFolder(written[0])
+    for name in ("planes.csv", "gaps.csv", "sim00041.pcd"):
+        folder = tmp_path / name.replace(".", "-")
+        folder.mkdir()
+        (folder / name).write_text("somebody's own")
+        with pytest.raises(InputError, match="must hold no scenes yet"):
+            SceneFolder(folder)
+        (folder / name).rename(folder / f"{name}.txt")
+        SceneFolder(folder)
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="must be a folder"):
         SceneFolder(tmp_path / "file")

@@ -220,6 +220,20 @@ def test_other_places_are_refused(argument):
         open_memory(argument)
 
 
+def test_what_is_only_read_is_neither_made_nor_changed(file, tmp_path: Path):
+    with open_memory(file) as memory:
+        give(memory, "a", 0, record({1: 1}))
+    before = file.read_bytes()
+    with open_memory(file, read_only=True) as memory:
+        assert memory.tasks("a") == 1
+        with pytest.raises(StoreError):
+            give(memory, "a", 1, record({1: 1}))
+    assert file.read_bytes() == before
+    with pytest.raises(StoreError, match="does not exist"):
+        open_memory(tmp_path / "no" / "m.db", read_only=True)
+    assert not (tmp_path / "no").exists()
+
+
 def test_folders_are_created(tmp_path: Path):
     with open_memory(tmp_path / "a b" / "c%20?#" / "m.db") as memory:
         give(memory, "a", 0, record({1: 1}))

@@ -34,7 +34,7 @@ def test_suffix_helps_where_content_does_not(tmp_path):
     [
         (b"", "is empty; give a PCD, PLY, npz or npy file"),
         (b"hello", "is no cloud we know"),
-        (b"\x89MCAP0\r\n", "rosbag; read it with lifelore.bridges.rosbag_cloud"),
+        (b"\x89MCAP0\r\n", "is a rosbag, not a cloud; pass the .bag or .mcap file"),
         (PCD.replace(b"1 1 1", b"1 1"), "is damaged or no cloud"),
         (PCD.replace(b"1 1 1", b"1 1 one"), "is damaged or no cloud"),
         (PCD.replace(b"0 0 0\n1 1 1", b"nan 0 0\n1 nan 1"), "no finite point among 2"),
@@ -64,10 +64,29 @@ def test_places_without_a_file(tmp_path):
         read_cloud("a\0b.pcd")
 
 
+@pytest.mark.parametrize(
+    ("labels", "rule", "ids", "from_parts"),
+    [
+        ([1, 2, 20, 21], "auto", [1, 1, 2, 2], True),
+        ([1, 2, 30, 31], "parts", [1, 1, 3, 3], True),
+        ([1, 2, 20, 21], "plain", [1, 2, 20, 21], False),
+        ([0, 1, 2, 3], "auto", [0, 1, 2, 3], False),
+        ([-1, 1, 2, 3], "auto", [0, 1, 2, 3], False),
+    ],
+)
+def test_a_cloud_knows_whether_its_labels_were_parts(tmp_path, labels, rule, ids, from_parts):
+    np.savez(tmp_path / "cloud.npz", points=np.eye(4, 3), labels=np.array(labels))
+    for source in (tmp_path / "cloud.npz", np.column_stack([np.eye(4, 3), labels])):
+        cloud = read_cloud(source, labels=rule)
+        assert cloud.labels is not None
+        assert cloud.labels.tolist() == ids
+        assert cloud.from_parts is from_parts
+
+
 def test_a_bad_option_is_refused(tmp_path):
     path = tmp_path / "cloud.pcd"
     path.write_bytes(PCD)
     with pytest.raises(InputError, match="units must be m or mm"):
         read_cloud(path, units="inch")
     with pytest.raises(InputError, match="labels must be one of"):
-        read_cloud(np.zeros((2, 4)), labels="none")
+        read_cloud(np.zeros((2, 3)), labels="none")

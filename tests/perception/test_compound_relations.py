@@ -63,7 +63,14 @@ def test_rules_that_are_none_are_refused(rule):
 
 
 def test_names_are_quoted():
-    assert "clear(2)" in facts([(2, 1, 'o"n\\'), (2, 1, "a\nb")])
+    rule = 'fact("related", (A, B)) :- relation(_, A, B).'
+    rows = [(2, 1, 'o"n\\'), (2, 3, "a\nb")]
+    assert facts(rows, more_rules=rule) == {"related(2, table)", "related(2, 3)"}
+
+
+def test_nothing_is_clear_by_words_of_ones_own():
+    assert facts([(3, 2, "rests_on"), (2, 1, "on")]) == set()
+    assert facts([(2, 1, "on"), (2, 3, "none")]) == {"clear(2)", "clear(3)"}
 
 
 def plain_twin(rows, things):

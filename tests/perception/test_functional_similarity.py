@@ -8,7 +8,6 @@ from lifelore.core.streams import stream
 from lifelore.perception.functional_similarity import (
     functional_similarity,
     overlap,
-    rank_alike,
     role,
     shape_distribution,
     shape_similarity,
@@ -37,7 +36,7 @@ def test_equal_roles_are_alike_whatever_the_numbers_and_sizes(pile):
 
 def test_the_middle_of_a_pile_is_like_another_middle_before_all_else(pile):
     one, other = pile(0.1), pile(0.1)
-    scores = rank_alike(one, 3, [(other, 2), (other, 3), (other, 4)])
+    scores = np.array([functional_similarity(one, 3, other, label) for label in (2, 3, 4)])
     assert np.argmax(scores) == 1
     assert (np.delete(scores, 1) < 1).all()
 
@@ -52,7 +51,8 @@ def test_a_bridge_is_like_a_bridge_before_a_tower(make_scene, meet):
 
     tower = make_scene({2: POINT, 3: POINT}, [meet(2, 1, [[0, 0, 0]]), meet(3, 2, [[0, 0, 0.1]])])
     lone = make_scene({2: POINT}, [meet(2, 1, [[0, 0, 0]])])
-    scores = rank_alike(bridge(0.1), 4, [(bridge(0.5), 4), (tower, 3), (lone, 2)])
+    others = [(bridge(0.5), 4), (tower, 3), (lone, 2)]
+    scores = [functional_similarity(bridge(0.1), 4, scene, label) for scene, label in others]
     assert scores[0] == 1
     assert 1 > scores[1] > scores[2]
 
@@ -110,3 +110,12 @@ def test_shape_does_not_see_size_and_tells_a_ball_from_a_rod():
     assert np.abs(np.cumsum(histogram) - expected).max() < 0.02
     with pytest.raises(InputError, match="two different"):
         shape_distribution(np.zeros((9, 3)), rng)
+
+
+def test_a_table_on_which_nothing_bears_is_no_object(make_scene, meet):
+    near = make_scene({2: POINT}, [meet(2, 1, [[0, 0, 0]])], [(2, 1, "none")])
+    assert 1 in near.networks
+    with pytest.raises(InputError, match="object must be one of"):
+        role(near, 1)
+    borne = make_scene({2: POINT}, [meet(2, 1, [[0, 0, 0]])], [(2, 1, "on")])
+    assert role(borne, 1)[("points", 1)] == 1

@@ -23,7 +23,7 @@ def test_the_initial_state_by_hand():
         (2, 4, "adjacent"),
         (4, 1, "on"),
         (3, 4, "none"),
-        (2, 3, "near"),
+        (5, 1, "on"),
     ]
     text = planning_problem([Relation(a, b, name, 1.0, 0.0) for a, b, name in rows], [5])
     assert "(:objects o2 o3 o4 o5 - thing)" in text
@@ -40,7 +40,17 @@ def test_the_initial_state_by_hand():
         "on-table o2",
         "on-table o3",
         "on-table o4",
+        "on-table o5",
     ]
+
+
+def test_what_cannot_be_planned_with_is_named():
+    own = [Relation(3, 7, "rests_on", 1.0, 0.0), Relation(7, 1, "rests_on", 1.0, 0.0)]
+    with pytest.raises(InputError, match="must be on, adjacent, both, none, got rests_on"):
+        planning_problem(own)
+    with pytest.raises(InputError, match="of 3, 5 nothing says so"):
+        planning_problem([Relation(2, 1, "on", 1.0, 0.0), Relation(2, 3, "adjacent", 1.0, 0.0)], [5])
+    assert "(:init\n    (hand-empty))" in planning_problem([])
 
 
 def test_names_given_are_made_valid_and_kept_apart():

@@ -25,6 +25,7 @@ def test_only_keeps_what_belongs_together_and_forgets_the_image() -> None:
     assert part.colours.tolist() == [[9, 10, 11], [0, 1, 2]]
     assert part.shape is None
     assert part.camera is cloud.camera
+    assert PointCloud(POINTS, from_parts=True).only(np.array([0])).from_parts
 
 
 def test_labels_of_nothing_but_zero_are_no_labels() -> None:
@@ -43,6 +44,8 @@ def test_labels_of_nothing_but_zero_are_no_labels() -> None:
         ({"colours": np.zeros((4, 4), np.uint8)}, "colours must have shape"),
         ({"shape": (3, 2)}, "must hold the 4 points"),
         ({"camera": np.zeros(2)}, "camera must have shape"),
+        ({"camera": np.array([0, np.nan, 0])}, "camera must be three finite numbers"),
+        ({"camera": np.array([0, 0, -np.inf])}, "camera must be three finite numbers"),
     ],
 )
 def test_what_does_not_fit_is_refused(change: dict, said: str) -> None:

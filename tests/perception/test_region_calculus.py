@@ -32,3 +32,8 @@ def test_every_pair_has_exactly_one_relation(rows, objects):
     n = len({1, *objects, *(x for r in relations for x in (r.a, r.b))})
     assert len({fact.arguments for fact in facts}) == len(facts) == n * (n - 1) // 2
     assert all(fact.arguments[0] < fact.arguments[1] and fact.name in ("dc", "ec") for fact in facts)
+
+
+def test_words_of_ones_own_may_mean_touching():
+    rows = [Relation(3, 2, "rests_on", 1.0, 0.0), Relation(2, 1, "on", 1.0, 0.0)]
+    assert [str(fact) for fact in region_relations(rows, [4])] == ["ec(table, 2)"]

@@ -178,9 +178,11 @@ def test_what_cannot_be_learnt_is_refused(lessons):
         RelationClassifier().fit_pairs(scenes[:1], [[PairLabel(3, 2, ON), PairLabel(3, 2, ADJACENT)]])
     with pytest.raises(InputError, match="fit"):
         RelationClassifier().predict_pairs(scenes[0])
-    for wrong in ({"method": "magic"}, {"adjacent_gap": 0.0}, {"adjacent_gap": 22.5}):
-        with pytest.raises(InputError, match=next(iter(wrong))):
-            RelationClassifier(**wrong)
+    with pytest.raises(InputError, match="method"):
+        RelationClassifier("magic")
+    for wrong in (0.0, 22.5):
+        with pytest.raises(InputError, match="adjacent_gap"):
+            RelationClassifier(adjacent_gap=wrong)
     with pytest.raises(InputError, match="multi_label"):
         RelationClassifier("displacement", multi_label=True)
 
@@ -190,3 +192,95 @@ def test_one_scene_is_enough_to_learn_from(lessons):
     assert said(model.predict_pairs(lessons[0][0])) == wanted(lessons[1][0])
     empty = LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64))
     assert model.predict(empty) == ()
+
+
+@pytest.mark.parametrize("method", ["trees", "displacement"])
+def test_a_symmetric_word_may_be_written_both_ways(lessons, method):
+    names = {ON: "rests upon", ADJACENT: "touches", NONE: "apart"}
+    truths = [renamed(truth, names) for truth in lessons[1][:12]]
+    for truth in truths:
+        truth += [PairLabel(one.b, one.a, "touches") for one in truth if one.relation == "touches"]
+    model = RelationClassifier(method, trees=SMALL).fit_pairs(lessons[0][:12], truths)
+    assert "touches" in model.symmetric
+    assert "rests upon" not in model.symmetric
+    # Each written pair is two labels.
+    assert model.learnt_from == {"apart": 3, "rests upon": 6, "touches": 6}
+    assert (2, 3, "touches") in said(model.predict_pairs(lessons[0][2]))
+    with pytest.raises(InputError, match=r"touches\(2, 3\) and touches\(3, 2\)"):
+        RelationClassifier(method, trees=SMALL, symmetric=[]).fit_pairs(lessons[0][:12], truths)
+
+
+@pytest.mark.parametrize("method", ["trees", "displacement"])
+@pytest.mark.parametrize("other", [PairLabel(3, 2, ADJACENT), PairLabel(2, 3, ON)])
+def test_a_pair_with_two_relations_is_refused_by_either_method(lessons, method, other):
+    with pytest.raises(InputError, match="one relation"):
+        RelationClassifier(method).fit_pairs(lessons[0][:1], [[PairLabel(3, 2, ON), other]])
+    with pytest.raises(InputError, match="one relation"):
+        RelationClassifier(method).fit_pairs(
+            lessons[0][:1], [[PairLabel(2, TABLE, ON), PairLabel(2, TABLE, NONE)]]
+        )
+
+
+def test_a_doubted_label_is_no_evidence_of_symmetry(lessons):
+    truths = [renamed(truth, {ON: "upon", ADJACENT: "by", NONE: "far"}) for truth in lessons[1][:4]]
+    truths[0].append(PairLabel(truths[0][0].b, truths[0][0].a, "upon", 1))
+    assert RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:4], truths).symmetric == frozenset()
+
+
+def test_words_said_with_the_table_first_are_learnt_in_that_direction(lessons):
+    """The table is under what stands on it: said ``under(table, x)``, never ``under(x, table)``."""
+    truths = [
+        [PairLabel(TABLE, one.a, "under") if one.relation == ON else one for one in truth if one.b == TABLE]
+        for truth in lessons[1]
+    ]
+    model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:24], truths[:24])
+    for scene, truth in zip(lessons[0][24:32], truths[24:32], strict=True):
+        under = {(one.a, one.b, one.relation) for one in truth if one.relation == "under"}
+        assert said(model.predict_pairs(scene)) == under
+        assert all(belief.shares["under"] == 0 for belief in model.beliefs_of(scene))
+
+
+def test_labels_of_near_pairs_are_counted(lessons):
+    truths = [[*lessons[1][0], PairLabel(8, 9, ON), PairLabel(2, 9, NONE)], [*lessons[1][2]], []]
+    model = RelationClassifier(trees=SMALL)
+    assert model.learnt_from == {}
+    model.fit_pairs(lessons[0][:3], truths)
+    # Scene 0: on twice, none once; scene 2: adjacent once, on twice.
+    assert model.learnt_from == {ADJACENT: 1, NONE: 1, ON: 4}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        (lambda: RelationClassifier("displacement", k=0), "k must"),
+        (lambda: RelationClassifier("displacement", k=2.5), "k must"),  # type: ignore[arg-type]
+        (lambda: RelationClassifier("displacement", weights="even"), "weights must"),
+        (lambda: RelationClassifier("displacement", omega=-0.1), "omega must"),
+        (lambda: RelationClassifier("displacement", omega=float("nan")), "omega must"),
+        (lambda: TreeSettings(n_trees=0), "n_trees must"),
+        (lambda: TreeSettings(n_trees=10**9), "n_trees must"),
+        (lambda: TreeSettings(table_trees=1.5), "table_trees must"),  # type: ignore[arg-type]
+        (lambda: TreeSettings(min_leaf=0), "min_leaf must"),
+        (lambda: TreeSettings(feature_share="half"), "feature_share must"),
+        (lambda: TreeSettings(feature_share=1.5), "feature_share must"),
+        (lambda: TreeSettings(seed=-1), "seed must"),
+    ],
+)
+def test_wrong_settings_are_refused_at_once(wrong, named):
+    with pytest.raises(InputError, match=named):
+        wrong()
+
+
+def test_names_that_mark_something_else_are_refused(lessons):
+    for name in ("~on", "beside="):
+        with pytest.raises(InputError, match="start with ~"):
+            RelationClassifier().fit_pairs(lessons[0][:1], [[PairLabel(2, 3, name)]])
+
+
+def test_the_limit_of_adjacent_may_be_changed_but_not_taken_away(lessons, fitted):
+    fitted.adjacent_gap = None
+    try:
+        with pytest.raises(InputError, match="adjacent_gap"):
+            fitted.predict_pairs(lessons[0][0])
+    finally:
+        fitted.adjacent_gap = 0.0225

@@ -1,5 +1,7 @@
 """Scene: merged networks, contact edges in the merged numbering, and what is refused."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -60,3 +62,21 @@ def test_strangers_and_doubled_pairs_are_refused(make_scene, meet):
         make_scene({2: POINT}, relations=[(2, 9, "on")])
     with pytest.raises(InputError, match="once"):
         make_scene({2: POINT, 3: POINT}, [meet(2, 3, [[0, 0, 0]]), meet(3, 2, [[0, 0, 1]])])
+
+
+def test_an_unproven_scene_stays_unproven(make_scene, meet):
+    scene = make_scene({2: POINT, 3: POINT}, [meet(2, 3, [[0, 0, 0]])])
+    assert scene.optimal
+    assert not replace(scene, optimal=False).bearing.optimal
+
+
+@pytest.mark.parametrize("optimal", [True, False])
+def test_perception_says_whether_its_scene_is_proven(monkeypatch, make_scene, box, optimal):
+    from lifelore.perception import perceived_scene as module
+
+    decide = module.most_likely_scene
+    monkeypatch.setattr(module, "most_likely_scene", lambda *given: replace(decide(*given), optimal=optimal))
+    blocks = {2: box([0, 0, 0.002], [0.05, 0.05, 0.05]), 3: box([0.053, 0, 0.002], [0.1, 0.05, 0.05])}
+    cloud = make_scene({1: box([-0.1, -0.1, -0.01], [0.2, 0.15, 0]), **blocks}).cloud
+    assert module.perceived_scene(cloud).optimal is optimal
+    assert module.perceived_scene(cloud, consistent=False).optimal

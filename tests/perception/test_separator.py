@@ -227,8 +227,74 @@ GOOD = np.zeros((2, 3))
         ((GOOD, GOOD), {"cost": np.inf}, "cost must be positive"),
         ((GOOD, GOOD), {"tolerance": 0.0}, "tolerance must be positive"),
         ((GOOD, GOOD), {"max_steps": 0}, "max_steps must be"),
+        ((GOOD, GOOD), {"max_work": 0.0}, "max_work must be"),
+        ((GOOD, GOOD), {"max_work": np.nan}, "max_work must be"),
     ],
 )
 def test_bad_input(arguments, settings, said):
     with pytest.raises(InputError, match=said):
         separate(*arguments, **settings)
+
+
+def mixed(n, seed=0, side=0.3):
+    """Two clouds at random in one cube: no surface lies between them."""
+    points = np.random.default_rng(seed).uniform(0, side, (2, n, 3))
+    return points[0], points[1]
+
+
+@pytest.mark.parametrize("side", [0.2, 0.05, 0.01])  # one level, three, and five
+@pytest.mark.parametrize("max_work", [1e3, 3e4, 1e5, 3e5, 1e6, 4e6, 1e7])
+def test_too_little_work_is_owned_up_to(max_work, side):
+    first, second = mixed(1200, side=side)
+    found = separate(first, second, length=0.06, cost=10.0, max_work=max_work)
+    true = violation(first, second, found, 0.06, 10.0)
+    assert found.max_violation >= true - 1e-9
+    assert max_work > 1e5 or true > 1e-3
+    assert found.alpha_first.sum() == pytest.approx(found.alpha_second.sum(), rel=1e-9)
+    assert (np.concatenate([found.alpha_first, found.alpha_second]) <= 10.0).all()
+    assert np.isfinite(found.bias)
+
+
+def test_work_is_counted_and_bounded(monkeypatch):
+    from lifelore.perception import separator_dual
+
+    evaluations, plain = [], separator_dual.kernel_sums
+
+    def counted(points, sources, weights, which, sums):
+        evaluations.append(len(weights) * len(which))
+        plain(points, sources, weights, which, sums)
+
+    monkeypatch.setattr(separator_dual, "kernel_sums", counted)
+    first, second = mixed(1200, side=0.2)
+    free = separate(first, second, length=0.06, cost=10.0, max_steps=20_000)
+    without = sum(evaluations)
+    evaluations.clear()
+    few = separate(first, second, length=0.06, cost=10.0, max_work=5e6)
+    assert sum(evaluations) <= 5e6 < without
+    assert free.max_violation < few.max_violation
+
+
+def test_work_that_suffices_changes_no_bit():
+    first, second = PAIRS["touching boxes"](3000)
+    one = separate(first, second, length=0.06, cost=5.0, max_work=np.inf)
+    two = separate(first, second, length=0.06, cost=5.0, max_work=2000 * 6000)
+    assert np.array_equal(one.alpha_first, two.alpha_first)
+    assert one.bias == two.bias
+    assert one.max_violation == two.max_violation <= 1e-3
+
+
+def test_rows_of_the_kernel_that_were_forgotten_come_back_the_same(monkeypatch):
+    from lifelore.perception import separator_smo
+
+    points = np.random.default_rng(0).uniform(0, 1, (3, 40))
+    side = np.where(points[0] > 0.5, 1.0, -1.0)
+    plain = getattr(separator_smo.ascend, "py_func", separator_smo.ascend)
+    results = []
+    for most in (2**26, 0):
+        monkeypatch.setattr(separator_smo, "MOST_KEPT", most)
+        beta, slope = np.zeros(40), side.copy()
+        steps = plain(points, np.minimum(side, 0), np.maximum(side, 0), beta, slope, 1e-3, 300)
+        results.append((steps, beta, slope))
+    assert results[0][0] == results[1][0] > 5
+    assert np.array_equal(results[0][1], results[1][1])
+    assert np.array_equal(results[0][2], results[1][2])

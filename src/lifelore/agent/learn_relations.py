@@ -1,7 +1,8 @@
 """The verb `learn-relations`: scenes and what was said of them in, a model of the words out; kept in memory."""
 
 import hashlib
-from collections.abc import Sequence
+from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
@@ -11,16 +12,20 @@ from uuid import uuid4
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.perceive import MODEL_SUFFIX
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.relations import ADJACENT_GAP, PairLabel
 from lifelore.memory import Memory, open_memory
 from lifelore.perception.cloud_file import read_cloud
+from lifelore.perception.label_rule import PARTS_NOTICE
+from lifelore.perception.point_cloud import PointCloud
 from lifelore.perception.relation_classifier import LEAST_CONFIDENCE, RelationClassifier
 from lifelore.perception.relation_model_file import check_model_path, model_bytes, model_from_bytes, save_model
 from lifelore.perception.relation_truth import read_planes, read_relations
 from lifelore.perception.scene_pairs import ScenePairs, scene_pairs
-from lifelore.perception.table_frame import to_scene
+from lifelore.perception.table_frame import Up, to_scene
 
 KIND, VERSION = "relation_model", 1
 DEFAULT_NAME = "default"
@@ -38,12 +43,22 @@ class RelationLesson:
     truth : str
         CSV with columns scene, a, b, relation, confidence.
     name : str
-        Under which memory keeps the model.
+        Under which memory keeps the model; not the name of a file (`MODEL_SUFFIX`).
     method : {"trees", "displacement"}
     adjacent_gap : float
         Metres.
     several : bool
         Several relations may hold of one pair.
+    labels : {"auto", "plain", "parts"}
+        How a label field becomes objects, see `label_rule`.
+    units : {"m", "mm"}
+    up : "table", "z", or (3,) numbers, optional
+        Where up is in each cloud's frame, see `to_scene`; default as `planes.csv` has it, else the table's plane.
+
+    Raises
+    ------
+    InputError
+        The name is that of a file.
     """
 
     folder: str
@@ -52,19 +67,34 @@ class RelationLesson:
     method: str = "trees"
     adjacent_gap: float = ADJACENT_GAP
     several: bool = False
+    labels: str = "auto"
+    units: str = "m"
+    up: Up | None = None
+
+    def __post_init__(self) -> None:
+        if self.name.endswith(MODEL_SUFFIX):
+            raise InputError(
+                f"name must not end in {MODEL_SUFFIX}, which means a file, got '{self.name}'; use out"
+            )
 
 
 def learn_relations(
-    lesson: RelationLesson, memory: str | None = None, out: str | None = None, progress: Progress | None = None
+    lesson: RelationLesson,
+    memory: str | None = None,
+    out: str | None = None,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
     """Train a model on a folder of scenes; keep it in memory, and in the file `out` where one is named.
 
-    Without `memory` and with `out` no memory is opened.
+    Without `memory` and with `out` no memory is opened. `notice` is called with one line for a person where labels
+    were guessed to be parts of objects.
 
     Returns
     -------
     dict
-        ``name``, ``scenes``, ``pairs`` (labels learnt from, by relation), ``relations``, ``symmetric``,
+        ``name``, ``scenes``, ``pairs`` (labels learnt from, by relation), ``not_near`` (labels that are certain
+        enough, but of things too far apart to be learnt from; by relation), ``relations``, ``symmetric``,
         ``method``, ``adjacent_gap``, ``out``, ``memory``.
 
     Raises
@@ -74,9 +104,9 @@ def learn_relations(
     """
     model = RelationClassifier(lesson.method, adjacent_gap=lesson.adjacent_gap, multi_label=lesson.several)
     if out is not None:
-        check_model_path(out)
+        _check_out(out)
     truths = read_relations(lesson.truth)
-    scenes = look_at(lesson.folder, truths, progress)
+    scenes, n_from_parts = look_at(lesson, truths, progress)
     model.fit_pairs(scenes, list(truths.values()))
     report = _report(lesson, model, truths)
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
@@ -88,25 +118,43 @@ def learn_relations(
         with open_memory(memory) as opened:
             where = opened.location
             remember(opened, lesson.name, model, about)
+    if notice is not None and n_from_parts and lesson.labels == "auto":
+        notice(f"the labels of {n_from_parts} of {len(scenes)} clouds {PARTS_NOTICE}")
     return {**report, "out": out, "memory": where}
 
 
+def _check_out(out: str) -> None:
+    if not out.endswith(MODEL_SUFFIX):
+        raise InputError(f"out must end in {MODEL_SUFFIX}, by which perceive knows a model's file, got '{out}'")
+    check_model_path(out)
+
+
 def look_at(
-    folder: str, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
-) -> list[ScenePairs]:
-    """Read the clouds that the truths speak of, and find their near pairs."""
-    planes_file = Path(folder) / "planes.csv"
-    planes = read_planes(planes_file) if planes_file.is_file() else {}
-    paths = [_cloud_of(Path(folder), scene) for scene in truths]
-    found = []
+    lesson: RelationLesson, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
+) -> tuple[list[ScenePairs], int]:
+    """Read the clouds that the truths speak of, find their near pairs; and how many had parts for labels."""
+    folder = Path(lesson.folder)
+    planes_file = folder / "planes.csv"
+    planes = read_planes(planes_file) if lesson.up is None and planes_file.is_file() else {}
+    paths = [_cloud_of(folder, scene) for scene in truths]
+    found, n_from_parts = [], 0
     for number, (scene, path) in enumerate(zip(truths, paths, strict=True)):
-        up = planes[scene][:3] if scene in planes else "table"
-        cloud = to_scene(read_cloud(path), up)
-        _check_labels(scene, truths[scene], {*cloud.objects, *([1] if cloud.has_table else [])})
-        found.append(scene_pairs(cloud))
+        cloud = read_cloud(path, units=lesson.units, labels=lesson.labels)
+        n_from_parts += cloud.from_parts
+        up = planes[scene][:3] if scene in planes else "table" if lesson.up is None else lesson.up
+        found.append(scene_pairs(_upright(scene, cloud, up, truths[scene])))
         if progress is not None:
             progress(number + 1, len(paths), scene)
-    return found
+    return found, n_from_parts
+
+
+def _upright(scene: str, cloud: PointCloud, up: Up, truth: Sequence[PairLabel]) -> LabelledCloud:
+    try:
+        upright = to_scene(cloud, up)
+    except InputError as error:
+        raise InputError(f"scene '{scene}': {error}") from None
+    _check_labels(scene, truth, {*upright.objects, *([TABLE] if upright.has_table else [])})
+    return upright
 
 
 def _cloud_of(folder: Path, scene: str) -> Path:
@@ -130,12 +178,15 @@ def _check_labels(scene: str, truth: Sequence[PairLabel], there: set[int]) -> No
 def _report(
     lesson: RelationLesson, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
 ) -> dict[str, Any]:
-    labels = [label for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE]
-    said = [label.relation for label in labels]
+    said = Counter(
+        label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
+    )
+    learnt = Counter(model.learnt_from)
     return {
         "name": lesson.name,
         "scenes": len(truths),
-        "pairs": {name: said.count(name) for name in model.names},
+        "pairs": {name: learnt[name] for name in model.names},
+        "not_near": dict(sorted((said - learnt).items())),
         "relations": list(model.names),
         "symmetric": sorted(model.symmetric),
         "method": model.method,

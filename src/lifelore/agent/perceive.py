@@ -2,22 +2,29 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError, StoreError
+from lifelore.agent.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Progress
 from lifelore.perception.cloud_file import read_cloud
+from lifelore.perception.label_rule import PARTS_NOTICE
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.point_cloud import PointCloud
 from lifelore.perception.relation_classifier import RelationClassifier
 from lifelore.perception.relation_model_file import load_model, shipped_model
-from lifelore.perception.scene import Scene
-from lifelore.perception.scene_json import scene_document
+from lifelore.perception.scene_json import DIGITS, scene_document
 from lifelore.perception.segmentation import SegmentationSettings
 from lifelore.perception.table_frame import Up, to_scene
+
+MODEL_SUFFIX = ".npz"
+"""Of a model in a file: by it a file is told from a name in memory."""
+STAGES = ("reading", "finding objects", "finding contacts and relations", "drawing conclusions", "writing")
 
 
 @dataclass(frozen=True)
@@ -31,12 +38,17 @@ class PerceiveSettings:
     units : {"m", "mm"}
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
-    segmentation : SegmentationSettings
-        How a cloud without labels is cut; default clusters by distance.
+    segmentation : SegmentationSettings, optional
+        How a cloud without labels is cut, default by distance; a cloud with labels is refused where it is given.
     model : str, optional
         A file of ``learn-relations --out``, or the name of a model in memory; default the shipped one.
     memory : str, optional
         Where a named model is kept.
+
+    Raises
+    ------
+    InputError
+        `memory` is given without the name of a model in it.
     """
 
     up: Up = "table"
@@ -45,6 +57,18 @@ class PerceiveSettings:
     segmentation: SegmentationSettings | None = None
     model: str | None = None
     memory: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.memory is not None and (self.model is None or is_file_name(self.model)):
+            raise InputError(
+                "memory is where a model kept under a name is looked up, and"
+                f" {'none is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
+            )
+
+
+def is_file_name(model: str) -> bool:
+    """Whether a model so called is a file, not a name in memory."""
+    return model.endswith(MODEL_SUFFIX)
 
 
 DEFAULT = PerceiveSettings()
@@ -57,6 +81,8 @@ def perceive(
     pddl: str | None = None,
     dot: str | None = None,
     plot: str | None = None,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
     """Perceive a scene.
 
@@ -68,7 +94,11 @@ def perceive(
     settings : PerceiveSettings
     pddl, dot, plot : str, optional
         Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
-        a picture (PNG).
+        a picture (``NAME.png``).
+    progress : Progress, optional
+        Called as each of the `STAGES` begins.
+    notice : callable, optional
+        Called with one line for a person where labels were guessed to be parts of objects.
 
     Returns
     -------
@@ -78,74 +108,68 @@ def perceive(
     Raises
     ------
     InputError
-        The cloud, a setting or a file name breaks its rule.
+        The cloud, a setting or a file name breaks its rule, or two files are one.
     NotFoundError
-        Memory has no model of that name.
+        Memory has no model of that name, or there is no memory.
     StoreError
         A file cannot be written.
     """
-    for path in (pddl, dot, plot):
-        _check_writable(path)
+    files = SceneFiles(pddl, dot, plot)
+    check_scene_files(files, _sources(source, settings))
     model = model_of(settings)
     began = time.perf_counter()
-    if not isinstance(source, PointCloud):
-        source = read_cloud(source, units=settings.units, labels=settings.labels)
-    cloud = to_scene(source, settings.up, settings.segmentation)
+    _tell(progress, 0)
+    cloud = _read(source, settings)
+    _tell(progress, 1)
+    labelled = to_scene(cloud, settings.up, settings.segmentation)
+    _tell(progress, 2)
     # A skeleton shows where a thing is used: near pairs that do not bear on each other have no place in it.
-    scene = perceived_scene(cloud, model).bearing
-    document = scene_document(scene, seconds=time.perf_counter() - began)
-    _write(scene, document, pddl, dot, plot)
+    scene = perceived_scene(labelled, model).bearing
+    _tell(progress, 3)
+    document = scene_document(scene)
+    document["seconds"] = round(time.perf_counter() - began, DIGITS)
+    _tell(progress, 4)
+    write_scene_files(files, scene, document)
+    if notice is not None and cloud.from_parts and settings.labels == "auto":
+        notice(f"the labels {PARTS_NOTICE}")
     return document
 
 
+def _sources(source: object, settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
+    read = [source, settings.model if settings.model and is_file_name(settings.model) else None]
+    return [path for path in read if isinstance(path, str | os.PathLike)]
+
+
+def _tell(progress: Progress | None, stage: int) -> None:
+    if progress is not None:
+        progress(stage, len(STAGES), STAGES[stage])
+
+
+def _read(source: str | os.PathLike[str] | NDArray | PointCloud, settings: PerceiveSettings) -> PointCloud:
+    if not isinstance(source, PointCloud):
+        source = read_cloud(source, units=settings.units, labels=settings.labels)
+    if settings.segmentation is not None and source.is_labelled:
+        raise InputError(
+            "segmentation (--segment) cuts a cloud without labels, and this one has some: leave it out"
+        )
+    return source
+
+
 def model_of(settings: PerceiveSettings) -> RelationClassifier:
-    """The relation model that the settings name."""
+    """The relation model that the settings name; a memory is only looked into."""
     if settings.model is None:
         return shipped_model()
-    if settings.model.endswith(".npz"):
+    if is_file_name(settings.model):
         return load_model(settings.model)
     from lifelore.agent.learn_relations import recall_relations
     from lifelore.memory import open_memory
+    from lifelore.memory.location import locate
 
-    with open_memory(settings.memory) as memory:
+    place = locate(settings.memory)
+    if isinstance(place, Path) and not os.path.exists(place):
+        raise NotFoundError(
+            f"memory has no relation model '{settings.model}': there is no memory at {place};"
+            " `lifelore learn-relations` trains one, and a model in a file is called NAME.npz"
+        )
+    with open_memory(settings.memory, read_only=True) as memory:
         return recall_relations(memory, settings.model)
-
-
-def _write(scene: Scene, document: dict, pddl: str | None, dot: str | None, plot: str | None) -> None:
-    if pddl is not None:
-        from lifelore.perception.planning_problem import DOMAIN, planning_problem
-
-        _write_text(pddl, planning_problem(scene.relations, scene.objects))
-        _write_text(domain_path(pddl), DOMAIN)
-    if dot is not None:
-        from lifelore.perception.scene_graph import to_dot
-
-        _write_text(dot, to_dot(scene))
-    if plot is not None:
-        from lifelore.figures.scene_picture import draw_scene
-        from lifelore.figures.style import save_figure
-
-        save_figure(draw_scene(scene.cloud, document), plot)
-
-
-def domain_path(problem: str) -> str:
-    """Where the domain of a problem file is written: beside it."""
-    path = Path(problem)
-    return str(path.with_name(f"{path.stem}-domain.pddl"))
-
-
-def _check_writable(path: str | None) -> None:
-    if path is None:
-        return
-    if not path or Path(path).is_dir():
-        raise InputError(f"the output must be a file, got '{path}', which is {'a folder' if path else 'empty'}")
-    folder = Path(path).parent
-    if not folder.is_dir() or not os.access(folder, os.W_OK):
-        raise InputError(f"'{path}' cannot be written: its folder must exist and be writable")
-
-
-def _write_text(path: str, text: str) -> None:
-    try:
-        Path(path).write_text(text, encoding="utf-8")
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -12,6 +12,7 @@ from lifelore.core.protocols import Progress
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.domains.scene_folder import SceneFolder
 from lifelore.domains.tabletop import scenes
+from lifelore.domains.tabletop_quota import is_missed
 from lifelore.domains.tabletop_settings import TabletopSettings
 
 
@@ -48,8 +49,9 @@ def make_scenes(
     Returns
     -------
     dict
-        ``scenes``, ``out``, ``seconds``, ``attempts``, ``pairs`` (of things, by relation), ``mix`` (their shares)
-        and ``with_table`` (by relation).
+        ``scenes``, ``out``, ``seconds``, ``attempts`` (draws, those for scenes refused for the mix included),
+        ``pairs`` (of things, by relation), ``mix`` (their shares), ``mix_missed`` (whether they are off the wanted
+        ones by more than `tabletop_quota` allows) and ``with_table`` (by relation).
 
     Raises
     ------
@@ -79,5 +81,6 @@ def make_scenes(
         "attempts": attempts,
         "pairs": {relation: pairs[relation] for relation in CORE_RELATIONS},
         "mix": {relation: round(pairs[relation] / max(pairs.total(), 1), 4) for relation in CORE_RELATIONS},
+        "mix_missed": mix is not None and is_missed([pairs[relation] for relation in CORE_RELATIONS], mix),
         "with_table": {relation: with_table[relation] for relation in CORE_RELATIONS},
     }

@@ -32,6 +32,7 @@ def scenes(
     """
     from lifelore.agent.scenes import make_scenes
     from lifelore.app.console import print_json, progress_bar
+    from lifelore.app.perceive_command import to_stderr
 
     wanted = _mix(mix)
     with progress_bar("drawing") as progress:
@@ -39,6 +40,9 @@ def scenes(
             n, out, seed, mix=wanted, camera=camera, shapes=shapes, arrangement=arrangement,
             meshes=mesh or (), jobs=jobs, progress=progress,
         )  # fmt: skip
+    if report["mix_missed"]:
+        shares = ", ".join(f"{relation}={share:.2f}" for relation, share in report["mix"].items())
+        to_stderr(f"the mix was missed: the pairs came to {shares}; draw more scenes, or ask for another mix")
     if as_json:
         print_json(report)
         return

@@ -18,6 +18,7 @@ from lifelore.domains.tabletop import TabletopScene
 RELATIONS = ("scene", "a", "b", "relation", "confidence")
 PLANES = ("scene", "nx", "ny", "nz", "d")
 GAPS = ("scene", "a", "b", "visible_gap", "true_gap")
+OURS = ("relations.csv", "planes.csv", "gaps.csv", "sim*.pcd")
 _FIELDS = ("label", "x", "y", "z", "rgba")
 _TYPES = (np.uint32, np.float32, np.float32, np.float32, np.uint32)
 
@@ -33,15 +34,16 @@ class SceneFolder:
     Raises
     ------
     InputError
-        `path` is a file, or already holds scenes.
+        `path` is a file, or already holds scenes, or a file that scenes would be mixed with or overwrite.
     """
 
     def __init__(self, path: str | Path) -> None:
         self._path = Path(path)
         if self._path.is_file():
             raise InputError(f"out must be a folder, got the file '{path}': name another")
-        if (self._path / "relations.csv").exists():
-            raise InputError(f"out must hold no scenes yet, '{path}' has a relations.csv: name another folder")
+        there = next((name for name in OURS for _ in self._path.glob(name)), None)
+        if there is not None:
+            raise InputError(f"out must hold no scenes yet, '{path}' has a {there}: name another folder")
         self._begun = False
 
     def write(self, scene: TabletopScene) -> None:

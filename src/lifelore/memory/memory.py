@@ -17,7 +17,7 @@ from lifelore.memory.location import locate
 from lifelore.memory.store import Store, open_file, open_postgresql, open_source
 
 
-def open_memory(where: str | Path | None = None, *, durable: bool = False) -> "Memory":
+def open_memory(where: str | Path | None = None, *, durable: bool = False, read_only: bool = False) -> "Memory":
     """Open a memory, creating it if there is none.
 
     Parameters
@@ -30,11 +30,14 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False) -> "M
         ``synchronous=NORMAL``) a power loss may take the last few contributions, each as a whole, and never
         damages the file; with True (``FULL``) it takes none, at some milliseconds a contribution.
         A PostgreSQL server decides this by its own settings.
+    read_only : bool
+        A memory that is there is looked into; none is created, migrated or written to.
 
     Raises
     ------
     StoreError
         The file is damaged, another program's, of a newer Lifelore, or cannot be written; it stays as it is.
+        With `read_only` also where there is none, or one of an older Lifelore.
     InputError
         A URL that is not PostgreSQL's.
     MissingExtraError
@@ -52,6 +55,8 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False) -> "M
     (True, False, 1, array([30, 10]))
     """
     place = locate(where)
+    if read_only:
+        return Memory(open_source(place))
     return Memory(open_file(place, durable=durable) if isinstance(place, Path) else open_postgresql(place))
 
 

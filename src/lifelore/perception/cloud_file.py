@@ -3,6 +3,7 @@
 import os
 import warnings
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.perception.cloud_scale import in_metres
+from lifelore.perception.label_rule import check_rule, ids_from_labels
 from lifelore.perception.npz_file import cloud_from_arrays, read_npy, read_npz
 from lifelore.perception.pcd_file import read_pcd
 from lifelore.perception.ply_file import read_ply
@@ -39,7 +41,7 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     -------
     PointCloud
         In metres, in the sensor's frame, with at least one finite point; points that were not measured are
-        NaN.
+        NaN. It says whether its labels were taken as parts.
 
     Raises
     ------
@@ -47,15 +49,24 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
         The file is missing, too large, of no known kind, damaged, empty, or breaks a rule; the message names
         it.
     """
+    check_rule(labels)
     if isinstance(source, np.ndarray):
-        return _told("array", lambda: in_metres(cloud_from_arrays(source, rule=labels), units))
+        return _told("array", lambda: _by_rule(in_metres(cloud_from_arrays(source, rule="plain"), units), labels))
     path = Path(source)
-    return _told(str(path), lambda: in_metres(_decoded(path, labels), units))
+    return _told(str(path), lambda: _by_rule(in_metres(_decoded(path), units), labels))
 
 
-def _decoded(path: Path, labels: str) -> PointCloud:
+def _decoded(path: Path) -> PointCloud:
     content = _content(path)
-    return _reader(path, content)(content, labels)
+    return _reader(path, content)(content, "plain")
+
+
+def _by_rule(cloud: PointCloud, rule: str) -> PointCloud:
+    """Its labels, read as they stand, as ids; only here both are known, so only here it shows what was merged."""
+    if cloud.labels is None:
+        return cloud
+    ids = ids_from_labels(cloud.labels, rule)
+    return replace(cloud, labels=ids, from_parts=not np.array_equal(ids, cloud.labels))
 
 
 def _told(name: str, read: Callable[[], PointCloud]) -> PointCloud:
@@ -101,7 +112,7 @@ def _reader(path: Path, content: bytes) -> Callable[[bytes, str], PointCloud]:
     if content.startswith((b"# .PCD", b"VERSION", b"FIELDS")):
         return read_pcd
     if content.startswith(_BAGS):
-        raise InputError("is a rosbag; read it with lifelore.bridges.rosbag_cloud (extra ros)")
+        raise InputError("is a rosbag, not a cloud; pass the .bag or .mcap file, or the bag's folder (extra ros)")
     if path.suffix.lower() in _READERS and content:
         return _READERS[path.suffix.lower()]
     raise InputError(f"is {'no cloud we know' if content else 'empty'}; give a PCD, PLY, npz or npy file")

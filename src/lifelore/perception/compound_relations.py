@@ -2,7 +2,7 @@
 
 | fact | holds when |
 |---|---|
-| ``clear(a)`` | no object rests on a |
+| ``clear(a)`` | no object rests on a; stated only where every word is of the core vocabulary |
 | ``supports*(a, b)`` | b rests on a, directly or through others; a is an object |
 | ``stacked(a, b, c)`` | a rests on b, b on c, three objects (Fig. 2.7) |
 | ``between(b, a, c)`` | b is adjacent to a and to c, a before c (§5.2: "two different adjacent relationships") |
@@ -18,6 +18,7 @@ from collections.abc import Iterable
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
+from lifelore.perception.core_words import other_words
 from lifelore.perception.fact import Fact
 from lifelore.perception.relation import Relation
 
@@ -30,14 +31,15 @@ adjacent(A, B) :- adjacent(B, A).
 supports(B, A) :- on(A, B), object(B).
 supports_star(B, A) :- supports(B, A).
 supports_star(C, A) :- supports(C, B), supports_star(B, A).
-fact("clear", (A,)) :- object(A), not supports(A, _).
+fact("clear", (A,)) :- object(A), not supports(A, _), not other_words.
 fact("supports*", (A, B)) :- supports_star(A, B), A != B.
 fact("stacked", (A, B, C)) :- supports(B, A), supports(C, B), A != C.
 fact("between", (B, A, C)) :- adjacent(A, B), adjacent(B, C), object(A), object(B), object(C), A < C.
 fact("in", (A, B)) :- on(A, B), adjacent(A, B), object(B).
 #show fact/2.
 """
-"""The program: ``relation(Name, A, B)`` and ``object(A)`` are given, ``fact(Name, (A, …))`` are read off."""
+"""The program: ``relation(Name, A, B)``, ``object(A)`` and, where a name is not of the core vocabulary,
+``other_words`` are given; ``fact(Name, (A, …))`` are read off."""
 
 
 def compound_relations(
@@ -48,7 +50,8 @@ def compound_relations(
     Parameters
     ----------
     relations : iterable of Relation
-        Of any vocabulary; a rule of yours can use names of yours.
+        Of any vocabulary; a rule of yours can use names of yours. With a word outside the core vocabulary no
+        object is said to be clear: what that word says of resting is not known.
     objects : iterable of int
         Objects beside those the relations name.
     more_rules : str
@@ -71,6 +74,7 @@ def compound_relations(
     things = sorted({*objects, *(label for r in relations for label in (r.a, r.b))} - {TABLE})
     given = [f"object({thing})." for thing in things]
     given += [f"relation({clingo.String(r.relation)},{r.a},{r.b})." for r in relations]
+    given += ["other_words."] if other_words(relations) else []
     complaints: list[str] = []
     control = clingo.Control(["--warn=no-atom-undefined"], logger=lambda _, text: complaints.append(text))
     try:

@@ -90,7 +90,7 @@ def discover(features: Sequence[PairFeatures], rng: np.random.Generator, *, most
     spread = rows.std(axis=0)
     rows = (rows - rows.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
     seed = int(rng.integers(2**31))
-    # Duplicates are no ground for more parts than there are different rows; small matrices gain nothing by threads.
+    # No more parts than there are different rows; matrices this small gain nothing by threads.
     largest = min(most, max(1, len(rows) // 2), len(np.unique(rows, axis=0)))
     with threadpool_limits(limits=1):
         models = [

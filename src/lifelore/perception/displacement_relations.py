@@ -5,18 +5,56 @@ the two; elsewhere the relation that most displacements name wins. The share of 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import asdict, dataclass
+from math import isfinite
+from numbers import Integral, Real
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.core.relations import ADJACENT, BOTH, ON, PairLabel
-from lifelore.perception.directed_label import as_directed, mirrored
+from lifelore.perception.directed_label import mirrored
+from lifelore.perception.pair_class import pair_class
 from lifelore.perception.scene_pairs import ScenePairs
 
 UNIONS = {frozenset({ON, ADJACENT}): BOTH, frozenset({"~" + ON, ADJACENT}): "~" + BOTH}
 """What two labels of one pair make together."""
+MOST_NEIGHBOURS = 1000
+
+
+@dataclass(frozen=True)
+class NeighbourSettings:
+    """How displacements vote: see `DisplacementNeighbours`.
+
+    Parameters
+    ----------
+    k : int
+        1 to `MOST_NEIGHBOURS`.
+    omega : float, optional
+        Metres, above 0.
+    weights : {"uniform", "distance"}
+
+    Raises
+    ------
+    InputError
+        A setting breaks its rule.
+    """
+
+    k: int = 4
+    omega: float | None = None
+    weights: str = "uniform"
+
+    def __post_init__(self) -> None:
+        k, omega = self.k, self.omega
+        if isinstance(k, bool) or not isinstance(k, Integral) or not 1 <= int(k) <= MOST_NEIGHBOURS:
+            raise InputError(f"k must be a whole number from 1 to {MOST_NEIGHBOURS}, got {k!r}")
+        if omega is not None and (
+            isinstance(omega, bool) or not isinstance(omega, Real) or not (omega > 0 and isfinite(omega))
+        ):
+            raise InputError(f"omega must be metres above 0, or None to learn from all, got {omega!r}")
+        if self.weights not in ("uniform", "distance"):
+            raise InputError(f"weights must be 'uniform' or 'distance', got {self.weights!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +99,7 @@ def fit_displacements(
     symmetric: frozenset[str],
     least_confidence: int,
     with_table: bool,
-    options: dict[str, Any],
+    options: NeighbourSettings,
 ) -> DisplacementRelations | None:
     """All displacements of all labelled pairs, each with its pair's label, in both orders among objects."""
     from lifelore.perception.displacement import DisplacementNeighbours
@@ -71,7 +109,7 @@ def fit_displacements(
         said = scene.labels(truth, least_confidence)
         for at in np.flatnonzero(scene.with_table == with_table):
             if said[at]:
-                name = as_directed(said[at][0], int(scene.features.pairs[2 * at, 0]), symmetric)
+                name = pair_class(said[at], int(scene.features.pairs[2 * at, 0]), symmetric)
                 rows.append(scene.displacements[at])
                 names += [name] * len(rows[-1])
                 if not with_table:
@@ -79,6 +117,6 @@ def fit_displacements(
                     names += [mirrored(name, symmetric)] * len(rows[-1])
     if not rows:
         return None
-    one = DisplacementNeighbours(**options).fit(np.concatenate(rows), np.array(names))
+    one = DisplacementNeighbours(**asdict(options)).fit(np.concatenate(rows), np.array(names))
     classes = tuple(map(str, one.classes_))
     return DisplacementRelations(classes, one.displacements_, one.codes_, one.k, one.weights)

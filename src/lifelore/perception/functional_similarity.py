@@ -14,7 +14,6 @@ they are used in a scene".
 """
 
 from collections import Counter
-from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -53,11 +52,11 @@ def role(scene: Scene, label: int) -> Counter:
     Raises
     ------
     InputError
-        The scene has no such object.
+        The scene has no such object; the table is one where something bears on it.
     """
+    scene = scene.bearing
     if label not in scene.networks:
         raise InputError(f"object must be one of {sorted(scene.networks)}, got {label}")
-    scene = scene.bearing
     network = scene.networks[label]
     facing = [_facing(node) for node in network.nodes]
     tokens: Counter = Counter({("points", len(facing)): 1})
@@ -68,12 +67,6 @@ def role(scene: Scene, label: int) -> Counter:
         beyond = (step for step in _neighbours(scene, other) if other != TABLE and step[1] != label)
         tokens.update(("steps", way, _kind(other), far, _kind(third)) for far, third in beyond)
     return tokens
-
-
-def rank_alike(scene: Scene, label: int, others: Iterable[tuple[Scene, int]]) -> NDArray[np.float64]:
-    """Similarity of an object to each of `others`, shape ``(n,)``, in their order."""
-    own = role(scene, label)
-    return np.array([overlap(own, role(other, number)) for other, number in others])
 
 
 def shape_similarity(

@@ -26,7 +26,9 @@ object (a mug's handle) is no cycle of contacts and is not found.
 Thesis: §2.4.2, Fig. 2.6.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from itertools import pairwise
 
 import networkx as nx
@@ -35,8 +37,9 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, ON
+from lifelore.perception.cycle_basis import minimum_cycle_basis
 from lifelore.perception.interface import Interface
 from lifelore.perception.scene import Scene
 from lifelore.perception.sight import Sight
@@ -101,7 +104,8 @@ def find_holes(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[Hole, ...
     if not clearance > 0:
         raise InputError(f"clearance must be above 0 metres, got {clearance}")
     sight = Sight(voxelised(scene.cloud, clearance / 5).cloud, clearance / 3)
-    holes = (_hole(scene, loop, sight, clearance) for loop in contact_loops(scene, clearance=clearance))
+    points_of = cache(sight.cloud.of)
+    holes = (_hole(scene, loop, sight, points_of, clearance) for loop in contact_loops(scene, clearance=clearance))
     return tuple(sorted((hole for hole in holes if hole), key=lambda hole: (hole.size, hole.nodes)))
 
 
@@ -132,9 +136,16 @@ def contact_loops(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[tuple[
     contacts = [(x, y) for x, y, kind in graph.edges(data="kind") if kind == "contact"]
     graph.remove_edges_from((x, y) for x, y in contacts if frozenset((x[0], y[0])) in ajar)
     # A cycle lies within one biconnected part, and the search for a basis grows fast with the size of the graph.
-    parts = (graph.subgraph(nodes) for nodes in nx.biconnected_components(graph) if len(nodes) > 2)
-    loops = (loop for part in parts for loop in nx.minimum_cycle_basis(part, weight="length"))
-    return tuple(sorted(map(_turned, loops)))
+    parts = [graph.subgraph(nodes) for nodes in nx.biconnected_components(graph) if len(nodes) > 2]
+    return tuple(sorted(_turned(loop) for part in parts for loop in _shortest_loops(part)))
+
+
+def _shortest_loops(graph: nx.Graph) -> list[list[Node]]:
+    names = sorted(graph.nodes)
+    number = {name: k for k, name in enumerate(names)}
+    edges = sorted((*sorted((number[x], number[y])), length) for x, y, length in graph.edges(data="length"))
+    loops = minimum_cycle_basis([(x, y) for x, y, _ in edges], [length for *_, length in edges])
+    return [[names[k] for k in loop] for loop in loops]
 
 
 def _closes(scene: Scene, part: Interface, clearance: float) -> bool:
@@ -153,10 +164,16 @@ def _turned(loop: list[Node]) -> tuple[Node, ...]:
     return tuple(min(forward, backward))
 
 
-def _hole(scene: Scene, loop: tuple[Node, ...], sight: Sight, clearance: float) -> Hole | None:
+def _hole(
+    scene: Scene,
+    loop: tuple[Node, ...],
+    sight: Sight,
+    points_of: Callable[[int], NDArray[np.float64]],
+    clearance: float,
+) -> Hole | None:
     openings = []
     objects = tuple(sorted({label for label, _ in loop}))
-    clouds = _near_clouds(sight.cloud, objects)
+    clouds = _near_clouds({label: points_of(label) for label in objects})
     for entry, leave in _ways(loop):
         start, end = scene.position(*entry), scene.position(*leave)
         if np.linalg.norm(end - start) > clearance:
@@ -173,13 +190,12 @@ def _hole(scene: Scene, loop: tuple[Node, ...], sight: Sight, clearance: float) 
     return Hole(objects, loop, size, min(opening.width for opening in openings), at.mean(axis=0), widest.outline)
 
 
-def _near_clouds(cloud: LabelledCloud, objects: tuple[int, ...]) -> dict[int, NDArray[np.float64]]:
+def _near_clouds(clouds: dict[int, NDArray[np.float64]]) -> dict[int, NDArray[np.float64]]:
     """The points of a loop's objects; of the table only what is around the others."""
-    clouds = {label: cloud.of(label) for label in objects}
     things = np.concatenate([points for label, points in clouds.items() if label != TABLE])
     if TABLE in clouds and len(things):
         table, low, high = clouds[TABLE], things.min(axis=0) - MARGIN, things.max(axis=0) + MARGIN
-        clouds[TABLE] = table[((table >= low) & (table <= high)).all(axis=1)]
+        clouds = clouds | {TABLE: table[((table >= low) & (table <= high)).all(axis=1)]}
     return clouds
 
 

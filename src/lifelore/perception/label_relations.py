@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.relations import NONE, PairLabel
-from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.directed_label import REVERSED, as_directed
 from lifelore.perception.scene_pairs import ScenePairs
 from lifelore.perception.tree_relations import TreeRelations, Vocabulary
 from lifelore.perception.tree_training import Rows, TreeSettings, grown
@@ -33,19 +33,21 @@ def fit_labels(
     """A model of yes and no for each name but *none*, from every order of every pair that is spoken of.
 
     Pairs of objects and pairs with the table have models of their own; the latter are called `ON_TABLE` + name.
+    They know the order (object, table) alone, so a name said with the table first has a model beside them, called
+    `ON_TABLE` + ``~`` + name.
     """
     rows: dict[bool, list[tuple[NDArray[np.float64], frozenset[str], int]]] = {False: [], True: []}
     for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
         features = scene.features.columns(columns)
         for pair, said in enumerate(scene.labels(truth, least_confidence)):
-            for row in rows_of(scene, pair) if said else ():
-                holds = names_in_order(said, int(scene.features.pairs[row, 0]), words.symmetric)
+            for row in _rows_of(scene, pair) if said else ():
+                holds = _names_in_order(said, int(scene.features.pairs[row, 0]), words.symmetric)
                 rows[bool(scene.with_table[pair])].append((features[row], holds, number))
     settings = replace(settings, feature_share=FEATURE_SHARE)
     return {
         prefix + name: grown(_yes_and_no(rows[table], name), columns, settings, settings.n_trees)
         for table, prefix in ((False, ""), (True, ON_TABLE))
-        for name in words.names
+        for name in (*words.names, *(_turned(rows[True]) if table else ()))
         if name != NONE and rows[table]
     }
 
@@ -56,14 +58,21 @@ def _yes_and_no(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]],
     return Rows(np.array(matrix), holds, np.array(origin, np.int64))
 
 
-def rows_of(scene: ScenePairs, pair: int) -> tuple[int, ...]:
+def _turned(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]]) -> list[str]:
+    """What holds in the other order somewhere, sorted."""
+    return sorted(
+        {name for _, names, _ in rows for name in names if name.startswith(REVERSED)} - {REVERSED + NONE}
+    )
+
+
+def _rows_of(scene: ScenePairs, pair: int) -> tuple[int, ...]:
     """The feature rows of a pair: both orders among objects, (object, table) with the table."""
     return (2 * pair,) if scene.with_table[pair] else (2 * pair, 2 * pair + 1)
 
 
-def names_in_order(said: Sequence[PairLabel], first: int, symmetric: frozenset[str]) -> frozenset[str]:
-    """What holds of the pair in the order that starts with `first`."""
-    return frozenset(label.relation for label in said if label.a == first or label.relation in symmetric)
+def _names_in_order(said: Sequence[PairLabel], first: int, symmetric: frozenset[str]) -> frozenset[str]:
+    """What holds of the pair in the order that starts with `first`; ``~`` marks the other order."""
+    return frozenset(as_directed(label, first, symmetric) for label in said)
 
 
 def label_shares(

@@ -7,9 +7,10 @@ Two conventions exist and a file does not say which is its own:
   the id is ``label // 10``, and 1 for 1–9 (the modified Object Segmentation Database).
 
 ``auto`` takes ``parts`` when some label lies in 20–29, none in 10–19, and at least half of the tens in use
-from 20 on start with their round number (20, 30, …: an object's parts are counted from 0); otherwise
-``plain``. A plain file that numbers its objects 2, 3, 4 … without a gap is therefore never merged: from
-its tenth label on it holds 10–19. Negative labels and NaN mean nothing (0) in both.
+from 20 on hold their round number (20, 30, …: an object's parts are counted from 0); otherwise ``plain``.
+A plain file that numbers its objects 2, 3, 4 … without a gap is therefore never merged: before it reaches
+20 it holds 10–19. One with gaps can be (2, 20: the first becomes the table), and must be read as ``plain``.
+Labels 10–19 mean nothing under ``parts`` and are refused. Negative labels and NaN mean nothing (0) in both.
 """
 
 import numpy as np
@@ -19,6 +20,11 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 
 RULES = ("auto", "plain", "parts")
+PARTS_NOTICE = (
+    "were taken as parts of objects (1-9 the table, 20-29 object 2, 30-39 object 3, …);"
+    " --labels plain leaves them as they are"
+)
+"""What a person is told who left the rule to `auto`."""
 MAX_OBJECTS = 1000
 """More labels than this are not objects on a table but a field of another meaning."""
 
@@ -48,10 +54,9 @@ def ids_from_labels(labels: NDArray, rule: str = "auto") -> NDArray[np.int64]:
     >>> ids_from_labels(np.array([0, 1, 2, 3])).tolist()
     [0, 1, 2, 3]
     """
-    if rule not in RULES:
-        raise InputError(f"labels must be one of {', '.join(RULES)}, got {rule!r}")
+    check_rule(rule)
     whole = _whole(labels)
-    used = np.unique(_whole(np.unique(labels)))
+    used = _used(whole)
     objects = np.count_nonzero(used > TABLE)
     if objects > MAX_OBJECTS:
         raise InputError(
@@ -63,12 +68,25 @@ def ids_from_labels(labels: NDArray, rule: str = "auto") -> NDArray[np.int64]:
     return whole
 
 
+def check_rule(rule: str) -> None:
+    """InputError for a rule that is not known."""
+    if rule not in RULES:
+        raise InputError(f"labels must be one of {', '.join(RULES)}, got {rule!r}")
+
+
 def is_in_parts(used: NDArray[np.int64]) -> bool:
     """Whether the labels in use follow the convention of parts; see the module for the rule."""
     tens = np.unique(used[used >= 20] // 10)
     if not (tens == 2).any() or ((used >= 10) & (used <= 19)).any():
         return False
     return 2 * np.isin(10 * tens, used).sum() >= len(tens)
+
+
+def _used(labels: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The labels that occur, ascending; counted where they are small, which spares a cloud's sorting."""
+    if labels.max(initial=0) < len(labels):
+        return np.flatnonzero(np.bincount(labels))
+    return np.unique(labels)
 
 
 def _whole(labels: NDArray) -> NDArray[np.int64]:

@@ -48,7 +48,7 @@ class ObjectCloud:
 
 @dataclass(frozen=True, eq=False)
 class NearPair:
-    """Two objects (or an object and the piece of table around it) and the gap between them in metres."""
+    """Two objects (or an object and the piece of table around it) and their `visible_gap` in metres."""
 
     first: ObjectCloud
     second: ObjectCloud
@@ -148,9 +148,10 @@ def box_distance(first: ObjectCloud, second: ObjectCloud) -> float:
 
 
 def visible_gap(first: ObjectCloud, second: ObjectCloud, near: float) -> float:
-    """Smallest distance between visible points, metres; infinity where it exceeds `near`, a bound on the search.
+    """How near the visible points come, metres; infinity where none is within `near`, a bound on the search.
 
-    The mean of the `CLOSEST` smallest nearest-neighbour distances from `first` to `second`.
+    The mean of the up to `CLOSEST` smallest nearest-neighbour distances from points of `first` to `second`, of
+    those within `near`. So it lies above the smallest of all, and the two clouds' order matters a little.
     """
     closest = closest_distances(first.cells, second.cells, CLOSEST, near)
     return float(closest.mean()) if closest.size else np.inf

@@ -60,6 +60,7 @@ def cloud_from_arrays(
     colours : (n, 3) or (rows, columns, 3), optional
         Whole numbers 0–255 or floats 0–1.
     camera : (3,), optional
+        Where the camera stands, in the frame and the unit of the points; finite.
 
     Raises
     ------

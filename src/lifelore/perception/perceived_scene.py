@@ -3,7 +3,6 @@
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.perception.interface import interfaces
-from lifelore.perception.relation import Relation
 from lifelore.perception.relation_classifier import RelationClassifier
 from lifelore.perception.relation_model_file import shipped_model
 from lifelore.perception.scene import Scene
@@ -13,7 +12,7 @@ from lifelore.perception.scene_logic import alternatives, most_likely_scene
 def perceived_scene(
     cloud: LabelledCloud, model: RelationClassifier | None = None, *, consistent: bool = True
 ) -> Scene:
-    """What a cloud shows: contacts, networks, relations.
+    """What a cloud shows: contacts, networks, relations; `Scene.optimal` is False where logic ran out of bounds.
 
     Parameters
     ----------
@@ -27,10 +26,7 @@ def perceived_scene(
     """
     model = model or shipped_model()
     found = interfaces(cloud, model.settings)
-    return Scene(cloud, found, _relations(cloud, found, model, consistent))
-
-
-def _relations(cloud, found, model: RelationClassifier, consistent: bool) -> tuple[Relation, ...]:
     if not consistent or model.multi_label or not set(model.names) <= set(CORE_RELATIONS):
-        return model.predict(cloud, found)
-    return most_likely_scene(alternatives(model.beliefs(cloud, found)), cloud.objects).relations
+        return Scene(cloud, found, model.predict(cloud, found))
+    decided = most_likely_scene(alternatives(model.beliefs(cloud, found)), cloud.objects)
+    return Scene(cloud, found, decided.relations, decided.optimal)

@@ -13,7 +13,8 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.core.relations import ADJACENT, BOTH, ON
+from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
+from lifelore.perception.core_words import other_words, without_carrier
 from lifelore.perception.relation import Relation
 
 DOMAIN_NAME = "tabletop"
@@ -77,13 +78,19 @@ def planning_problem(
     Parameters
     ----------
     relations : iterable of Relation
-        Consistent ones (see `scene_logic`); names outside on, adjacent and both are left out.
+        Consistent ones (see `scene_logic`), in the core vocabulary; *none* is left out.
     objects : iterable of int
         Objects beside those the relations name.
     goal : str
         A PDDL goal over `DOMAIN` in the objects' names, such as ``(and (clear o2) (on o3 o4))``.
     names : mapping from int to str, optional
         What to call the objects, made valid and unique by `pddl_names`; default ``o2``, ``o3``, ….
+
+    Raises
+    ------
+    InputError
+        A relation is not of the core vocabulary, nothing says what an object rests on, or `names` names an object
+        that is not there: what an unknown word says of resting cannot be planned with.
 
     Examples
     --------
@@ -100,6 +107,7 @@ def planning_problem(
     """
     relations = tuple(relations)
     things = sorted({*objects, *(label for r in relations for label in (r.a, r.b))} - {TABLE})
+    _check(relations, things)
     called = pddl_names(things, names)
     declared = f" {' '.join(called[thing] for thing in things)} - thing" if things else ""
     lines = ["(define (problem scene)", f"  (:domain {DOMAIN_NAME})", f"  (:objects{declared})", "  (:init"]
@@ -131,6 +139,19 @@ def pddl_names(things: Sequence[int], names: Mapping[int, str] | None = None) ->
         taken.add(name)
         called[thing] = name
     return called
+
+
+def _check(relations: Sequence[Relation], things: Sequence[int]) -> None:
+    if strange := other_words(relations):
+        raise InputError(
+            f"relations of a planning problem must be {', '.join(CORE_RELATIONS)}, got {', '.join(strange)};"
+            " perceive with a model of those words, such as the one shipped"
+        )
+    if hanging := without_carrier(relations, things):
+        raise InputError(
+            "relations of a planning problem must say on what every object rests, by on or both; of"
+            f" {', '.join(map(str, hanging))} nothing says so; `scene_logic.most_likely_scene` completes them"
+        )
 
 
 def _initial(relations: Sequence[Relation], things: Sequence[int], called: Mapping[int, str]) -> list[str]:

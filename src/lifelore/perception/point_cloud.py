@@ -23,7 +23,9 @@ class PointCloud:
     shape : (rows, columns), optional
         Of the organised image, row by row; None where the points have no such order.
     camera : (3,) float64, optional
-        Where the camera stands, in the frame of the points.
+        Where the camera stands, in the frame of the points; finite.
+    from_parts : bool
+        Whether the labels of the file numbered parts of objects, and `labels` are the objects they belong to.
 
     Raises
     ------
@@ -36,6 +38,7 @@ class PointCloud:
     colours: NDArray[np.uint8] | None = None
     shape: tuple[int, int] | None = None
     camera: NDArray[np.float64] | None = None
+    from_parts: bool = False
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -49,6 +52,8 @@ class PointCloud:
             raise InputError(f"shape {self.shape} must hold the {n} points")
         if self.camera is not None and self.camera.shape != (3,):
             raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+        if self.camera is not None and not np.isfinite(self.camera).all():
+            raise InputError(f"camera must be three finite numbers, got {self.camera.tolist()}; leave it out")
 
     @property
     def measured(self) -> NDArray[np.bool_]:
@@ -67,6 +72,7 @@ class PointCloud:
             None if self.labels is None else self.labels[keep],
             None if self.colours is None else self.colours[keep],
             camera=self.camera,
+            from_parts=self.from_parts,
         )
 
 

@@ -12,6 +12,7 @@ from itertools import combinations
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, ON
+from lifelore.perception.core_words import other_words
 from lifelore.perception.fact import Fact
 from lifelore.perception.relation import Relation
 
@@ -29,6 +30,7 @@ def region_relations(
     Parameters
     ----------
     relations : iterable of Relation
+        With a word outside the core vocabulary, which may mean touching, no DC is stated.
     objects : iterable of int
         Objects beside those the relations name. Pairs without a relation are far apart: DC.
     touching : float
@@ -41,6 +43,9 @@ def region_relations(
         for r in relations
         if r.relation in (ON, BOTH) or (r.relation == ADJACENT and r.gap <= touching)
     }
+    apart_too = not other_words(relations)
     return tuple(
-        Fact(EXTERNALLY_CONNECTED if pair in touch else DISCONNECTED, pair) for pair in combinations(everything, 2)
+        Fact(EXTERNALLY_CONNECTED if pair in touch else DISCONNECTED, pair)
+        for pair in combinations(everything, 2)
+        if apart_too or pair in touch
     )

@@ -16,7 +16,9 @@ class Relation:
     confidence : float
         In [0, 1].
     gap : float
-        Smallest distance between visible points of the two, metres; infinity for a far pair.
+        How near the visible points of the two come, metres (`near_pairs.visible_gap`: the mean of the up to five
+        smallest distances from points of the lower-numbered object, or of what is not the table, to the other);
+        infinity for a far pair.
     """
 
     a: int

@@ -4,6 +4,7 @@ Thesis: §2.3.5. Any set of labels may be brought; the order of a pair carries n
 inferred. ``method="displacement"`` is the thesis's own classifier.
 """
 
+from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Self
@@ -14,10 +15,13 @@ from lifelore.core.protocols import Progress
 from lifelore.core.relations import ADJACENT_GAP, PairLabel
 from lifelore.perception import gap_rule
 from lifelore.perception.contact_settings import ContactSettings
-from lifelore.perception.displacement_relations import fit_displacements
+from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.displacement_relations import NeighbourSettings, fit_displacements
 from lifelore.perception.interface import DEFAULT, Interface
 from lifelore.perception.label_relations import fit_labels, label_shares
 from lifelore.perception.pair_belief import PairBelief
+from lifelore.perception.pair_class import LEAST_CONFIDENCE as LEAST_CONFIDENCE
+from lifelore.perception.pair_class import pair_class
 from lifelore.perception.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
 from lifelore.perception.relation import Relation
 from lifelore.perception.scene_pairs import ScenePairs, scene_pairs
@@ -28,8 +32,6 @@ from lifelore.perception.tree_training import TreeSettings, fit_trees
 METHODS = ("trees", "displacement")
 OBJECTS, WITH_TABLE = "objects", "table"
 DEFAULT_TREES = TreeSettings()
-LEAST_CONFIDENCE = 2
-"""Labels below it are not learnt from: their own author doubts them."""
 
 
 class RelationClassifier:
@@ -48,10 +50,24 @@ class RelationClassifier:
     symmetric : collection of str, optional
         Relations that hold of (b, a) when they hold of (a, b); None infers them from the examples.
     omega, weights, k
-        Of the thesis's method, see `DisplacementNeighbours`.
+        Of the thesis's method, see `NeighbourSettings`.
     settings : ContactSettings
         How contacts are looked for, the same in training and in use.
     trees : TreeSettings
+
+    Attributes
+    ----------
+    names : tuple of str
+        The relations that were learnt, sorted.
+    symmetric : frozenset of str
+    learnt_from : dict of str to int
+        How many labels of near pairs, sure enough, were learnt from, by relation; empty for a loaded model. Labels
+        of pairs that are not near teach nothing.
+
+    Raises
+    ------
+    InputError
+        A setting breaks its rule.
     """
 
     def __init__(
@@ -78,11 +94,12 @@ class RelationClassifier:
         self.multi_label = multi_label
         self.settings = settings
         self.trees = trees
-        self.neighbours: dict[str, Any] = {"k": k, "omega": omega, "weights": weights}
+        self.neighbours = NeighbourSettings(k, omega, weights)
         self.declared = None if symmetric is None else frozenset(symmetric)
         self.names: tuple[str, ...] = ()
         self.symmetric: frozenset[str] = frozenset()
         self.models: dict[str, Any] = {}
+        self.learnt_from: dict[str, int] = {}
 
     def fit(
         self,
@@ -95,8 +112,9 @@ class RelationClassifier:
         Raises
         ------
         InputError
-            `clouds` and `truths` differ in number; no label is of a near pair; one pair has two relations without
-            `multi_label`.
+            `clouds` and `truths` differ in number; no label is of a near pair; without `multi_label`, one pair has
+            two relations, or one in both directions that is not symmetric; a name starts with ``~`` or ends with
+            ``=``.
         """
         scenes = []
         for number, cloud in enumerate(clouds):
@@ -117,13 +135,28 @@ class RelationClassifier:
         ]
         if not near:
             raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
-        self.names = tuple(sorted({label.relation for label in near}))
+        learnt_from = Counter(label.relation for label in near)
+        self.names = tuple(sorted(learnt_from))
+        if odd := [name for name in self.names if name.startswith(REVERSED) or name.endswith("=")]:
+            raise InputError(f"a relation's name must neither start with ~ nor end with =, got {odd[0]!r}")
         if self.declared is None:
             self.symmetric = symmetric_names(scenes, truths, self.names, LEAST_CONFIDENCE)
         else:
             self.symmetric = self.declared
+        if not self.multi_label:
+            self._check_one_class(scenes, truths)
         self.models = self._fitted(scenes, truths)
+        self.learnt_from = dict(sorted(learnt_from.items()))
         return self
+
+    def _check_one_class(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> None:
+        # Before anything is grown: a contradiction should not come to light after minutes of training.
+        for scene, truth in zip(scenes, truths, strict=True):
+            for first, said in zip(
+                scene.features.pairs[::2, 0], scene.labels(truth, LEAST_CONFIDENCE), strict=True
+            ):
+                if said:
+                    pair_class(said, int(first), self.symmetric)
 
     def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
         words = self.words

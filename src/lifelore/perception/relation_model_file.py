@@ -3,7 +3,6 @@
 import io
 import json
 import zipfile
-import zlib
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -14,8 +13,14 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.perception.contact_settings import ContactSettings
-from lifelore.perception.displacement_relations import DisplacementRelations
+from lifelore.perception.displacement_relations import DisplacementRelations, NeighbourSettings
 from lifelore.perception.relation_classifier import RelationClassifier
+from lifelore.perception.relation_model_check import (
+    check_classes,
+    check_displacements,
+    check_header,
+    check_trees,
+)
 from lifelore.perception.tree_ensemble import TreeEnsemble
 from lifelore.perception.tree_relations import TreeRelations
 
@@ -38,7 +43,9 @@ def save_model(model: RelationClassifier, path: str | Path, about: Mapping[str, 
     Raises
     ------
     InputError
-        The model is not fitted, or nothing can be written there.
+        The model is not fitted.
+    StoreError
+        Nothing can be written there.
     """
     content = model_bytes(model, about)
     try:
@@ -95,6 +102,14 @@ def model_bytes(model: RelationClassifier, about: Mapping[str, Any] | None = Non
         "about": dict(about or {}),
         "models": {},
     }
+    if model.method == "displacement":
+        omega = model.neighbours.omega
+        header["neighbours"] = {
+            "k": int(model.neighbours.k),
+            "omega": None if omega is None else float(omega),
+            "weights": model.neighbours.weights,
+        }
+    check_header({**header, "models": {kind: {} for kind in model.models}})
     arrays: dict[str, NDArray[Any]] = {}
     for number, (kind, one) in enumerate(model.models.items()):
         parts, columns = _parts(one)
@@ -110,7 +125,7 @@ def _parts(one: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any], 
     if isinstance(one, TreeRelations):
         told = {"classes": list(one.classes), "columns": list(one.columns), "temperature": one.temperature}
         return told, one.trees.arrays()
-    told = {"classes": list(one.classes), "k": one.k, "weights": one.weights}
+    told = {"classes": list(one.classes), "k": int(one.k), "weights": one.weights}
     return told, {"displacements": one.displacements, "codes": one.codes}
 
 
@@ -118,40 +133,49 @@ def model_from_bytes(content: bytes, where: str = "the model") -> RelationClassi
     """The model of `model_bytes`; `where` is named when it cannot be read."""
     arrays, header = _opened(content, where)
     try:
+        check_header(header)
         model = RelationClassifier(
             header["method"],
             adjacent_gap=header["adjacent_gap"],
             multi_label=header["multi_label"],
             symmetric=header["symmetric"],
-            settings=ContactSettings(**header["settings"]),
+            settings=ContactSettings(**{name: float(value) for name, value in header["settings"].items()}),
+            **_neighbours(header),
         )
         model.names, model.symmetric = tuple(header["names"]), frozenset(header["symmetric"])
         for kind, told in header["models"].items():
             prefix = f"{told['at']}."
             mine = {name.removeprefix(prefix): a for name, a in arrays.items() if name.startswith(prefix)}
-            model.models[kind] = _whole(model.method, told, mine)
-    except (KeyError, TypeError, ValueError, AttributeError) as error:
+            model.models[kind] = _whole(model, kind, told, mine)
+    except KeyError as error:
+        raise InputError(f"{where} {DAMAGED.format(f'{error} is missing')}") from None
+    except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise InputError(f"{where} {DAMAGED.format(error)}") from None
     return model
 
 
+def _neighbours(header: Mapping[str, Any]) -> dict[str, Any]:
+    """The settings of the votes; files of the first models tell them of each part alone, and ω not at all."""
+    if header["method"] != "displacement":
+        return {}
+    told = header.get("neighbours")
+    if told is None:
+        told = {name: next(iter(header["models"].values()))[name] for name in ("k", "weights")}
+    return asdict(NeighbourSettings(**told))
+
+
 def _whole(
-    method: str, told: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+    model: RelationClassifier, kind: str, told: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
 ) -> TreeRelations | DisplacementRelations:
-    classes = tuple(map(str, told["classes"]))
-    if method == "trees":
+    check_classes(kind, told["classes"], model.words, model.multi_label)
+    classes = tuple(told["classes"])
+    if model.method == "trees":
         trees = TreeEnsemble.from_arrays(arrays)
-        if (
-            len(classes) != trees.n_classes
-            or len(told["columns"]) != trees.n_features
-            or not told["temperature"] > 0
-        ):
-            raise ValueError("names and trees do not fit together")
+        check_trees(kind, told, trees.n_classes, trees.n_features, model.words, model.multi_label)
         return TreeRelations(classes, tuple(told["columns"]), trees, float(told["temperature"]))
-    known, codes = arrays["displacements"], arrays["codes"]
-    if known.shape != (len(codes), 3) or not len(codes) or codes.min() < 0 or codes.max() >= len(classes):
-        raise ValueError("names and displacements do not fit together")
-    return DisplacementRelations(classes, known, codes, int(told["k"]), str(told["weights"]))
+    check_displacements(arrays["displacements"], arrays["codes"], classes)
+    votes = NeighbourSettings(told["k"], None, told["weights"])
+    return DisplacementRelations(classes, arrays["displacements"], arrays["codes"], votes.k, votes.weights)
 
 
 def _opened(content: bytes, where: str) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
@@ -164,10 +188,7 @@ def _opened(content: bytes, where: str) -> tuple[dict[str, NDArray[Any]], dict[s
         header = json.loads(arrays.pop("about").tobytes())
         if header["format"] != FORMAT:
             raise ValueError("another kind of file")
-    except (
-        zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-        RuntimeError,
-    ) as error:  # fmt: skip
+    except Exception as error:  # a damaged archive raises what its parsers raise: zlib, lzma, struct, tokenize, …
         raise InputError(f"{where} {DAMAGED.format(error)}") from None
     if header.get("version") != VERSION:
         raise InputError(f"{where} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")

@@ -5,7 +5,7 @@ takes part in (§2.3.6), with the contact edges between them; the relations. Wha
 facts, planning problems, …) lives in files of its own and takes a `Scene`.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -48,6 +48,8 @@ class Scene:
         Where the objects, and the table, come near each other, pair by pair; each pair at most once.
     relations : tuple of Relation
         The predicates; see `scene_logic.most_likely_scene` for making them consistent.
+    optimal : bool
+        False where logic reconciled the relations, but could not prove that no consistent scene is likelier.
 
     Raises
     ------
@@ -58,6 +60,7 @@ class Scene:
     cloud: LabelledCloud
     interfaces: tuple[Interface, ...] = ()
     relations: tuple[Relation, ...] = ()
+    optimal: bool = True
 
     def __post_init__(self) -> None:
         known = {*self.objects, TABLE}
@@ -118,7 +121,7 @@ class Scene:
         """
         strangers = {frozenset((r.a, r.b)) for r in self.relations if r.relation == NONE}
         near = tuple(part for part in self.interfaces if frozenset((part.a, part.b)) not in strangers)
-        return Scene(self.cloud, near, self.relations)
+        return replace(self, interfaces=near)
 
     def position(self, label: int, node: int) -> NDArray[np.float64]:
         """Where a node of an object's network is, shape ``(3,)``, metres."""

@@ -8,7 +8,8 @@
 Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
 ``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a
 faces contact point j of b; a hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their
-places, ``outline`` the border of its opening. Numbers are finite: an unknown gap is null.
+places, ``outline`` the border of its opening. A relation's ``gap`` is the mean of the five smallest distances
+between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
 """
 
 import math

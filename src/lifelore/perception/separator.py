@@ -18,6 +18,8 @@ from lifelore.perception.separator_descent import descend
 
 MOST_STEPS = 500_000
 """Steps of the optimiser at most: seconds; soft margins need hundreds to thousands."""
+MOST_WORK = 3e9
+"""Evaluations of a Gaussian at most: four seconds."""
 _FURTHEST = 1e12
 """Beyond, squares of distances lose the distances between neighbours."""
 
@@ -39,7 +41,8 @@ class Separator:
     length : float
         The kernel's length l, metres.
     max_violation : float
-        How far the optimality (Karush-Kuhn-Tucker) conditions are from being met, over all points; ≥ 0.
+        How far the optimality (Karush-Kuhn-Tucker) conditions are from being met, over all points; ≥ 0. Where
+        `max_work` ran out, an upper bound; infinite where nothing is known.
     """
 
     points_first: Array
@@ -87,6 +90,7 @@ def separate(
     cost: float = 1.0,
     tolerance: float = 1e-3,
     max_steps: int = MOST_STEPS,
+    max_work: float = MOST_WORK,
 ) -> Separator:
     """Separate two clouds by the soft-margin support vector machine of a Gaussian kernel.
 
@@ -102,6 +106,9 @@ def separate(
         Greatest violation of the optimality conditions, > 0; 1e-3 is libsvm's default.
     max_steps : int
         Steps after which to stop, whatever the violation then is; it is reported.
+    max_work : float
+        Evaluations of the kernel after which to stop likewise, > 0. Clouds that lie *in* each other have no
+        surface between them, and could be worked on for minutes.
 
     Raises
     ------
@@ -124,11 +131,13 @@ def separate(
             raise InputError(f"{name} must be positive and finite, got {value}")
     if max_steps < 1:
         raise InputError(f"max_steps must be at least 1, got {max_steps}")
+    if not max_work > 0:
+        raise InputError(f"max_work must be above 0, got {max_work}")
     points = np.concatenate([a, b])
     n, n_first = len(points), len(a)
     side = np.where(np.arange(n) < n_first, 1.0, -1.0)
     levels = nested(_scaled(points, length), side, cost)
-    dual, violation = descend(levels, tolerance, max_steps)
+    dual, violation = descend(levels, tolerance, max_steps, max_work)
     beta = np.empty(n)
     beta[levels.order] = dual.beta
     support = np.flatnonzero(beta)

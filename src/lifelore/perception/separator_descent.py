@@ -22,7 +22,7 @@ GUESS_BAND = 0.1
 """How far a level's f may be from the next one's, when its first working set is chosen. Neither is relied on."""
 
 
-def descend(nested: Nested, tolerance: float, max_steps: int) -> tuple[Dual, float]:
+def descend(nested: Nested, tolerance: float, max_steps: int, max_work: float = np.inf) -> tuple[Dual, float]:
     """Solve level after level; the points' dual and its violation.
 
     Parameters
@@ -32,13 +32,16 @@ def descend(nested: Nested, tolerance: float, max_steps: int) -> tuple[Dual, flo
         Violation at which to stop.
     max_steps : int
         Steps of the optimiser over all levels, after which to stop whatever the violation.
+    max_work : float
+        Evaluations of a Gaussian after which to stop: each coarser voxel's weight is then shared out evenly among
+        the points in it, and the violation reported is a bound, infinite where it was never evaluated.
     """
     dual, violation = None, np.inf
     for level in nested.levels:
         last = level is nested.levels[-1]
         bound = tolerance if last else max(tolerance, COARSE_TOLERANCE)
         if dual is None:
-            dual, working = Dual(level, np.zeros(len(level.side))), _thinned(level.side)
+            dual, working = Dual(level, np.zeros(len(level.side)), max_work=max_work), _thinned(level.side)
         else:
             dual, working = _refined(dual, level, last)
         if last:
@@ -55,15 +58,17 @@ def _cells(level: Level, starts: Indices) -> Cells | None:
 
 def _optimise(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tuple[float, int]:
     """Working set after working set, from a first one; the violation at the end and the steps left."""
-    if len(working):
+    if len(working) and dual.affords(len(working)):
         changed, before, steps = _step(dual, working, tolerance, max_steps)
         max_steps -= steps
     dual.evaluate()
     for _ in range(MOST_ROUNDS):
         most, least = dual.extremes(tolerance)
-        if most - least <= tolerance or max_steps <= 0:
+        if most - least <= tolerance or max_steps <= 0 or dual.spent:
             break
         working = _working_set(dual, most, least)
+        if not dual.affords(len(working)):
+            break
         changed, before, steps = _step(dual, working, tolerance, max_steps)
         max_steps -= steps
         slope = dual.slope[working]
@@ -78,7 +83,9 @@ def _step(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tup
     dual.settle(working)
     points = np.ascontiguousarray(dual.level.points[:, working])
     beta, slope = dual.beta[working], dual.slope[working]
-    steps = ascend(points, dual.lower[working], dual.upper[working], beta, slope, tolerance / 2, max_steps)
+    limit = int(min(dual.steps_left(len(working)), max_steps))
+    steps = ascend(points, dual.lower[working], dual.upper[working], beta, slope, tolerance / 2, limit)
+    dual.count_steps(steps, len(working))
     before = dual.beta[working]
     changed = beta != before
     dual.beta[working], dual.slope[working] = beta, slope
@@ -124,16 +131,28 @@ def _refined(coarse: Dual, level: Level, last: bool) -> tuple[Dual, Indices]:
     near = np.abs(coarse.slope - bias) < STEEP * coarse.level.edge
     near[coarse.free()] = True
     members = np.flatnonzero(np.repeat(near, counts))
+    if coarse.spent or not coarse.affords(len(members)):
+        return _shared_out(coarse, level), members[:0]
     sums = coarse.sums(np.ascontiguousarray(level.points[:, members]))
     beta = np.where(np.repeat(coarse.beta == 0, counts), 0.0, level.side * level.cap)
     _fill(coarse, level, members, sums, beta)
-    dual = Dual(level, beta, None if last else members)
+    dual = Dual(level, beta, None if last else members, work=coarse.work, max_work=coarse.max_work)
     dual.slope[:] = np.repeat(coarse.slope, counts)
     dual.slope[members] = level.side[members] - sums
     working = _violating(dual, bias, GUESS_BAND)
     if not last:
         dual.error[np.repeat(~near, counts)] = 0.0
     return dual, working
+
+
+def _shared_out(coarse: Dual, level: Level) -> Dual:
+    """The next level's dual with each voxel's weight over its members, evenly by their caps; all work spent."""
+    counts = np.diff(coarse.level.starts)
+    share = np.abs(coarse.beta) / coarse.level.cap
+    beta = level.side * level.cap * np.minimum(np.repeat(share, counts), 1.0)
+    dual = Dual(level, beta, work=coarse.max_work, max_work=coarse.max_work)
+    dual.slope[:] = np.repeat(coarse.slope, counts)
+    return dual
 
 
 def _fill(coarse: Dual, level: Level, members: Indices, sums: Array, beta: Array) -> None:

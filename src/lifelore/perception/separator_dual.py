@@ -17,6 +17,8 @@ ORDER = 5
 """Degree of the far field's expansions."""
 _PER_CELL, _PER_POINT = 24, 25
 """An expansion's cost for each cell and source, and for each point, in evaluations of one Gaussian."""
+_PER_STEP = 2
+"""An optimiser's step's cost for each point of its working set, likewise; besides, it needs two kernel rows."""
 
 Indices = NDArray[np.int64]
 
@@ -34,6 +36,9 @@ class Dual:
         The points that are looked at, ascending; the others keep the slope they are given. None: all.
     cells : Cells or None
         Far-field cells of the level's points, if all are looked at; None: every sum is exact.
+    work, max_work : float
+        Evaluations of a Gaussian so far, and how many there may be. Once they are spent nothing is settled any
+        more: slopes stay within their errors.
 
     Attributes
     ----------
@@ -47,6 +52,8 @@ class Dual:
     beta: Array
     scope: Indices | None = None
     cells: Cells | None = None
+    work: float = 0.0
+    max_work: float = np.inf
     lower: Array = field(init=False)
     upper: Array = field(init=False)
     slope: Array = field(init=False)
@@ -57,13 +64,34 @@ class Dual:
         self.lower, self.upper = np.minimum(bound, 0.0), np.maximum(bound, 0.0)
         self.slope, self.error = self.level.side.copy(), np.full(len(bound), np.inf)
 
+    @property
+    def spent(self) -> bool:
+        """Whether no work is left."""
+        return self.work >= self.max_work
+
+    def affords(self, n_points: int) -> bool:
+        """Whether the work that is left pays for the sums of all support vectors at so many points."""
+        return self.work + n_points * float(np.count_nonzero(self.beta)) <= self.max_work
+
+    def steps_left(self, n_points: int) -> float:
+        """How many steps over so many points half the work left pays for; the other half is for their effect."""
+        each = (self.max_work - self.work) / (2 * n_points)
+        return max(each / (_PER_STEP + 2), (each - n_points) / _PER_STEP, 1.0)
+
+    def count_steps(self, n_steps: int, n_points: int) -> None:
+        """Add the work of so many steps over so many points: no row of the kernel is computed twice."""
+        self.work += (_PER_STEP * n_steps + min(2 * n_steps, n_points)) * n_points
+
     def evaluate(self) -> None:
-        """All slopes from all multipliers; those already exact stay so."""
+        """All slopes from all multipliers; those already exact stay so. With too little work left, nothing."""
+        support = np.flatnonzero(self.beta)
+        if self.work + self._cost(len(support)) > self.max_work:
+            self.work = max(self.work, self.max_work)
+            return
         exact = self.error == 0
         kept = self.slope[exact]
         scope = slice(None) if self.scope is None else self.scope
         self.slope[scope], self.error[scope] = self.level.side[scope], 0.0
-        support = np.flatnonzero(self.beta)
         self.pull(support, self.beta[support])
         self.slope[exact], self.error[exact] = kept, 0.0
 
@@ -73,18 +101,31 @@ class Dual:
         n, k = points.shape[1], len(which)
         if k == 0:
             return
+        self.work += self._cost(k)
         sources, sums = np.ascontiguousarray(points[:, which]), np.zeros(n)
-        if self.cells is not None and len(self.cells.radius) * k * _PER_CELL + n * _PER_POINT < n * k:
+        if self.cells is not None and self._far_cost(k) < n * k:
             sums, error = far_field(points, self.cells, sources, weights, ORDER)
             self.error += error
         else:
             kernel_sums(points, sources, weights, np.arange(n) if self.scope is None else self.scope, sums)
         self.slope -= sums
 
+    def _far_cost(self, n_sources: int) -> float:
+        if self.cells is None:
+            return np.inf
+        return len(self.cells.radius) * n_sources * _PER_CELL + self.level.points.shape[1] * _PER_POINT
+
+    def _cost(self, n_sources: int) -> float:
+        """Of the sums of so many sources at all points that are looked at."""
+        n_points = self.level.points.shape[1] if self.scope is None else len(self.scope)
+        return min(self._far_cost(n_sources), n_points * n_sources)
+
     def settle(self, which: Indices) -> None:
-        """Evaluate the slopes of `which` exactly, where they are not."""
+        """Evaluate the slopes of `which` exactly, where they are not and work is left."""
         which = which[self.error[which] > 0]
-        if len(which):
+        if len(which) and not self.affords(len(which)):
+            self.work = max(self.work, self.max_work)
+        elif len(which):
             sums = self.sums(np.ascontiguousarray(self.level.points[:, which]))
             self.slope[which] = self.level.side[which] - sums
             self.error[which] = 0.0
@@ -92,21 +133,29 @@ class Dual:
     def sums(self, points: Array) -> Array:
         """Σ_j β_j k(point, x_j) at `points` (3, m), exactly."""
         support = np.flatnonzero(self.beta)
+        self.work += len(support) * points.shape[1]
         sources, out = np.ascontiguousarray(self.level.points[:, support]), np.empty(points.shape[1])
         kernel_sums(points, sources, self.beta[support], np.arange(points.shape[1]), out)
         return out
 
     def extremes(self, tolerance: float) -> tuple[float, float]:
-        """max{r : β < upper} and min{r : β > lower}: exact if within `tolerance`, else possibly too close."""
+        """max{r : β < upper} and min{r : β > lower}: exact if within `tolerance`, else possibly too close.
+
+        With the work spent: as far apart as the errors allow.
+        """
         rising, falling = np.flatnonzero(self.beta < self.upper), np.flatnonzero(self.beta > self.lower)
         if len(rising) == 0 or len(falling) == 0:
             return 0.0, 0.0
-        most = float((self.slope[rising] - self.error[rising]).max())
-        least = float((self.slope[falling] + self.error[falling]).min())
-        if most - least > tolerance:
-            return most, least
-        self.settle(rising[self.slope[rising] + self.error[rising] >= most])
-        self.settle(falling[self.slope[falling] - self.error[falling] <= least])
+        if not self.spent:
+            most = float((self.slope[rising] - self.error[rising]).max())
+            least = float((self.slope[falling] + self.error[falling]).min())
+            if most - least > tolerance:
+                return most, least
+            self.settle(rising[self.slope[rising] + self.error[rising] >= most])
+            self.settle(falling[self.slope[falling] - self.error[falling] <= least])
+        if self.spent:
+            slope, error = self.slope, self.error
+            return float((slope + error)[rising].max()), float((slope - error)[falling].min())
         return float(self.slope[rising].max()), float(self.slope[falling].min())
 
     def free(self) -> Indices:
@@ -120,4 +169,4 @@ class Dual:
             self.settle(free)
             return float(self.slope[free].mean())
         most, least = self.extremes(np.inf)
-        return (most + least) / 2
+        return (most + least) / 2 if np.isfinite(most - least) else float(np.median(self.slope))

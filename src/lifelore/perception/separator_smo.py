@@ -11,6 +11,8 @@ from lifelore.perception.gaussian import Array, kernel_row
 
 _LEAST_CURVATURE = 1e-12
 """Two points at one place have none; libsvm's τ."""
+MOST_KEPT = 2**26
+"""Numbers of the kernel matrix kept at most, half a gigabyte; beyond that rows are computed anew."""
 
 
 @kernel
@@ -22,8 +24,10 @@ def ascend(
     points : (3, m), all others (m,); rows of the kernel matrix are computed when first needed.
     """
     m = beta.shape[0]
-    rows = np.empty((m, m))
-    known = np.zeros(m, np.bool_)
+    room = max(2, min(m, MOST_KEPT // m))
+    rows = np.empty((room, m))
+    place = np.full(m, -1)
+    kept = 0
     for step in range(max_steps):
         i, most, least = 0, -np.inf, np.inf
         for k in range(m):
@@ -33,10 +37,14 @@ def ascend(
                 least = slope[k]
         if most - least < tolerance:
             return step
-        if not known[i]:
-            kernel_row(points, i, rows[i])
-            known[i] = True
-        row_i = rows[i]
+        if room < m and kept + 2 > room:
+            place[:] = -1
+            kept = 0
+        if place[i] < 0:
+            kernel_row(points, i, rows[kept])
+            place[i] = kept
+            kept += 1
+        row_i = rows[place[i]]
         j, best = 0, -1.0
         for k in range(m):
             rise = most - slope[k]
@@ -44,10 +52,11 @@ def ascend(
                 gain = rise * rise / max(2.0 - 2.0 * row_i[k], _LEAST_CURVATURE)
                 if gain > best:
                     j, best = k, gain
-        if not known[j]:
-            kernel_row(points, j, rows[j])
-            known[j] = True
-        row_j = rows[j]
+        if place[j] < 0:
+            kernel_row(points, j, rows[kept])
+            place[j] = kept
+            kept += 1
+        row_j = rows[place[j]]
         move = (most - slope[j]) / max(2.0 - 2.0 * row_i[j], _LEAST_CURVATURE)
         room_i, room_j = upper[i] - beta[i], beta[j] - lower[j]
         if room_i <= move and room_i <= room_j:

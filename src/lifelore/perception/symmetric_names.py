@@ -27,12 +27,13 @@ def symmetric_names(
     A core relation is what its definition says. Any other is symmetric if it was written of some pair both ways,
     or if trees that saw other scenes cannot tell (a, b) from (b, a) better than a coin.
     """
+    sure = [[label for label in truth if label.confidence >= least_confidence] for truth in truths]
     return frozenset(
-        name for name in names if _is_symmetric(name, examples(scenes, truths, name, least_confidence), truths)
+        name for name in names if _is_symmetric(name, _examples(scenes, truths, name, least_confidence), sure)
     )
 
 
-def examples(
+def _examples(
     scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]], name: str, least_confidence: int
 ) -> tuple[np.ndarray, np.ndarray]:
     """Rows in the written and in the other order, ``(n, 2, d)``, and the scene of each, ``(n,)``."""

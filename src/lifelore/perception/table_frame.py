@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
+from lifelore.perception.cloud_scale import FAR
 from lifelore.perception.plane import NEAR, Plane, dominant_plane, over_outline
 from lifelore.perception.point_cloud import PointCloud
 from lifelore.perception.segmentation import SegmentationSettings, segmented
@@ -45,8 +46,10 @@ def to_scene(
     Raises
     ------
     InputError
-        No point was measured, `up` breaks its rule, or no plane can be found.
+        No point was measured, the camera stands farther off than any cloud is read (`cloud_scale.FAR`), `up`
+        breaks its rule, or no plane can be found.
     """
+    _check_camera(cloud.camera)
     cloud = thinned(cloud)
     measured = cloud.measured
     if not measured.any():
@@ -60,6 +63,13 @@ def to_scene(
     if labels is None:
         labels = segmented(points, cloud.colours, segmentation or SegmentationSettings())
     return LabelledCloud(points, labels, cloud.colours, camera)
+
+
+def _check_camera(camera: NDArray[np.float64] | None) -> None:
+    if camera is not None and np.abs(camera).max() > FAR:
+        raise InputError(
+            f"camera must stand within {FAR:.0e} m of the frame's origin, got {camera.tolist()}; leave it out"
+        )
 
 
 def table_plane(cloud: PointCloud) -> Plane:

@@ -4,7 +4,7 @@ So a model is a handful of arrays (no pickle), and asking it needs NumPy alone: 
 that importing scikit-learn takes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +14,8 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 
 LEAF = -1
+MOST_TREES, MOST_STEPS = 10_000, 1000
+"""More trees, or longer ways from a root to a leaf, are refused: a file must not keep one waiting."""
 CHUNK = 4096
 """Rows judged at once: bounds the memory at CHUNK × trees × classes numbers."""
 
@@ -119,25 +121,60 @@ class TreeEnsemble:
         if missing:
             raise InputError(f"trees must have {', '.join(missing)}, which the model lacks; train it anew")
         fields = {name: arrays[name] for name in cls.__dataclass_fields__}
+        kinds = {"threshold": "f", "shares": "f"}
+        sizes = {"shares": 2, "n_features": 0, "depth": 0}
+        if odd := [
+            name
+            for name, array in fields.items()
+            if array.dtype.kind != kinds.get(name, "i") or array.ndim != sizes.get(name, 1) or not array.size
+        ]:
+            raise InputError(f"the model's trees are damaged: {', '.join(odd)} hold something else; train it anew")
         found = cls(**{**fields, "n_features": int(fields["n_features"]), "depth": int(fields["depth"])})
         found._check()
         return found
 
     def _check(self) -> None:
+        if not self._points_inside():
+            raise InputError("the model's trees are damaged: they point outside themselves; train it anew")
+        if not (np.isfinite(self.threshold).all() and _are_shares(self.shares)):
+            raise InputError("the model's trees are damaged: numbers are no thresholds or shares; train it anew")
+        if len(self.roots) > MOST_TREES or not 0 <= self.depth <= MOST_STEPS:
+            raise InputError(
+                f"the model's trees are damaged: {len(self.roots)} trees of {self.depth} steps, of at most"
+                f" {MOST_TREES} and {MOST_STEPS}; train it anew"
+            )
+        if not self._ends():
+            raise InputError("the model's trees are damaged: not every way ends in a leaf; train it anew")
+
+    def _points_inside(self) -> bool:
         n = len(self.feature)
-        inside: Sequence[tuple[NDArray[Any], int, int]] = (
+        inside = (
             (self.roots, 0, n),
             (self.left, 0, n),
             (self.right, 0, n),
             (self.leaf, 0, len(self.shares)),
             (self.feature, LEAF, self.n_features),
         )
-        same_length = all(column.shape == (n,) for column in (self.threshold, self.left, self.right, self.leaf))
-        in_range = all(
-            a.size and a.dtype.kind == "i" and a.min() >= low and a.max() < high for a, low, high in inside
-        )
-        if not (same_length and in_range and self.shares.ndim == 2 and 0 <= self.depth <= n):
-            raise InputError("the model's trees point outside themselves: the file is damaged; train it anew")
+        same_length = all(len(column) == n for column in (self.threshold, self.left, self.right, self.leaf))
+        return same_length and all(a.min() >= low and a.max() < high for a, low, high in inside)
+
+    def _ends(self) -> bool:
+        """Whether every way from a root comes to a leaf in `depth` steps and stays there, and no two ways meet."""
+        own, at_leaf = np.arange(len(self.feature)), self.feature == LEAF
+        if ((self.left != own) | (self.right != own))[at_leaf].any():
+            return False
+        reached, seen = self.roots, len(self.roots)
+        for _ in range(self.depth):
+            inner = reached[~at_leaf[reached]]
+            reached = np.concatenate([self.left[inner], self.right[inner]])
+            seen += len(reached)
+            if not len(reached) or seen > len(own):
+                break
+        return seen <= len(own) and bool(at_leaf[reached].all())
+
+
+def _are_shares(shares: NDArray[np.float32]) -> bool:
+    return bool(np.isfinite(shares).all() and (shares >= 0).all() and (abs(shares.sum(axis=1) - 1) < 1e-3).all())
 
 
 def _rounded_down(threshold: NDArray[np.float64], at_leaf: NDArray[np.bool_]) -> NDArray[np.float32]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.perception import gap_rule
 from lifelore.perception.directed_label import directed_classes, mirror_order
 from lifelore.perception.scene_pairs import ScenePairs
@@ -84,8 +85,10 @@ def object_shares(
     rows = np.repeat(~scene.with_table, 2)
     found = both_orders(model, scene.features.columns(model.columns)[rows], inner_symmetric(symmetric))
     shares = dict(zip(model.classes, found.T, strict=True))
-    if adjacent_gap is None or gap_rule.BESIDE not in shares:
+    if gap_rule.BESIDE not in shares:
         return shares
+    if adjacent_gap is None:
+        raise InputError("adjacent_gap must be metres for a model that learnt with one, got None; train it anew")
     return gap_rule.decided(shares, scene.features.gaps[::2][~scene.with_table], adjacent_gap)
 
 

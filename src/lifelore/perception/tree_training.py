@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from numbers import Integral
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,9 +10,11 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.relations import PairLabel
 from lifelore.perception import gap_rule
-from lifelore.perception.directed_label import as_directed, mirrored
+from lifelore.perception.directed_label import mirrored
+from lifelore.perception.pair_class import pair_class
 from lifelore.perception.pair_features import GEOMETRY_COLUMNS
 from lifelore.perception.scene_pairs import ScenePairs
+from lifelore.perception.tree_ensemble import MOST_TREES
 from lifelore.perception.tree_relations import (
     Shares,
     TreeRelations,
@@ -31,13 +34,44 @@ TEMPERATURES = np.geomspace(0.3, 2.0, 39)
 
 @dataclass(frozen=True)
 class TreeSettings:
-    """How trees are grown: see `TreeClassifier`; `table_trees` for the pairs with the table."""
+    """How trees are grown: see `TreeClassifier`.
+
+    Parameters
+    ----------
+    n_trees, table_trees : int
+        Trees for pairs of objects and for pairs with the table, 1 to `MOST_TREES`.
+    min_leaf : int
+        At least 1.
+    feature_share : float or "sqrt"
+        In (0, 1].
+    seed : int
+        At least 0.
+
+    Raises
+    ------
+    InputError
+        A number breaks its rule.
+    """
 
     n_trees: int = 200
     table_trees: int = 100
     min_leaf: int = 2
     feature_share: float | str = "sqrt"
     seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, least, most in (
+            ("n_trees", 1, MOST_TREES),
+            ("table_trees", 1, MOST_TREES),
+            ("min_leaf", 1, 2**31 - 1),
+            ("seed", 0, 2**32 - 1),
+        ):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Integral) or not least <= int(value) <= most:
+                raise InputError(f"{name} must be a whole number from {least} to {most}, got {value!r}")
+        share = self.feature_share
+        if share != "sqrt" and not (isinstance(share, float) and 0 < share <= 1):
+            raise InputError(f"feature_share must be 'sqrt' or a share in (0, 1] such as 0.5, got {share!r}")
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +92,7 @@ def fit_trees(
     least_confidence: int,
 ) -> tuple[TreeRelations | None, TreeRelations | None]:
     """Models for pairs of objects and for pairs with the table; None where the truths have no such pair."""
-    rows = object_rows(scenes, truths, words, columns, least_confidence)
+    rows = _object_rows(scenes, truths, words, columns, least_confidence)
     objects, seen = None, [{} for _ in scenes]
     if len(rows.scene):
         objects = grown(rows, columns, settings, settings.n_trees)
@@ -71,7 +105,7 @@ def fit_trees(
     return objects, _fit_table(scenes, truths, words, settings, least_confidence, seen)
 
 
-def object_rows(
+def _object_rows(
     scenes: Sequence[ScenePairs],
     truths: Sequence[Sequence[PairLabel]],
     words: Vocabulary,
@@ -88,23 +122,13 @@ def object_rows(
         ):
             if table or not said:
                 continue
-            name = as_directed(_only(said), int(scene.features.pairs[2 * pair, 0]), words.symmetric)
+            name = pair_class(said, int(scene.features.pairs[2 * pair, 0]), words.symmetric)
             if words.adjacent_gap is not None:
                 name = gap_rule.inner_label(name, float(scene.features.gaps[2 * pair]), words.adjacent_gap)
             matrix += [features[2 * pair], features[2 * pair + 1]]
             classes += [name, mirrored(name, symmetric)]
             origin += [number, number]
     return Rows(np.array(matrix).reshape(-1, len(columns)), np.array(classes, str), np.array(origin, np.int64))
-
-
-def _only(said: Sequence[PairLabel]) -> PairLabel:
-    if len({(label.relation, label.a) for label in said}) > 1:
-        first, other = said[0], said[1]
-        raise InputError(
-            f"truths must give a pair one relation, got {first.relation}({first.a}, {first.b}) and"
-            f" {other.relation}({other.a}, {other.b}); several may hold with multi_label=True"
-        )
-    return said[0]
 
 
 def grown(rows: Rows, columns: Sequence[str], settings: TreeSettings, n_trees: int) -> TreeRelations:
@@ -181,9 +205,7 @@ def _fit_table(
         for row, pair in zip(rows, at, strict=True):
             if labels[pair]:
                 matrix.append(row)
-                classes.append(
-                    as_directed(_only(labels[pair]), int(scene.features.pairs[2 * pair, 0]), words.symmetric)
-                )
+                classes.append(pair_class(labels[pair], int(scene.features.pairs[2 * pair, 0]), words.symmetric))
                 origin.append(number)
     if not matrix:
         return None

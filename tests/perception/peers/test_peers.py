@@ -121,3 +121,13 @@ def test_it_refuses_lessons_that_do_not_fit(name, seen, lesson):
 def test_one_word_is_enough_to_learn(name, seen):
     said = PEERS[name]().fit_pairs(seen[name][:1], [(PairLabel(2, 3, "near"), PairLabel(3, 2, "near", 1))])
     assert of_pair(said.predict_pairs(seen[name][0]), 2, 3).relation == "near"
+
+
+@pytest.mark.parametrize("name", LEARNT)
+def test_a_pair_with_two_relations_is_refused(name, seen):
+    for other in (PairLabel(2, 3, "adjacent"), PairLabel(3, 2, "on")):
+        with pytest.raises(InputError, match="one relation"):
+            PEERS[name]().fit_pairs(seen[name][:1], [(PairLabel(2, 3, "on"), other)])
+    twice = (PairLabel(2, 3, "adjacent"), PairLabel(3, 2, "adjacent"))
+    said = PEERS[name]().fit_pairs(seen[name][:1], [twice]).predict_pairs(seen[name][0])
+    assert of_pair(said, 2, 3).relation == "adjacent"

@@ -14,14 +14,13 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.directed_label import REVERSED, as_directed
+from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.pair_class import LEAST_CONFIDENCE, pair_class
 from lifelore.perception.peers.seen_pairs import seen_pairs
 from lifelore.perception.relation import Relation
 
 Describe = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 """Two clouds of points, (n, 3) and (m, 3), to a vector; always of the same length."""
-LEAST_CONFIDENCE = 2
-"""Labels below it are not learnt from: their own author doubts them."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +82,8 @@ class Peer(ABC):
         Raises
         ------
         InputError
-            `clouds` and `truths` differ in number, or no label is of a near pair.
+            `clouds` and `truths` differ in number, no label is of a near pair, or one pair has two relations (or
+            one in both directions that is not *adjacent* or *none*, all that a peer knows to be symmetric).
         """
         return self.fit_pairs([self.look(cloud) for cloud in clouds], truths)
 
@@ -106,11 +106,13 @@ def labelled(
         raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
     found = []
     for pairs, truth in zip(scenes, truths, strict=True):
-        said = {frozenset((label.a, label.b)): label for label in truth if label.confidence >= LEAST_CONFIDENCE}
+        said: dict[frozenset[int], list[PairLabel]] = {}
+        for label in truth:
+            if label.confidence >= LEAST_CONFIDENCE:
+                said.setdefault(frozenset((label.a, label.b)), []).append(label)
         for pair in pairs:
-            label = said.get(frozenset((pair.a, pair.b)))
-            if label is not None:
-                found.append((pair, as_directed(label, pair.a, SYMMETRIC)))
+            if labels := said.get(frozenset((pair.a, pair.b))):
+                found.append((pair, pair_class(labels, pair.a, SYMMETRIC)))
     if not found:
         raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
     return found

@@ -1,0 +1,101 @@
+"""What a perceived scene is written to: a planning problem with its domain, a graph, a picture."""
+
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lifelore.core.errors import InputError, StoreError
+from lifelore.perception.scene import Scene
+
+
+@dataclass(frozen=True)
+class SceneFiles:
+    """Files to write; those left out are not.
+
+    Parameters
+    ----------
+    pddl : str, optional
+        A planning problem; its domain is written beside it, see `domain_path`.
+    dot : str, optional
+        A graph for Graphviz.
+    plot : str, optional
+        A picture, ``NAME.png``.
+    """
+
+    pddl: str | None = None
+    dot: str | None = None
+    plot: str | None = None
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """All that are written, the domain among them."""
+        domain = None if self.pddl is None else domain_path(self.pddl)
+        return tuple(path for path in (self.pddl, domain, self.dot, self.plot) if path is not None)
+
+
+def domain_path(problem: str) -> str:
+    """Where the domain of a problem file is written: beside it, as ``NAME-domain.pddl``."""
+    path = Path(problem)
+    return str(path.with_name(f"{path.stem}-domain.pddl")) if path.name else ""
+
+
+def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str]]) -> None:
+    """Refuse, before the work, files that cannot be written, or would overwrite one another or the `sources`.
+
+    Raises
+    ------
+    InputError
+        Its line names the file.
+    """
+    for path in files.paths:
+        _check_writable(path)
+    if files.plot is not None and not files.plot.lower().endswith(".png"):
+        raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
+    taken = {os.path.realpath(path) for path in sources if files.paths}
+    for path in files.paths:
+        if os.path.realpath(path) in taken:
+            raise InputError(
+                f"'{path}' would be written over: the cloud, the model, plot, dot, pddl and the domain beside it"
+                " must be different files"
+            )
+        taken.add(os.path.realpath(path))
+
+
+def _check_writable(path: str) -> None:
+    if not path or os.path.isdir(path):
+        raise InputError(f"the output must be a file, got '{path}', which is {'a folder' if path else 'empty'}")
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+        raise InputError(f"'{path}' cannot be written: its folder must exist and be writable")
+
+
+def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> None:
+    """Write a scene, and its document of `scene_json` for the picture.
+
+    Raises
+    ------
+    StoreError
+        The disk refuses.
+    """
+    if files.pddl is not None:
+        from lifelore.perception.planning_problem import DOMAIN, planning_problem
+
+        _write_text(files.pddl, planning_problem(scene.relations, scene.objects))
+        _write_text(domain_path(files.pddl), DOMAIN)
+    if files.dot is not None:
+        from lifelore.perception.scene_graph import to_dot
+
+        _write_text(files.dot, to_dot(scene))
+    if files.plot is not None:
+        from lifelore.figures.scene_picture import draw_scene
+        from lifelore.figures.style import save_figure
+
+        save_figure(draw_scene(scene.cloud, document), files.plot)
+
+
+def _write_text(path: str, text: str) -> None:
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
