@@ -234,7 +234,7 @@ def place_ball_at_l_block(rng: np.random.Generator, kit: Kit, settings: Tabletop
 def place_cloth(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
     """A cloth laid over a block (Fig. 2.3); takes some ten times as long as a solid scene.
 
-    The aluminium foil of §2.4.1 cannot be tested: crumpled it keeps its shape, and the engine's sheets are elastic.
+    The foil of §2.4.1 cannot be tested: crumpled it keeps its shape, and the engine's sheets are elastic.
     """
     length, width = rng.uniform(0.1, 0.15, 2)
     below = stand(box(length, width, rng.uniform(0.08, 0.12)), about(2, rng.uniform(0, 6)))
