@@ -91,7 +91,18 @@ COMMANDS = dict(leaves(typer.main.get_command(command_line.app)))
 
 
 def test_the_contract_names_these_commands():
-    verbs = {"live", "perceive", "learn-relations", "scenes", "reproduce", "bench", "doctor", "version"}
+    verbs = {
+        "live",
+        "perceive",
+        "learn-relations",
+        "scenes",
+        "teach",
+        "advise",
+        "reproduce",
+        "bench",
+        "doctor",
+        "version",
+    }
     verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}
     assert {" ".join(path) for path in COMMANDS} == verbs
 

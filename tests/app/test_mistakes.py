@@ -109,7 +109,7 @@ NUMBERS = {
     f"{BUILDING} --robot-radius 50": "no free cell is left",
 }
 NAMES = {
-    f"{LATTICE} --domain moon": "domain must be one of building, lattice, noise, got 'moon'",
+    f"{LATTICE} --domain moon": "domain must be one of building, lattice, noise, advice, got 'moon'",
     f"{LATTICE} --agent bob": "agent must be one of lore",
     f"{LATTICE} --learner sarsa": "learner must be one of model, q",
     f"{Q} --agent rmax": "learner 'q' has agents",

@@ -106,6 +106,23 @@ def random_world(seed: int, n_states=8, n_actions=3, n_outcomes=1) -> Tables:
     return Tables(next_state, reward, event, cum, np.arange(n_states, dtype=np.int32))
 
 
+def random_layers(seed: int, n_layers=5, size=4, n_actions=3, n_outcomes=1, reach=None) -> Tables:
+    """`random_world` in layers that lead to themselves and onwards, by at most `reach` layers."""
+    tables = random_world(seed, n_layers * size, n_actions, n_outcomes)
+    random = np.random.default_rng(seed + 1)
+    layer = np.arange(n_layers * size)[:, None, None] // size
+    onwards = random.choice([0, 0, 1, reach or n_layers], tables.next_state.shape)
+    target = np.minimum(layer + random.integers(0, onwards + 1), n_layers - 1)
+    moved = target * size + tables.next_state % size
+    next_state = np.where(tables.event == COLLISION, tables.next_state, moved).astype(np.int32)
+    return tables._replace(next_state=next_state, starts=np.arange(size, dtype=np.int32))
+
+
+@pytest.fixture(scope="session")
+def draw_layers():
+    return random_layers
+
+
 @pytest.fixture(scope="session")
 def big_random():
     return BigRandom

@@ -10,26 +10,28 @@ from pathlib import Path
 import numpy as np
 
 
-def _random_world():
+def _twins():
     spec = importlib.util.spec_from_file_location("twins", Path(__file__).with_name("conftest.py"))
     assert spec is not None
     assert spec.loader is not None
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
-    return module.random_world
+    return module
 
 
 def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
     from lifelore.core.curve import new_curve
     from lifelore.core.known_world import best_known_actions, blank_model
+    from lifelore.core.layered_planning import LayeredPlan, layered_q
     from lifelore.core.model_learning import Manner, Perceived, explore, new_explorer
     from lifelore.core.planning import optimal_q, policy_values
     from lifelore.core.q_learning import Schedule, learn, new_learner, uniform_rows
     from lifelore.core.random_state import next_uniform, random_state
     from lifelore.core.streams import stream
 
-    random_world, out = _random_world(), {}
+    twins, out = _twins(), {}
+    random_world = twins.random_world
     state = random_state(stream(0, "state"))
     out["uniforms"] = np.array([next_uniform(state) for _ in range(50)])
     for n_outcomes in (1, 3):
@@ -43,6 +45,9 @@ def all_arrays() -> dict[str, np.ndarray]:
         q = optimal_q(tables, 0.9)
         values = policy_values(tables, random.integers(-1, 3, 8), 0.9)
         out |= _named(f"q-learning {n_outcomes}", (*who, *curve, q, values))
+        tables = twins.random_layers(n_outcomes, n_layers=4, size=3, n_outcomes=n_outcomes)
+        plan = LayeredPlan(_rows_of(tables, 3), 4, 3, 0.9)
+        out |= _named(f"layers {n_outcomes}", (layered_q(tables, 3, 0.9), *(plan.q(i) for i in range(4))))
     tables = random_world(1, n_states=15, n_actions=3)
     seen = Perceived(np.arange(15), np.zeros(15, np.int32), np.array([[0.0, 1.0, 4.0]]))
     for manner in (Manner(), Manner(planned=False), Manner(exhaustive=True), Manner(senses=True)):
@@ -53,6 +58,16 @@ def all_arrays() -> dict[str, np.ndarray]:
         best = best_known_actions(model, explorer.place)
         out |= _named(f"{manner}", (*model, *explorer, *curve, best))
     return out
+
+
+def _rows_of(tables, size):
+    """The rows of one layer of `size` states."""
+
+    def rows(layer):
+        here = slice(layer * size, (layer + 1) * size)
+        return type(tables)(*(table[here] for table in tables[:3]), *tables[3:])
+
+    return rows
 
 
 def _named(name: str, arrays) -> dict[str, np.ndarray]:

@@ -9,11 +9,16 @@ from gymnasium.utils.env_checker import check_env
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, _enumerate_with
 from lifelore.domains import ENVIRONMENTS
+from lifelore.domains.environment import GridEnvironment
+from lifelore.domains.factory_contexts import features
 from lifelore.domains.worlds import domain_names
 
 CASES = {
+    "lifelore/AdviceMaze-v0": {"size": 12, "seed": 2},
     "lifelore/Building-v0": {"seed": 3, "cell": 0.8},
+    "lifelore/Factory-v0": {"components": 2, "seed": 1},
     "lifelore/Lattice-v0": {"size": 11},
+    "lifelore/ModifiedFactory-v0": {"components": 2, "seed": 3},
     "lifelore/NoiseMaze-v0": {"size": 13, "seed": 2},
 }
 """Arguments that keep the plain enumeration short."""
@@ -24,10 +29,18 @@ def plain(name: str, **changes):
     return gymnasium.make(f"lifelore.domains:{name}", **(CASES[name] | changes)).unwrapped
 
 
+def percepts(env):
+    """The entry of ``info`` that tells what the agent perceives, and its value in each state."""
+    if isinstance(env, GridEnvironment):
+        return "percept", env.world.percepts.tolist()
+    return "features", list(map(tuple, features(env.factory_task).tolist()))
+
+
 def test_every_registered_environment_and_domain_is_covered():
     registered = {name for name in gymnasium.registry if name.startswith("lifelore/")}
     assert registered == set(ENVIRONMENTS) == set(CASES)
-    assert {plain(name).world.name for name in CASES} == set(domain_names())
+    grids = [env.world.name for env in map(plain, CASES) if isinstance(env, GridEnvironment)]
+    assert set(grids) == set(domain_names())
 
 
 @EVERY
@@ -41,15 +54,17 @@ def test_gymnasium_finds_nothing_to_say(name):
 def test_environment_tables_and_step_agree_bit_for_bit(name):
     env = plain(name)
     task, tables = env.task, env.task.tables()
-    goal_sides = np.flatnonzero((env.world.neighbour == task.goal).any(axis=1))
+    ends = (tables.event & TERMINAL > 0).mean(axis=(1, 2))
+    near_the_end = np.flatnonzero((ends > 0) & (ends < 1))
+    entry, percept_of = percepts(env)
     uniforms, _ = seeding.np_random(11)
     actions = np.random.default_rng(5)
     seen = {"terminal": 0, "collision": 0}
     state, info = env.reset(seed=11)
     assert state == tables.starts[int(uniforms.random() * len(tables.starts))]
     for _ in range(2000):
-        assert info["percept"] == env.world.percepts[state]
-        action, u = int(actions.integers(4)), uniforms.random()
+        assert info[entry] == percept_of[state]
+        action, u = int(actions.integers(task.domain.n_actions)), uniforms.random()
         outcome = int(np.searchsorted(tables.outcome_cum, u, side="right"))
         index = (state, action, outcome)
         row = (int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index]))
@@ -61,7 +76,7 @@ def test_environment_tables_and_step_agree_bit_for_bit(name):
         seen["terminal"] += terminated
         seen["collision"] += info["collision"]
         if terminated or actions.random() < 0.05:
-            state, info = env.reset(options={"state": actions.choice(goal_sides)})
+            state, info = env.reset(options={"state": actions.choice(near_the_end)})
             uniforms.random()
     assert min(seen.values()) > 10
 
@@ -80,14 +95,10 @@ def test_an_episode_is_cut_at_its_limit(name):
     env = gymnasium.make(name, **CASES[name])
     limit = ENVIRONMENTS[name][1]
     env.reset(seed=0)
-    # Two cells apart and back: never into the goal.
-    state = next(
-        s
-        for s in env.unwrapped.task.starts
-        if env.unwrapped.world.neighbour[s, 2] not in (-1, env.unwrapped.task.goal)
-    )
+    # Against one wall for ever: never to the end.
+    state, action, _ = np.argwhere(env.unwrapped.task.tables().event == COLLISION)[0].tolist()
     env.reset(options={"state": state})
-    outcomes = [env.step(2 + t % 2)[2:4] for t in range(limit)]
+    outcomes = [env.step(action)[2:4] for _ in range(limit)]
     assert outcomes[-1] == (False, True)
     assert not any(truncated for _, truncated in outcomes[:-1])
 
@@ -95,7 +106,8 @@ def test_an_episode_is_cut_at_its_limit(name):
 @EVERY
 def test_pictures(name):
     env = plain(name, render_mode="rgb_array")
-    here, there = env.task.starts[[0, -1]]
+    here = env.task.starts[0]
+    there = next(s for s in env.task.tables().next_state[here, :, 0] if s != here)
     env.reset(options={"state": here})
     first = env.render()
     assert first.dtype == np.uint8

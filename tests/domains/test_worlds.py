@@ -14,8 +14,11 @@ def test_the_defaults_of_each_domain():
         "building": 0.99,
         "lattice": 0.95,
         "noise": 0.95,
+        "advice": 0.95,
     }
-    assert all((world.goal_reward, world.wall_reward) == (100.0, -10.0) for world in worlds.values())
+    rewards = {name: (world.goal_reward, world.wall_reward) for name, world in worlds.items()}
+    assert rewards.pop("advice") == (1000.0, 0.0)
+    assert set(rewards.values()) == {(100.0, -10.0)}
     assert all(world.name == name for name, world in worlds.items())
 
 
@@ -27,7 +30,7 @@ def test_rewards_discount_and_seed_are_options_everywhere(name):
     assert world.fingerprint == world_from_settings(settings).fingerprint
 
 
-@pytest.mark.parametrize("name", ["building", "noise"])
+@pytest.mark.parametrize("name", ["building", "noise", "advice"])
 def test_seeds_draw_different_worlds(name):
     assert make_world(name, seed=1).fingerprint != make_world(name, seed=2).fingerprint
 
@@ -47,7 +50,7 @@ def test_size_and_density():
 
 
 def test_an_unknown_domain_lists_the_known():
-    with pytest.raises(NotFoundError, match="domain must be one of building, lattice, noise, got 'house'"):
+    with pytest.raises(NotFoundError, match="domain must be one of building, lattice, noise, advice, got 'house'"):
         make_world("house")
 
 
@@ -58,6 +61,7 @@ def test_an_unknown_domain_lists_the_known():
         ("noise", {"cell": 0.5}),
         ("building", {"density": 0.5}),
         ("building", {"size": 9}),
+        ("noise", {"loops": 0.1}),
     ],
 )
 def test_a_setting_without_use_is_refused(name, setting):

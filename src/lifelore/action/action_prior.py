@@ -12,6 +12,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.action.context_index import FEW, ContextIndex
+from lifelore.action.count_rows import SEQUENTIAL, draw_by_proportion, merged_rows, rising, sorted_order
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import entropy
 from lifelore.core.protocols import Record
@@ -21,6 +23,12 @@ MOST_WEIGHT = 1e6
 KIND, VERSION = "action_prior", 1
 ONE = 1 << 20
 """A weight of 1 as a fixed-point integer: weights keep six decimal digits and sum without rounding."""
+
+BLOCK = 1 << 13
+"""Rows sampled at a time: their numbers stay in the processor's cache."""
+
+MANY = 1 << 16
+"""Contexts from which their counts no longer fit the cache: they are then sampled in the order they lie in."""
 
 FORMS = ("proportion", "dirichlet", "softmax", "support", "tempered")
 """How counts become probabilities (§3.2.2.1): their proportion (the mean of the Dirichlet), one draw from the
@@ -59,8 +67,12 @@ class ActionPrior:
         if not (alpha0 > 0 and np.isfinite(alpha0)):
             raise InputError(f"alpha0 must be positive and finite, got {alpha0}")
         self.n_actions, self.alpha0, self.key = n_actions, float(alpha0), key
-        self._codes = np.empty(0, np.int64)
+        self._index = ContextIndex(np.empty(0, np.int64))
         self._counts = np.empty((0, n_actions), np.int64)
+
+    @property
+    def _codes(self) -> NDArray[np.int64]:
+        return self._index.codes
 
     def __len__(self) -> int:
         return len(self._codes)
@@ -97,8 +109,12 @@ class ActionPrior:
         largest = (2**63 - 1) // (self.n_actions + 1)
         if contexts.size and not (-largest <= contexts.min() and contexts.max() <= largest):
             raise InputError(f"contexts must be codes of magnitude at most {largest}; shorten the hash")
-        counted = best.any(axis=1)
-        self._add(contexts[counted], best[counted].astype(np.int64) * round(weight * ONE))
+        worth = round(weight * ONE)
+        counted = np.logical_or.reduce(list(best.T))  # column by column: rows are short
+        if not counted.all():
+            contexts, best = contexts[counted], best[counted]
+        if worth:
+            self._add(contexts, best, worth)
 
     def update_trajectory(self, contexts: ArrayLike, actions: ArrayLike, weight: float = 1.0) -> None:
         """Count the actions of a trajectory or demonstration, one for each visit (§3.4.8)."""
@@ -116,24 +132,36 @@ class ActionPrior:
             )
         self._add(other._codes, other._counts)
 
-    def _add(self, codes: NDArray[np.int64], counts: NDArray[np.int64]) -> None:
-        merged, place = np.unique(np.concatenate([self._codes, codes]), return_inverse=True)
-        total = np.zeros((len(merged), self.n_actions), np.int64)
-        total[place[: len(self._codes)]] = self._counts
-        np.add.at(total, place[len(self._codes) :], counts)
-        counted = total.any(axis=1)
-        self._codes, self._counts = merged[counted], total[counted]
+    def _add(self, codes: NDArray[np.int64], rows: NDArray, worth: int = 1) -> None:
+        """Add `worth` times each row of whole numbers or truths; none may be without any."""
+        if len(codes) >= FEW:
+            codes, self._counts = merged_rows(self._codes, self._counts, codes, rows, worth)
+            self._index = ContextIndex(codes)
+            return
+        place = self._index.places(codes)
+        if (place < 0).any():
+            self._make_room(np.unique(codes[place < 0]))
+            place = self._index.places(codes)
+        np.add.at(self._counts, place, rows * np.int64(worth))
+
+    def _make_room(self, codes: NDArray[np.int64]) -> None:
+        """Rows of zeros for distinct rising codes that have none yet."""
+        at = np.searchsorted(self._codes, codes)
+        self._index = ContextIndex(np.insert(self._codes, at, codes))
+        self._counts = np.insert(self._counts, at, 0, axis=0)
 
     # ---- reading ---------------------------------------------------------------------------------
 
     def counts(self, contexts: ArrayLike) -> NDArray[np.float64]:
         """Weighted counts Σ w U without α⁰, (n, n_actions); zeros where a context has none."""
-        contexts = np.asarray(contexts, np.int64).ravel()
+        return self._counts_at(self._index.places(np.asarray(contexts, np.int64).ravel()))
+
+    def _counts_at(self, place: NDArray[np.int64]) -> NDArray[np.float64]:
         if not len(self):
-            return np.zeros((len(contexts), self.n_actions))
-        place = np.minimum(np.searchsorted(self._codes, contexts), len(self) - 1)
-        found = self._codes[place] == contexts
-        return np.where(found[:, None], self._counts[place], 0) / ONE
+            return np.zeros((len(place), self.n_actions))
+        result = np.take(self._counts, place, axis=0, mode="clip") / ONE
+        result[place < 0] = 0.0
+        return result
 
     def unseen(self, contexts: ArrayLike) -> NDArray[np.bool_]:
         """Which contexts have no counts, (n,) bool; their mean is the unseen rate."""
@@ -162,9 +190,11 @@ class ActionPrior:
         escape : float
             Mass in [0, 1] that ``support`` spreads over all actions, so that none is ever excluded.
         """
+        return self._probs_of(self.counts(contexts), form, generator, beta, escape)
+
+    def _probs_of(self, counts, form, generator=None, beta=1.0, escape=0.02) -> NDArray[np.float64]:
         if not (beta >= 0 and np.isfinite(beta)):
             raise InputError(f"beta must be finite and at least 0, got {beta}")
-        counts = self.counts(contexts)
         alpha = counts + self.alpha0
         match form:
             case "proportion":
@@ -191,11 +221,31 @@ class ActionPrior:
         inside = counted / counted.sum(axis=1, keepdims=True)
         return (1 - escape) * inside + escape / self.n_actions
 
-    def sample(self, contexts: ArrayLike, generator: np.random.Generator, form="proportion", **how):
+    def sample(
+        self, contexts: ArrayLike, generator: np.random.Generator, form: str = "proportion", **how: float
+    ) -> NDArray[np.int64]:
         """One action for each context, (n,) int64, drawn from `probs`."""
-        cum = np.cumsum(self.probs(contexts, form, generator=generator, **how), axis=1)
-        drawn = generator.random(len(cum))[:, None] * cum[:, -1:]
-        return (drawn >= cum[:, :-1]).sum(axis=1)
+        contexts = np.asarray(contexts, np.int64).ravel()
+        if form == "proportion" and not how and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
+            return self._sample_many(contexts, generator.random(len(contexts)))
+        place = self._index.places(contexts)
+        if form == "dirichlet":
+            probs = self._probs_of(self._counts_at(place), form, generator, **how)
+            return _drawn(probs, generator.random(len(place)))
+        uniform = generator.random(len(place))
+        actions = np.empty(len(place), np.int64)
+        for first in range(0, max(1, len(place)), BLOCK):
+            rows = slice(first, first + BLOCK)
+            actions[rows] = _drawn(self._probs_of(self._counts_at(place[rows]), form, **how), uniform[rows])
+        return actions
+
+    def _sample_many(self, contexts: NDArray[np.int64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+        if len(self) < MANY or rising(contexts):
+            return draw_by_proportion(self._counts, self._index.places(contexts), 1 / ONE, self.alpha0, uniform)
+        order, in_order = sorted_order(np.ascontiguousarray(contexts))
+        actions = np.empty(len(contexts), np.int64)
+        actions[order] = self._sample_many(in_order, uniform[order])
+        return actions
 
     def mask(self, contexts: ArrayLike, threshold: float = 0.0) -> NDArray[np.bool_]:
         """Actions whose proportion of the counts exceeds `threshold`, (n, n_actions) bool.
@@ -234,6 +284,19 @@ class ActionPrior:
 
     # ---- keeping ---------------------------------------------------------------------------------
 
+    def fixed_point_counts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Contexts (n,) and counts (n, n_actions) as multiples of 1 / `ONE`: all there is, without rounding."""
+        return self._codes.copy(), self._counts.copy()
+
+    @classmethod
+    def from_fixed_point_counts(
+        cls, contexts: NDArray[np.int64], counts: NDArray[np.int64], alpha0: float = 0.1, key: str = ""
+    ) -> "ActionPrior":
+        """The prior of `fixed_point_counts`; contexts are distinct and rise, and no row of counts is all 0."""
+        prior = cls(counts.shape[1], alpha0, key)
+        prior._index, prior._counts = ContextIndex(contexts.copy()), np.ascontiguousarray(counts.copy())
+        return prior
+
     def to_record(self, about: Mapping[str, Any] | None = None) -> Record:
         """The counts as a record that memory adds up; α⁰ is a reader's choice and stays out."""
         context, action = np.nonzero(self._counts)
@@ -246,9 +309,10 @@ class ActionPrior:
         if (record.kind, record.version) != (KIND, VERSION):
             raise InputError(f"record must be {KIND} version {VERSION}, got {record.kind} {record.version}")
         prior = cls(n_actions, alpha0, record.key)
-        counts = np.zeros((len(record.slots), n_actions), np.int64)
-        counts[np.arange(len(record.slots)), record.slots % n_actions] = record.values
-        prior._add(record.slots // n_actions, counts)
+        slots, values = record.slots[record.values != 0], record.values[record.values != 0]
+        counts = np.zeros((len(slots), n_actions), np.int64)
+        counts[np.arange(len(slots)), slots % n_actions] = values
+        prior._add(slots // n_actions, counts)
         return prior
 
     @classmethod
@@ -259,3 +323,15 @@ class ActionPrior:
         for prior in (first, *rest):
             total.merge(prior)
         return total
+
+
+def _drawn(probs: NDArray[np.float64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The action of each row (n, n_actions) that a uniform number (n,) falls to."""
+    cum = np.ascontiguousarray(probs.T)
+    for action in range(1, len(cum)):
+        cum[action] += cum[action - 1]
+    drawn = uniform * cum[-1]
+    actions = np.zeros(len(drawn), np.int64)
+    for below in cum[:-1]:
+        actions += drawn >= below
+    return actions

@@ -32,7 +32,7 @@ class LifeSettings:
     Parameters
     ----------
     domain : str
-        One of `lifelore.domains.worlds.domain_names()`: building, lattice, noise.
+        One of `lifelore.domains.worlds.domain_names()`: building, lattice, noise, advice.
     map : str, optional
         ROS map (YAML); None generates an office from `seed`.
     tasks : int

@@ -29,6 +29,7 @@ app = typer.Typer(
 
 def _register() -> None:
     from lifelore.app import (
+        advise_command,
         bench_command,
         doctor_command,
         learn_relations_command,
@@ -37,12 +38,15 @@ def _register() -> None:
         perceive_command,
         reproduce_command,
         scenes_command,
+        teach_command,
     )
 
     app.command("live")(live_command.live)
     app.command("perceive")(perceive_command.perceive)
     app.command("learn-relations")(learn_relations_command.learn_relations)
     app.command("scenes")(scenes_command.scenes)
+    app.command("teach")(teach_command.teach)
+    app.command("advise")(advise_command.advise)
     app.add_typer(memory_commands.memory, name="memory")
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)

@@ -52,8 +52,11 @@ _HOME = {
 }
 
 ENVIRONMENTS = {
+    "lifelore/AdviceMaze-v0": ("advice_environment:AdviceMazeEnvironment", 5000),
     "lifelore/Building-v0": ("environment:BuildingEnvironment", 2000),
+    "lifelore/Factory-v0": ("factory_environment:FactoryEnvironment", 2000),
     "lifelore/Lattice-v0": ("environment:LatticeEnvironment", 1000),
+    "lifelore/ModifiedFactory-v0": ("factory_environment:ModifiedFactoryEnvironment", 2000),
     "lifelore/NoiseMaze-v0": ("environment:NoiseMazeEnvironment", 1000),
 }
 """Registered name → where its class lives in this package, and the steps after which an episode is cut."""

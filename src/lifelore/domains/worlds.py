@@ -6,6 +6,7 @@ from pathlib import Path
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.domains.advice_maze import advice_maze
 from lifelore.domains.building import building_from_map
 from lifelore.domains.grid_world import GridWorld
 from lifelore.domains.lattice import lattice
@@ -29,13 +30,15 @@ class WorldSettings:
     min_free : float, optional
         As in `building_from_map`, for ``building``; 0.25.
     discount, goal_reward, wall_reward : float, optional
-        γ 0.99 in buildings, 0.95 in the thesis's worlds; 100 and -10.
+        γ 0.99 in buildings, 0.95 in the thesis's worlds; 100 and -10, in the advice maze 1000 and 0.
     seed : int
-        Draws the office or the noise maze.
+        Draws the office, the noise maze or the advice maze.
     density : float, optional
         Share of obstacles, for ``noise``; drawn from 0.5–0.8.
     size : int, optional
-        Cells a side, for ``lattice`` and ``noise``; 23.
+        Cells a side, for ``lattice`` and ``noise``, 23, and ``advice``, 30.
+    loops : float, optional
+        As in `advice_maze`, for ``advice``; 0.1.
     """
 
     domain: str = "building"
@@ -49,6 +52,7 @@ class WorldSettings:
     seed: int = 0
     density: float | None = None
     size: int | None = None
+    loops: float | None = None
 
 
 _REWARDS = ("discount", "goal_reward", "wall_reward")
@@ -69,10 +73,15 @@ def _noise(settings: WorldSettings, **options) -> GridWorld:
     return noise_maze(stream(settings.seed, "noise maze"), **options)
 
 
+def _advice(settings: WorldSettings, **options) -> GridWorld:
+    return advice_maze(stream(settings.seed, "advice maze"), **options)
+
+
 _WORLDS: dict[str, tuple[Callable[..., GridWorld], tuple[str, ...]]] = {
     "building": (_building, ("map", "cell", "robot_radius", "min_free", *_REWARDS)),
     "lattice": (_lattice, ("size", *_REWARDS)),
     "noise": (_noise, ("density", "size", *_REWARDS)),
+    "advice": (_advice, ("loops", "size", *_REWARDS)),
 }
 """Name → constructor and the settings it takes."""
 

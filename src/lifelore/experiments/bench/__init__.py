@@ -8,7 +8,7 @@ from lifelore.core.protocols import Progress
 MOST_REPEATS = 1000
 
 
-BENCHES = ("kernels", "courier", "separator", "perceive", "relations", "pictures")
+BENCHES = ("kernels", "courier", "priors", "separator", "perceive", "relations", "pictures")
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
 

@@ -1,0 +1,225 @@
+"""What a set of tasks leaves of its domain: reachable states, futile states and actions, the minimised domain.
+
+Policies are their sets of best or tied-best actions, (n_states, n_actions) bool. A row without any has no policy:
+goals, where the episode is over, and completed configurations. Two definitions of what is kept:
+
+    printed   s reachable under some policy, a optimal in s under some policy (Def. 3.2.5)
+    repaired  s reachable and a optimal under one and the same policy
+
+The printed one can be left by its own actions (errata E8); the repaired one, the default, cannot.
+Thesis: §3.2.3, Def. 3.2.1-3.2.5, Thm 3.2.6, Props. 3.2.7-3.2.8, Alg. 3, Eq. 3.6.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.mdp import TERMINAL, Tables
+
+FORMS = ("repaired", "printed")
+
+States = NDArray[np.bool_]
+Pairs = NDArray[np.bool_]
+
+
+def reachable_states(tables: Tables, best: ArrayLike) -> States:
+    """States that lie on a path from S₀ under the policy, (n_states,) bool (Alg. 3).
+
+    Parameters
+    ----------
+    tables : Tables
+        A state entered by a TERMINAL event is reached, but nothing is done there: the episode is over.
+    best : (n_states, n_actions) bool
+        The policy's actions; of several tied each may be taken.
+    """
+    best = _checked(tables, best)
+    visited = np.zeros(tables.n_states, bool)
+    reached = np.zeros(tables.n_states, bool)
+    frontier = np.unique(tables.starts)
+    while frontier.size:
+        visited[frontier] = True
+        place, action = np.nonzero(best[frontier])
+        entered = tables.next_state[frontier[place], action]
+        over = (tables.event[frontier[place], action] & TERMINAL) > 0
+        reached[entered] = True
+        frontier = np.unique(entered[~over])
+        frontier = frontier[~visited[frontier]]
+    return visited | reached
+
+
+def task_futile_actions(best: ArrayLike) -> Pairs:
+    """Pairs (s, a) that the task's policy does not select (Def. 3.2.1), (n_states, n_actions) bool."""
+    return ~np.asarray(best, bool)
+
+
+def task_futile_states(tables: Tables, best: ArrayLike) -> States:
+    """States on no path from S₀ under the task's policy (Def. 3.2.2), (n_states,) bool."""
+    return ~reachable_states(tables, best)
+
+
+def domain_futile_actions(policies: Sequence[ArrayLike]) -> Pairs:
+    """Pairs that are futile in every task (Def. 3.2.3)."""
+    return np.logical_and.reduce([task_futile_actions(best) for best in policies])
+
+
+def domain_futile_states(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> States:
+    """States that are futile in every task (Def. 3.2.4)."""
+    futile = [task_futile_states(tables, best) for tables, best in _paired(tasks, policies)]
+    return np.logical_and.reduce(futile)
+
+
+@dataclass(frozen=True, eq=False)
+class MinimisedDomain:
+    """The task-set minimised domain.
+
+    form : "repaired" or "printed"
+    states : (n_states,) bool, Ŝ
+    pairs : (n_states, n_actions) bool, the (s, a) with s in Ŝ that Â keeps
+    kept_mass : (n_states, n_actions) float, the probability that a kept pair stays within Ŝ, which is 1/η; 0
+        where a pair is not kept
+    """
+
+    form: str
+    states: States
+    pairs: Pairs
+    kept_mass: NDArray[np.float64]
+
+    @property
+    def leading_out(self) -> Pairs:
+        """Kept pairs with an outcome outside Ŝ; none where the form is "repaired"."""
+        return self.pairs & (self.kept_mass < 1)
+
+    @property
+    def without_successor(self) -> Pairs:
+        """Kept pairs all of whose outcomes lie outside Ŝ: their η is 1/0."""
+        return self.pairs & (self.kept_mass == 0)
+
+
+def minimised_domain(
+    tasks: Sequence[Tables], policies: Sequence[ArrayLike], form: str = "repaired"
+) -> MinimisedDomain:
+    """The domain that these tasks leave (Def. 3.2.5).
+
+    Parameters
+    ----------
+    tasks : sequence of Tables
+        Of one domain: the same states, actions and transitions; at least one.
+    policies : sequence of (n_states, n_actions) bool
+        Best or tied-best actions of each task; rows of goals and completed configurations all False.
+    form : {"repaired", "printed"}
+        See the module.
+    """
+    if form not in FORMS:
+        raise NotFoundError(f"form must be one of {', '.join(FORMS)}, got '{form}'")
+    paired = _paired(tasks, policies)
+    reached = [reachable_states(tables, best) for tables, best in paired]
+    states = np.logical_or.reduce(reached)
+    own = [best & here[:, None] for (_, best), here in zip(paired, reached, strict=True)]
+    kept = np.logical_or.reduce(own if form == "repaired" else [best for _, best in paired])
+    pairs = kept & states[:, None]
+    tables = paired[0][0]
+    inside = states[tables.next_state]
+    outcome_probs = np.diff(tables.outcome_cum, prepend=0.0)
+    # Exactly 1 where every outcome is kept, whatever the probabilities add up to in floating point.
+    mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
+    return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
+
+
+def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> Tables:
+    """The task with only the kept pairs to choose from: every other action does what the first kept one does.
+
+    Rewards and outcomes of kept pairs stay as they are: nothing is renormalised, so the world's dynamics are its
+    own.
+
+    Parameters
+    ----------
+    tables : Tables
+    pairs : (n_states, n_actions) bool
+    dead_ends : {"stay", "free"}
+        A state without kept pairs, such as another task's goal: as in the minimised domain nothing can be done
+        there (every action stays, for no reward), or it keeps all of its own actions.
+    """
+    if dead_ends not in ("stay", "free"):
+        raise NotFoundError(f"dead_ends must be one of stay, free, got '{dead_ends}'")
+    pairs = _checked(tables, pairs)
+    some = pairs.any(axis=1, keepdims=True)
+    instead = np.where(pairs | ~some, np.arange(tables.n_actions), pairs.argmax(axis=1)[:, None])
+    rows = np.arange(tables.n_states)[:, None]
+    next_state, reward, event = (
+        array[rows, instead] for array in (tables.next_state, tables.reward, tables.event)
+    )
+    if dead_ends == "stay":
+        stuck = np.flatnonzero(~some)
+        next_state[stuck], reward[stuck], event[stuck] = stuck[:, None, None], 0.0, 0
+    return tables._replace(next_state=next_state, reward=reward, event=event)
+
+
+def trap_states(tables: Tables, pairs: ArrayLike | None = None) -> States:
+    """States from which no choice of kept pairs ever ends the episode, (n_states,) bool; `pairs` default all.
+
+    The trap states and dead ends of Prop. 3.2.7, for this task. Where an episode can end is no trap.
+    """
+    kept = np.ones(tables.next_state.shape[:2], bool) if pairs is None else _checked(tables, pairs)
+    ends = (tables.event & TERMINAL) > 0
+    over = np.zeros(tables.n_states, bool)
+    over[tables.next_state[ends]] = True
+    escapes = over
+    while True:
+        out = ends | escapes[tables.next_state]
+        grown = over | (kept & out.any(axis=2)).any(axis=1)
+        if np.array_equal(grown, escapes):
+            return ~escapes
+        escapes = grown
+
+
+def futile_goal_probability(n_actions: int, n_tasks: ArrayLike, alpha0: float) -> NDArray[np.float64]:
+    """Eq. 3.6: the least probability of the one action that leads to a goal futile in all tasks so far.
+
+    Parameters
+    ----------
+    n_actions : int
+        At least 1.
+    n_tasks : int or array of int
+        |T_s| ≥ 0: all tasks counted, each with weight 1, and all other actions tied best in each. For a prior by
+        percepts, tasks times the states that share the percept.
+    alpha0 : float
+        > 0.
+
+    Examples
+    --------
+    >>> futile_goal_probability(4, [0, 10], 0.1).round(5).tolist()
+    [0.25, 0.00329]
+    """
+    tasks = np.asarray(n_tasks, float)
+    if n_actions < 1 or not (tasks >= 0).all() or not (alpha0 > 0 and np.isfinite(alpha0)):
+        raise InputError(
+            "n_actions must be at least 1, n_tasks at least 0 and alpha0 positive and finite, "
+            f"got {n_actions}, {n_tasks} and {alpha0}"
+        )
+    return alpha0 / ((n_actions - 1) * (tasks + alpha0) + alpha0)
+
+
+def _paired(tasks: Sequence[Tables], policies: Sequence[ArrayLike]) -> list[tuple[Tables, Pairs]]:
+    if not tasks or len(tasks) != len(policies):
+        raise InputError(f"give a policy for each task, at least one, got {len(tasks)} and {len(policies)}")
+    paired = [(tables, _checked(tables, best)) for tables, best in zip(tasks, policies, strict=True)]
+    first = tasks[0]
+    for number, tables in enumerate(tasks):
+        same = tables.next_state.shape == first.next_state.shape
+        if not (same and np.array_equal(tables.outcome_cum, first.outcome_cum)):
+            raise InputError(
+                f"tasks must be of one domain, got task {number} with other states, actions or outcomes"
+            )
+        if not np.array_equal(tables.next_state, first.next_state):
+            raise InputError(f"tasks must share their transitions (§3.2.2), got others in task {number}")
+    return paired
+
+
+def _checked(tables: Tables, best: ArrayLike) -> Pairs:
+    best = np.asarray(best, bool)
+    if best.shape != (tables.n_states, tables.n_actions):
+        raise InputError(f"best must have shape ({tables.n_states}, {tables.n_actions}), got {best.shape}")
+    return best
