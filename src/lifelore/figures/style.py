@@ -44,6 +44,13 @@ COLOURS = {
     "eps-QSAP, ties by prior": VERMILION,
     "eps-QPAP": GREEN,
     "optimal": INK,
+    # makes of a prior in the factory
+    "expert": GREEN,
+    "incorrect": VERMILION,
+    "global": BLUE,
+    "left": SKY,
+    "listed": PURPLE,
+    "phase": ORANGE,
 }
 """Colour by agent or method, told apart by people with any common colour blindness (after Okabe and Ito)."""
 
@@ -82,7 +89,7 @@ _PARAMETERS = {
 }
 
 
-WIDTHS = {"scratch": 3.6, "lore": 2.4}
+WIDTHS = {"scratch": 3.6, "lore": 2.4, "listed": 3.0}
 
 
 def colour_of(name: str) -> str:

@@ -1,0 +1,91 @@
+"""Explorers on errands: readings of P(M₁ | H) by hand, and cells that are whole."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.action.advised_walk import Walk
+from lifelore.action.advisor import Advisor
+from lifelore.action.purpose import Purpose
+from lifelore.experiments.advised_explorers import (
+    block_curve,
+    own_normalcy,
+    run_cell,
+    run_normalcy_cell,
+    unadvised_normalcy,
+)
+from lifelore.experiments.c3_15 import QUICK
+from lifelore.experiments.c3_18 import QUICK as NORMALCY
+
+CELL = {"loops": 0.1, "maze": 0}
+
+
+def walked(p_normal, advised, reached=False, actions=None):
+    n = len(p_normal)
+    actions = np.zeros(n, np.int8) if actions is None else np.array(actions, np.int8)
+    arrays = (np.zeros(n, np.int32), actions, np.array(advised, bool), np.array(p_normal), np.zeros(n))
+    return Walk(*arrays, reached=reached, reward=1000.0 * reached)
+
+
+def test_unadvised_steps_by_hand():
+    assert unadvised_normalcy(walked([0.5, 0.1, 0.9, 0.3], [0, 1, 1, 0])) == pytest.approx(0.4)
+    assert unadvised_normalcy(walked([0.5, 0.1], [1, 1])) is None
+
+
+def test_own_steps_by_hand():
+    # One count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2, against 1/2.
+    advisor = Advisor.of_thesis([Purpose.from_best_actions([[True, False]])])
+    after = (0.1 / 1.2) / (0.1 / 1.2 + 0.5)
+    # It chose 1, was then told 0 twice, and chose 1: P(M₁ | H) before each step is 1/2, then that after one step.
+    found = own_normalcy(advisor, walked([0.5] * 4, [0, 1, 1, 0], actions=[1, 0, 0, 1]))
+    assert found == pytest.approx((0.5 + 3 * after) / 4)
+    # What was told counts where it is not left out: then it seems an expert.
+    all_steps = advisor.assess([0] * 4, [1, 0, 0, 1]).p_normal
+    assert all_steps[-1] > after
+
+
+def test_curves_by_blocks_by_hand():
+    long, short = walked([0.5, 0.7, 0.1, 0.3], [0] * 4), walked([0.2, 0.4, 0.6], [0] * 3, reached=True)
+    found = block_curve([long, short], 3, 2)
+    assert found["p"] == pytest.approx([1.2 + 0.6, 0.4 + 0.6, 0])
+    assert found["n"] == [4, 3, 0]
+    assert found["reached"] == [0, 1, 1]
+
+
+@pytest.fixture(scope="module")
+def cell():
+    return run_cell(QUICK, CELL, 0)
+
+
+def test_a_cell_has_every_agent_under_every_advisor(cell):
+    assert json.loads(json.dumps(cell)) == cell
+    ways = [(e["experts"], e["way"], e["agent"]) for e in cell["walks"]]
+    # Nobody; three advisors for two kinds of experts; and at the default, experts of other goals alone.
+    assert len(set(ways)) == len(ways) == 5 * (1 + 3 * 2 + 1)
+    assert all(len(e["reached"]) == QUICK["tasks"] for e in cell["walks"])
+    assert [one["experts"] for one in cell["learners"]] == [None, "walks", "policies"]
+
+
+def test_nobody_advises_the_unadvised_and_the_better_advisor_keeps_to_its_share(cell):
+    for entry in cell["walks"]:
+        shares = np.array(entry["advised"]) / np.array(entry["steps"])
+        assert entry["way"] != "none" or not shares.any()
+        assert entry["way"] in ("none", "thesis") or shares.max() <= 0.4
+    assert any(sum(entry["advised"]) for entry in cell["walks"] if entry["way"] == "better")
+
+
+def test_optimal_agents_arrive_unadvised(cell):
+    alone = next(e for e in cell["walks"] if (e["way"], e["agent"]) == ("none", "optimal"))
+    assert alone["reached"] == [1] * QUICK["tasks"]
+
+
+def test_normalcy_cell_is_plain_and_an_unadvised_walk_reads_alike_every_way():
+    found = run_normalcy_cell(NORMALCY, CELL, 0)
+    assert json.loads(json.dumps(found)) == found
+    assert len(found["explorers"]) == 2 * 4
+    for entry in found["explorers"]:
+        for number, share in enumerate(entry["advised_share"]):
+            if not share:
+                readings = [entry[key][number] for key in ("alone", "told", "own", "unadvised")]
+                assert readings == pytest.approx([readings[0]] * 4)

@@ -1,0 +1,83 @@
+"""Measures of C3.18 from made-up cells, by hand."""
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.domains.explorers import EXPLORERS
+from lifelore.experiments.c3_18 import CLAIM, QUICK, measure, rows
+
+SETTINGS = {**QUICK, "tasks": 2, "max_steps": 4, "blocks": 2}
+
+
+def made_up(unadvised: float | None = 0.8):
+    """Three mazes: told, P(M₁ | H) rises from 0.2 to 0.6; own steps raise only the bug's, by 0.1."""
+    cells = []
+    for maze in range(3):
+        entries = []
+        for experts in SETTINGS["experts"]:
+            for agent in EXPLORERS:
+                own = 0.3 if agent == "bug" else 0.2
+                curve = {"p": [2.0, 0.0], "n": [4, 0], "reached": [0, 1]}
+                entries.append(
+                    {
+                        "experts": experts,
+                        "agent": agent,
+                        "alone": [0.1, 0.3],
+                        "told": [0.5 + 0.01 * maze, 0.7 + 0.01 * maze],
+                        "own": [own - 0.1, own + 0.1],
+                        "unadvised": [None, unadvised],
+                        "advised_share": [1.0, 0.25],
+                        "curve_alone": curve,
+                        "curve_told": curve,
+                    }
+                )
+        cells.append({"loops": 0.1, "maze": maze, "explorers": entries})
+    return cells
+
+
+def test_every_reading_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["normal_alone_random"].value == pytest.approx(0.2)
+    assert found["gain_told_left"].value == pytest.approx(0.41)
+    assert found["gain_own_bug"].value == pytest.approx(0.1)
+    assert found["gain_own_random"].value == pytest.approx(0.0)
+    # The first errand was advised throughout: only the second is compared, with what it had alone.
+    assert found["gain_unadvised_avoid"].value == pytest.approx(0.5)
+    assert found["normal_unadvised_avoid"].value == pytest.approx(0.8)
+    assert found["advised_avoid"].value == pytest.approx(62.5)
+
+
+def test_explorers_raised_by_hand():
+    found = measure(SETTINGS, made_up())
+    raised = [found[f"explorers_raised{name}"].value for name in ("", "_own", "_unadvised")]
+    assert raised == [4, 1, 4]
+    assert found["grid_all_raised"].value == 1.0
+    assert found["grid_all_raised_own"].value == 0.0
+
+
+def test_where_all_was_advised_nothing_is_said_of_untold_steps():
+    found = measure(SETTINGS, made_up(unadvised=None))
+    assert found["gain_unadvised_bug"].n == 0
+    assert found["explorers_raised_unadvised"].value == 0
+    row = rows(SETTINGS, made_up(unadvised=None))[0]
+    assert row["gain"]["unadvised"] is row["unadvised"] is None
+    assert row["certain"]["unadvised"] is False
+
+
+def test_rows_hold_the_grid_and_the_curves():
+    found = rows(SETTINGS, made_up())
+    assert len(found) == 2 * 4 + 4 * 2
+    assert found[0]["gain"] == {"told": 0.41, "own": 0.0, "unadvised": 0.5}
+    assert found[0]["certain"] == {"told": True, "own": False, "unadvised": True}
+    # Nobody walks in the second block; one of two errands in each maze has arrived by then.
+    assert found[-1]["normal"] == [0.5, None]
+    assert found[-1]["reward"] == [0.0, 500.0]
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [({"blocks": 7}, "blocks must divide max_steps"), ({"window": 0}, "window must be at least 1")],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)
