@@ -208,6 +208,12 @@ def _draw(result: Mapping):
     return draw_form_curves(result)
 
 
+CAUSES = {
+    "proportion above softmax": "the softmax of large counts is nearly the most frequent best action alone, and "
+    "here that is seldom wrong; of proportions, in [0, 1], it is nearly uniform, and poor as the thesis reports",
+    "most of the grid": "which way it goes is decided by how counts are normalised before the softmax",
+}
+
 CLAIM = Claim(
     id="C3.11",
     title="Proportions, Dirichlet draws and a softmax as action priors (Figure 3.15)",
@@ -221,5 +227,6 @@ CLAIM = Claim(
     measure=measure,
     rows=rows,
     draw=_draw,
+    causes=CAUSES,
     check=_check,
 )

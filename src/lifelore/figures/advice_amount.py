@@ -97,7 +97,7 @@ def _draw_learning(axes: "Axes", result: Mapping) -> None:
     axes.set_ylim(bottom=0)
     axes.xaxis.set_major_formatter("{x:g}")
     axes.grid(axis="y", color=LIGHT)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 0.08))
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 0.0), frameon=True, framealpha=1, edgecolor="none")
     axes.set_title(f"Q-learning at κ = {settings['kappa']:g}")
 
 

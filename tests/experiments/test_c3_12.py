@@ -1,0 +1,113 @@
+"""Measures of C3.12 from made-up cells, by hand."""
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate
+from lifelore.experiments.c3_12 import CLAIM, QUICK, is_comparable, measure, rows
+from lifelore.experiments.open_choices import plain_how
+from lifelore.experiments.shown_priors import KEYS, PEOPLE, PLAIN, SELF, SHOWN, WEIGHTS, hows
+
+SETTINGS = {
+    **QUICK, "runs": 4, "episodes": 3, "early": 2, "features": ["phi3"], "schedules": [[1.0, 0.95, 0.01]],
+    "alpha0": [0.1], "ties": ["uniform", "prior"], "trajectories": [4], "people": ["familiar", "varied"],
+}  # fmt: skip
+"""A grid of two cells, ties uniform and by the prior."""
+
+
+def made_up(shown=-1020.0, varied=-1300.0, own=-1000.0, plain=-3000.0):
+    """Four runs; optimal is 0, so the distance from no prior is 3000 or so."""
+
+    def numbers(value, run):
+        value += (-3.0, 1.0, -1.0, 3.0)[run]
+        return {
+            **dict.fromkeys(("all", "first", "early"), value),
+            "mean": [value] * 3,
+            "deviation": [1.0 + run] * 3,
+        }
+
+    cells = []
+    for run in range(4):
+        found = [{"method": PLAIN, **plain_how(hows(SETTINGS)[0], KEYS), **numbers(plain, 3 - run)}]
+        for how in hows(SETTINGS):
+            found.append({"method": SELF, **how, **numbers(own, run)})
+            for people, value in (("familiar", shown), ("varied", varied)):
+                for weight in WEIGHTS:
+                    who = {"method": SHOWN, "people": people, "weight": weight}
+                    found.append({**who, **how, **numbers(value, (run + 1) % 4)})
+        people = [
+            {
+                "people": name, "given_up": 1, "steps": 100 + run,
+                "weights": {w: {f"person {i}": s for i, s in enumerate(PEOPLE[name])} for w in WEIGHTS},
+            }
+            for name in SETTINGS["people"]
+        ]  # fmt: skip
+        cells.append({"run": run, "optimal": 0.0, "found": found, "people": people})
+    return cells
+
+
+def plain(measured):
+    return {name: number.to_dict() for name, number in measured.items()}
+
+
+def test_numbers_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["shown_minus_self_of_distance"].value == pytest.approx(-20 / 3000)
+    assert found["varied_minus_self_of_distance"].value == pytest.approx(-0.1)
+    assert found["shown_minus_uniform"].value == pytest.approx(1980)
+    assert found["self_minus_uniform"].value == pytest.approx(2000)
+    assert found["of_distance_varied_by_steps"].value == pytest.approx(-0.1)
+    assert found["grid_comparable"].value == 1
+    assert found["given_up_familiar"].value == 1
+    assert found["steps_varied"].value == 101.5
+    assert found["weight_varied_3_by_ways"].value == 0.5
+
+
+def test_comparable_is_within_five_percent_by_the_interval():
+    assert is_comparable(Estimate(0.0, 0.0, (-0.05, 0.02), 4))
+    assert not is_comparable(Estimate(0.0, 0.0, (-0.06, 0.02), 4))
+    assert not is_comparable(Estimate(0.0, 0.0, None, 2))
+
+
+def test_verdicts():
+    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds"
+    # Better than none, but not as good as self-trained.
+    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(shown=-2000.0)))) == "holds in part"
+    poor = measure(SETTINGS, made_up(shown=-4000.0, varied=-4000.0, own=-3500.0))
+    assert CLAIM.predicate.verdict(plain(poor)) == "does not hold"
+
+
+def test_every_condition_asks_of_something_measured():
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
+
+
+def test_rows_and_figure():
+    cells = made_up()
+    found = rows(SETTINGS, cells)
+    assert [row["ties"] for row in found if "features" in row] == ["uniform", "prior"]
+    assert len([row for row in found if "weight" in row]) == 2 * len(WEIGHTS)
+    assert [row["curve_of"] for row in found if "curve_of" in row] == [PLAIN, SELF, SHOWN]
+    result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, cells)), "rows": found}
+    curves, grid, people = CLAIM.draw(result).axes
+    assert len(curves.lines) == 4
+    assert [text.get_text() for text in grid.texts] == ["−0.7", "−0.7"]
+    assert [text.get_text() for text in people.texts] == ["−0.7"] * 3 + ["−10.0"] * 3
+    assert people.get_yticklabels()[1].get_text() == "varied\n(1, 0.9, 0.7, 0.5)"
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [
+        ({"test_tasks": 1}, "test_tasks must be at least 2"),
+        ({"features": '["phi9"]'}, "features must be among"),
+        ({"features": '["phi2"]'}, "its features is not"),
+        ({"people": '["familiar"]'}, "people must hold varied"),
+        ({"people": '["varied"]'}, "its people is not"),
+        ({"people": '["saint"]'}, "people must be among"),
+        ({"components": 10}, "components must be at most 9"),
+        ({"alpha0": "[0.1, 0.0]"}, "alpha0 must be positive"),
+    ],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)
