@@ -215,6 +215,12 @@ def _draw(result: Mapping):
     return draw_shown_priors(result)
 
 
+CAUSES = {
+    "comparable": "a trajectory counts the states it passes, as often as it passes them, and the one action "
+    "taken; a policy counts every state and all its best actions",
+    "comparable, varied": "people who err show what is not best, too",
+}
+
 CLAIM = Claim(
     id="C3.12",
     title="Priors from 40 demonstrated trajectories, of simulated people (Figure 3.16); people untested",
@@ -228,5 +234,6 @@ CLAIM = Claim(
     measure=measure,
     rows=rows,
     draw=_draw,
+    causes=CAUSES,
     check=_check,
 )

@@ -170,6 +170,12 @@ def _draw(result: Mapping):
     return draw_feature_curves(result)
 
 
+CAUSES = {
+    "φ1 above states": "what the own cell is and what is left to do tell nothing of the walls around, so that "
+    "moves are drawn by how often each was best anywhere",
+    "features above states in most of the grid": "φ1 lies below the prior over states in every cell",
+}
+
 CLAIM = Claim(
     id="C3.7",
     title="Priors over four sets of features in factories that change (Figure 3.11)",
@@ -183,5 +189,6 @@ CLAIM = Claim(
     measure=measure,
     rows=rows,
     draw=_draw,
+    causes=CAUSES,
     check=_check,
 )

@@ -119,6 +119,11 @@ def _draw(result: Mapping):
     return draw_feature_bars(result)
 
 
+CAUSES = {
+    "most of the grid": "along optimal ways alone, what the own cell is and what is left to do decide between "
+    "using a point and moving on, and tell as much as the walls",
+}
+
 CLAIM = Claim(
     id="C3.8",
     title="Which features save entropy of the action prior (Figure 3.12)",
@@ -132,5 +137,6 @@ CLAIM = Claim(
     measure=measure,
     rows=rows,
     draw=_draw,
+    causes=CAUSES,
     check=_check,
 )
