@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.core.planning import best_actions, greedy_policy, optimal_q
-from lifelore.experiments import lattice_learning
+from lifelore.experiments import lattice_learning, learning_run
 from lifelore.experiments.c3_2 import QUICK
 from lifelore.experiments.lattice_learning import (
     block_edges,
@@ -54,14 +54,14 @@ def test_start_values_are_what_an_optimal_learner_earns(run, monkeypatch):
     # return from each start: so `start_values` follows the very starts that learners meet.
     problem = run.testing[0]
     q = optimal_q(problem.tables, SETTINGS["discount"])
-    make = lattice_learning.new_learner
+    make = learning_run.new_learner
 
     def knowing(*arguments):
         learner = make(*arguments)
         learner.q[:] = q
         return learner
 
-    monkeypatch.setattr(lattice_learning, "new_learner", knowing)
+    monkeypatch.setattr(learning_run, "new_learner", knowing)
     schedule = schedule_of({**SETTINGS, "learning_rate": 0.0}, [0.0, 1.0, 0.0])
     returns, _ = learn_task(problem, None, schedule)
     np.testing.assert_allclose(returns, start_values(problem, SETTINGS["episodes"]), rtol=1e-12)

@@ -14,7 +14,7 @@ from lifelore.experiments.ball_on_block import CAMERAS, ball_cells, run_cell
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.exact_share import exact_share, mean_or_unmeasured
 from lifelore.experiments.predicate import Predicate
-from lifelore.experiments.scene_example import scene_of_row
+from lifelore.experiments.scene_example import draw_examples
 
 FULL = {"scenes": 150, "real": True}
 QUICK = {"scenes": 2, "real": False}
@@ -57,10 +57,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
 
 
 def _draw(result: Mapping):
-    from lifelore.figures.scene_gallery import draw_gallery
-
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    return draw_gallery(examples, columns=2, layers=("cloud", "networks"))
+    return draw_examples(result, columns=2)
 
 
 CLAIM = Claim(

@@ -17,7 +17,7 @@ from lifelore.experiments.exact_share import exact_share, mean_or_unmeasured
 from lifelore.experiments.hole_scenes import ARRANGEMENTS, LOT, run_cell
 from lifelore.experiments.predicate import Predicate
 from lifelore.experiments.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.scene_example import scene_of_row
+from lifelore.experiments.scene_example import draw_examples
 
 WITH_HOLE = ("hinged", "other")
 FULL = {"scenes": 150, "real": True}
@@ -77,10 +77,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
 
 
 def _draw(result: Mapping):
-    from lifelore.figures.scene_gallery import draw_gallery
-
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    return draw_gallery(examples, columns=3, layers=("cloud", "networks"))
+    return draw_examples(result, columns=3)
 
 
 CLAIM = Claim(

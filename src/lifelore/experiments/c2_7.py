@@ -15,7 +15,7 @@ from lifelore.core.metrics import Estimate
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.exact_share import exact_share, mean_or_unmeasured
 from lifelore.experiments.predicate import Predicate
-from lifelore.experiments.scene_example import scene_of_row
+from lifelore.experiments.scene_example import draw_examples
 from lifelore.experiments.stack_skeletons import KINDS, run_cell, stack_cells
 
 CAPTIONS = {
@@ -68,11 +68,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
 
 
 def _draw(result: Mapping):
-    from lifelore.figures.scene_gallery import draw_gallery
-
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    named = [(cloud, document, CAPTIONS[kind]) for cloud, document, kind in examples]
-    return draw_gallery(named, columns=3, layers=("cloud", "networks"))
+    return draw_examples(result, columns=3, captions=CAPTIONS)
 
 
 CLAIM = Claim(

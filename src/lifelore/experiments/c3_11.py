@@ -39,7 +39,7 @@ from lifelore.experiments.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.open_choices import default_of, how_key, plain_how
+from lifelore.experiments.open_choices import default_of, how_key, plain_how, runs_by_cell
 from lifelore.experiments.predicate import Predicate
 
 FULL = {
@@ -98,11 +98,7 @@ def _check(settings: Mapping) -> None:
 
 def _by_form(results: Sequence[Mapping]) -> Found:
     """(form, cell of the grid) to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            found.setdefault((numbers["form"], how_key(numbers, KEYS)), []).append(numbers)
-    return found
+    return runs_by_cell(results, ("form",), KEYS)
 
 
 def _of(found: Found, form: str, how: Mapping, key: str) -> np.ndarray:

@@ -27,7 +27,7 @@ from lifelore.experiments.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.open_choices import default_of, how_key, plain_how
+from lifelore.experiments.open_choices import default_of, how_key, plain_how, runs_by_cell
 from lifelore.experiments.predicate import Predicate
 from lifelore.experiments.shown_priors import KEYS, PEOPLE, PLAIN, SELF, SHOWN, WEIGHTS, cells, hows, run_cell
 
@@ -94,12 +94,7 @@ def _check(settings: Mapping) -> None:
 
 def _by_method(results: Sequence[Mapping]) -> Found:
     """(method, people, weight, cell of the grid) to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            key = (numbers["method"], numbers.get("people"), numbers.get("weight"), how_key(numbers, KEYS))
-            found.setdefault(key, []).append(numbers)
-    return found
+    return runs_by_cell(results, ("method", "people", "weight"), KEYS)
 
 
 def _of(found: Found, method: tuple, how: Mapping, key: str) -> np.ndarray:

@@ -16,6 +16,7 @@ from lifelore.domains.lattice import lattice
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.lattice_grid import PLAIN, cells, configurations, run_cell
 from lifelore.experiments.lattice_learning import block_edges
+from lifelore.experiments.learning_settings import check_counts, check_learning, check_windows
 from lifelore.experiments.predicate import Predicate
 
 FULL = {
@@ -61,7 +62,7 @@ CAUSES = {
 
 def _check(settings: Mapping) -> None:
     _check_sizes(settings)
-    _check_learning(settings)
+    check_learning(settings)
     default = settings["default"]
     unknown = set(settings["forms"]) - set(FORMS)
     if unknown:
@@ -98,26 +99,12 @@ def _column(methods: Sequence[Mapping], key: str) -> np.ndarray:
 
 
 def _check_sizes(settings: Mapping) -> None:
-    for key in ("runs", "training_tasks", "test_tasks", "episodes", "max_steps", "window", "last"):
-        if settings[key] < 1:
-            raise InputError(f"{key} must be at least 1, got {settings[key]}")
-    for key in ("window", "last"):
-        if settings[key] > settings["episodes"]:
-            raise InputError(f"{key} must be at most episodes ({settings['episodes']}), got {settings[key]}")
+    check_counts(settings, ("runs", "training_tasks", "test_tasks", "episodes", "max_steps", "window", "last"))
+    check_windows(settings, ("window", "last"))
     n_states = lattice(settings["size"], settings["discount"]).n_states
     for key in ("test_tasks", "online_tasks"):
         if np.max(settings[key]) > n_states:
             raise InputError(f"{key} must be at most the {n_states} cells that can be goals, got {settings[key]}")
-
-
-def _check_learning(settings: Mapping) -> None:
-    if not 0 <= settings["learning_rate"] <= 1:
-        raise InputError(f"learning_rate must lie in [0, 1], got {settings['learning_rate']}")
-    for schedule in settings["schedules"]:
-        if np.shape(schedule) != (3,) or not all(isinstance(x, float) and 0 <= x <= 1 for x in schedule):
-            raise InputError(
-                f"schedules must each be three decimals in [0, 1], first ε, factor and floor, got {schedule}"
-            )
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:

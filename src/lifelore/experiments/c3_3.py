@@ -25,7 +25,7 @@ from lifelore.experiments.learning_settings import (
     check_windows,
 )
 from lifelore.experiments.noise_learning import COMPARED, KEYS, METHODS, PLAIN, cells, hows, run_cell
-from lifelore.experiments.open_choices import default_of, how_key, plain_how
+from lifelore.experiments.open_choices import default_of, how_key, plain_how, runs_by_cell
 from lifelore.experiments.predicate import Predicate
 
 FULL = {
@@ -86,11 +86,7 @@ def _check(settings: Mapping) -> None:
 
 def _by_method(results: Sequence[Mapping]) -> Found:
     """(method, cell of the grid) to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            found.setdefault((numbers["method"], how_key(numbers, KEYS)), []).append(numbers)
-    return found
+    return runs_by_cell(results, ("method",), KEYS)
 
 
 def _of(found: Found, method: str, how: Mapping, key: str) -> np.ndarray:

@@ -26,7 +26,7 @@ from lifelore.experiments.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.open_choices import default_of, how_key
+from lifelore.experiments.open_choices import default_of, how_key, runs_by_cell
 from lifelore.experiments.predicate import Predicate
 
 FULL = {
@@ -90,11 +90,7 @@ def check_components(settings: Mapping) -> None:
 
 def _by_method(results: Sequence[Mapping]) -> Found:
     """(method, cell of the grid as it meets it) to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            found.setdefault((numbers["method"], how_key(numbers, KEYS)), []).append(numbers)
-    return found
+    return runs_by_cell(results, ("method",), KEYS)
 
 
 def _numbers_of(found: Found, method: str, how: Mapping) -> list[Mapping]:

@@ -20,7 +20,7 @@ from lifelore.experiments.grid_shares import share_of
 from lifelore.experiments.learning_settings import check_among, check_counts, check_default, check_learning
 from lifelore.experiments.online_selection import FULL as ALL_TEN
 from lifelore.experiments.online_selection import SELECTED, UNIFORM
-from lifelore.experiments.open_choices import default_of, how_key
+from lifelore.experiments.open_choices import default_of, how_key, runs_by_cell
 from lifelore.experiments.predicate import Predicate
 from lifelore.experiments.selected_learning import KEYS, METHODS, SOURCES, cells, hows, method_how, run_cell
 
@@ -75,11 +75,7 @@ def _check(settings: Mapping) -> None:
 
 def _by_method(results: Sequence[Mapping]) -> Found:
     """(method, cell of the grid as it meets it) to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            found.setdefault((numbers["method"], how_key(numbers, KEYS)), []).append(numbers)
-    return found
+    return runs_by_cell(results, ("method",), KEYS)
 
 
 def _tasks_of(found: Found, method: str, how: Mapping, part: str) -> np.ndarray:

@@ -17,15 +17,15 @@ from numpy.typing import NDArray
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.action.exploration import prior_rows
-from lifelore.core.curve import new_curve
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning import best_actions
-from lifelore.core.q_learning import Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import Rows, Schedule, uniform_rows
 from lifelore.core.streams import stream
 from lifelore.domains.factory import ACTION_NAMES, FactoryTask
 from lifelore.domains.factory_contexts import feature_codes, features
 from lifelore.domains.modified_factory import modified_factory
 from lifelore.experiments.lattice_learning import schedule_of
+from lifelore.experiments.learning_run import learnt
 from lifelore.experiments.open_choices import default_of, how_key, is_default_but_for_schedule, plain_how
 
 PLAIN, PROPORTION, DIRICHLET, AS_PRINTED = "uniform", "proportion", "dirichlet", "softmax of counts"
@@ -174,11 +174,7 @@ def rows_of(met: Met, prior: ActionPrior, form: str, how: Mapping) -> Rows:
 
 def learn_task(met: Met, rows: Rows, schedule: Schedule) -> NDArray[np.float64]:
     """Summed reward of each episode, (n_episodes,)."""
-    own, world = stream(*met.stream, "learner"), stream(*met.stream, "world")
-    learner = new_learner(met.tables.n_states, met.tables.n_actions, world, own)
-    curve = new_curve(schedule.epsilon.size)
-    learn(met.tables, rows, schedule, learner, curve, schedule.epsilon.size * schedule.max_steps)
-    return curve.rewards
+    return learnt(met.tables, met.stream, rows, schedule)[0].rewards
 
 
 def summary(rewards: NDArray[np.float64], early: int) -> dict:

@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.action.exploration import prior_rows
-from lifelore.core.curve import Curve, new_curve
+from lifelore.core.curve import Curve
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning import best_actions, greedy_policy, policy_values
-from lifelore.core.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import Learner, Rows, Schedule
 from lifelore.core.streams import stream
 from lifelore.domains.factory import ACTION_NAMES, Factory, FactoryTask
 from lifelore.domains.factory_contexts import state_contexts
 from lifelore.domains.factory_layout import factory
+from lifelore.experiments.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
 
@@ -131,13 +132,7 @@ def hand_made_rows(problem: Problem, prior: ActionPrior, ties: str) -> Rows:
 
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
-    tables = problem.tables
-    own, world = stream(*problem.stream, "learner"), stream(*problem.stream, "world")
-    learner = new_learner(tables.n_states, tables.n_actions, world, own)
-    curve = new_curve(schedule.epsilon.size)
-    budget = schedule.epsilon.size * schedule.max_steps
-    learn(tables, rows or uniform_rows(tables), schedule, learner, curve, budget)
-    return curve, learner
+    return learnt(problem.tables, problem.stream, rows, schedule)
 
 
 def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:

@@ -13,15 +13,15 @@ from numpy.typing import NDArray
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.action.exploration import prior_rows
-from lifelore.core.curve import new_curve
 from lifelore.core.mdp import Tables
 from lifelore.core.metrics import episodes_to_threshold
 from lifelore.core.planning import best_actions, optimal_q
-from lifelore.core.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import Learner, Rows, Schedule
 from lifelore.core.random_state import next_uniform, random_state
 from lifelore.core.streams import stream
 from lifelore.domains.grid_world import GridWorld
 from lifelore.domains.lattice import lattice
+from lifelore.experiments.learning_run import learnt
 
 BLOCKS = 48
 """Points of a stored learning curve, as good as evenly spread over the logarithm of the episode."""
@@ -96,12 +96,7 @@ def schedule_of(settings: Mapping, epsilon: Sequence[float]) -> Schedule:
 
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[NDArray[np.float64], Learner]:
     """Returns (n_episodes,) and the learner after all episodes; without `rows` it is plain Q-learning."""
-    tables = problem.tables
-    own, world = stream(*problem.stream, "learner"), stream(*problem.stream, "world")
-    learner = new_learner(tables.n_states, tables.n_actions, world, own)
-    curve = new_curve(schedule.epsilon.size)
-    budget = schedule.epsilon.size * schedule.max_steps
-    learn(tables, rows or uniform_rows(tables), schedule, learner, curve, budget)
+    curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
     return curve.returns, learner
 
 

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.feature_set import FeatureSet
-from lifelore.core.curve import Curve, new_curve
+from lifelore.core.curve import Curve
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning import best_actions
-from lifelore.core.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import Learner, Rows, Schedule
 from lifelore.core.streams import stream
 from lifelore.domains.factory import ACTION_NAMES, FactoryTask
 from lifelore.domains.factory_contexts import (
@@ -26,6 +26,7 @@ from lifelore.domains.factory_contexts import (
     state_contexts,
 )
 from lifelore.domains.modified_factory import modified_factory
+from lifelore.experiments.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
 FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
@@ -87,10 +88,4 @@ def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:
 
 def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
-    tables = problem.tables
-    own, world = stream(*problem.stream, "learner"), stream(*problem.stream, "world")
-    learner = new_learner(tables.n_states, tables.n_actions, world, own)
-    curve = new_curve(schedule.epsilon.size)
-    budget = schedule.epsilon.size * schedule.max_steps
-    learn(tables, rows or uniform_rows(tables), schedule, learner, curve, budget)
-    return curve, learner
+    return learnt(problem.tables, problem.stream, rows, schedule)

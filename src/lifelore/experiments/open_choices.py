@@ -23,6 +23,18 @@ def how_key(how: Mapping, keys: Sequence[str]) -> tuple:
     return tuple(tuple(how[key]) if isinstance(how[key], list) else how[key] for key in keys)
 
 
+def runs_by_cell(
+    results: Sequence[Mapping], who: Sequence[str], keys: Sequence[str]
+) -> dict[tuple, list[Mapping]]:
+    """What stands under ``found`` of all results, run by run, by the names of `who` and the cell of the grid."""
+    runs: dict[tuple, list[Mapping]] = {}
+    for result in results:
+        for numbers in result["found"]:
+            cell = (*(numbers.get(name) for name in who), how_key(numbers, keys))
+            runs.setdefault(cell, []).append(numbers)
+    return runs
+
+
 def is_default_but_for_schedule(how: Mapping, settings: Mapping, keys: Sequence[str]) -> bool:
     """Whether a cell is the default under any schedule, or what learners without a prior meet there."""
     default = {**default_of(settings, keys), "schedule": how["schedule"]}

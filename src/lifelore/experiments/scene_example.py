@@ -46,6 +46,15 @@ def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
     return cloud, row["document"], row["example"]
 
 
+def draw_examples(result: Mapping, *, columns: int, captions: Mapping[str, str] | None = None):
+    """The gallery of a result's examples, clouds with networks; `captions` puts words for what they are called."""
+    from lifelore.figures.scene_gallery import draw_gallery
+
+    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
+    named = [(cloud, document, (captions or {}).get(kind, kind)) for cloud, document, kind in examples]
+    return draw_gallery(named, columns=columns, layers=("cloud", "networks"))
+
+
 def _packed(cloud: LabelledCloud) -> str:
     places = np.round(cloud.points / _STEP)
     order = np.lexsort((*places.T, cloud.labels))

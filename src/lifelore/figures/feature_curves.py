@@ -1,13 +1,13 @@
 """Figure of claim C3.7: what priors over features earn beside one over states and none, and over open choices."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.prior_grid import schedule_in_words
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, VERMILION, house_style, new_figure
+from lifelore.figures.reward_curves import draw_reward_curves
+from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, VERMILION, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -34,7 +34,7 @@ def draw_feature_curves(result: Mapping) -> "Figure":
         upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.0, 0.82], hspace=0.02)[:, 0]
         panels = upper.subplots(1, len(schedules), squeeze=False, sharey=True)[0]
         for axes, schedule in zip(panels, schedules, strict=True):
-            _draw_schedule(axes, result, schedule)
+            draw_reward_curves(axes, result, schedule, COLOURS, LABELS, banded=_BANDED, dashed=("phi2",))
         panels[0].set_ylabel("reward of an episode")
         upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
         _draw_grid(lower.subplots(), result)
@@ -46,21 +46,6 @@ def draw_feature_curves(result: Mapping) -> "Figure":
             fontsize=8, color=GREY,
         )  # fmt: skip
     return figure
-
-
-def _draw_schedule(axes: "Axes", result: Mapping, schedule: Sequence[float]) -> None:
-    curves = {row["curve_of"]: row for row in result["rows"] if "curve_of" in row and row["schedule"] == schedule}
-    episodes = np.arange(1, result["settings"]["episodes"] + 1)
-    for method, colour in COLOURS.items():
-        mean, deviation = np.array(curves[method]["mean"]), np.array(curves[method]["deviation"])
-        if method in _BANDED:
-            axes.fill_between(episodes, mean - deviation, mean + deviation, color=colour, alpha=0.13, linewidth=0)
-        dashes = (0, (4, 2)) if method == "phi2" else "-"
-        axes.plot(episodes, mean, color=colour, label=LABELS[method], linewidth=1.5, linestyle=dashes)
-    optimal = result["measured"]["optimal_reward"]["value"]
-    axes.axhline(optimal, color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label="optimal", zorder=1)
-    axes.set(xscale="log", xlabel="episode", title=schedule_in_words(schedule), xlim=(1, len(episodes)))
-    axes.xaxis.set_major_formatter("{x:g}")
 
 
 def _draw_grid(axes: "Axes", result: Mapping) -> None:

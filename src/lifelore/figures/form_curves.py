@@ -6,12 +6,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.prior_grid import schedule_in_words
+from lifelore.figures.reward_curves import draw_reward_curves
 from lifelore.figures.style import (
     BLUE,
     GREEN,
     GREY,
-    INK,
     ORANGE,
     PURPLE,
     SKY,
@@ -21,7 +20,6 @@ from lifelore.figures.style import (
 )
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 _COLOURS = {
@@ -46,7 +44,7 @@ def draw_form_curves(result: Mapping) -> "Figure":
         upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[0.85, 1.0], hspace=0.02)[:, 0]
         panels = upper.subplots(1, len(schedules), squeeze=False, sharey=True)[0]
         for axes, schedule in zip(panels, schedules, strict=True):
-            _draw_schedule(axes, result, schedule)
+            draw_reward_curves(axes, result, schedule, _COLOURS, {}, banded=_BANDED, dashed=("dirichlet",))
         panels[0].set_ylabel("reward of an episode")
         upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=8)
         _draw_grids(lower.subplots(1, 2, sharey=True), result)
@@ -57,21 +55,6 @@ def draw_form_curves(result: Mapping) -> "Figure":
             fontsize=8, color=GREY,
         )  # fmt: skip
     return figure
-
-
-def _draw_schedule(axes: "Axes", result: Mapping, schedule: Sequence[float]) -> None:
-    curves = {row["curve_of"]: row for row in result["rows"] if row.get("schedule") == schedule and "mean" in row}
-    episodes = np.arange(1, result["settings"]["episodes"] + 1)
-    for form, colour in _COLOURS.items():
-        mean, deviation = np.array(curves[form]["mean"]), np.array(curves[form]["deviation"])
-        if form in _BANDED:
-            axes.fill_between(episodes, mean - deviation, mean + deviation, color=colour, alpha=0.13, linewidth=0)
-        dashes = (0, (4, 2)) if form == "dirichlet" else "-"
-        axes.plot(episodes, mean, color=colour, label=form, linewidth=1.5, linestyle=dashes)
-    optimal = result["measured"]["optimal_reward"]["value"]
-    axes.axhline(optimal, color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label="optimal", zorder=1)
-    axes.set(xscale="log", xlabel="episode", title=schedule_in_words(schedule), xlim=(1, len(episodes)))
-    axes.xaxis.set_major_formatter("{x:g}")
 
 
 def _draw_grids(panels, result: Mapping) -> None:

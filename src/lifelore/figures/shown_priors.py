@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.prior_grid import schedule_in_words
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, house_style, new_figure
+from lifelore.figures.reward_curves import draw_reward_curves
+from lifelore.figures.style import BLUE, GREEN, GREY, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -19,12 +19,13 @@ _COLOURS = {"uniform": GREY, "self-trained": BLUE, "shown": GREEN}
 def draw_shown_priors(result: Mapping) -> "Figure":
     """The figure from the result of C3.12."""
     settings = result["settings"]
+    labels = {"shown": f"shown by one person ({settings['default']['people']}, simulated)"}
     with house_style():
         figure = new_figure(12.4, 7.6)
         upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.0, 1.05], hspace=0.02)[:, 0]
         panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
         for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            _draw_schedule(axes, result, schedule)
+            draw_reward_curves(axes, result, schedule, _COLOURS, labels, banded=_COLOURS)
         panels[0].set_ylabel("reward of an episode")
         upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=8)
         grid, people = lower.subplots(1, 2, width_ratios=[1.1, 1.0])
@@ -37,20 +38,6 @@ def draw_shown_priors(result: Mapping) -> "Figure":
             fontsize=8, color=GREY,
         )  # fmt: skip
     return figure
-
-
-def _draw_schedule(axes: "Axes", result: Mapping, schedule: Sequence[float]) -> None:
-    curves = {r["curve_of"]: r for r in result["rows"] if r.get("schedule") == schedule and "curve_of" in r}
-    episodes = np.arange(1, result["settings"]["episodes"] + 1)
-    labels = {"shown": f"shown by one person ({result['settings']['default']['people']}, simulated)"}
-    for method, colour in _COLOURS.items():
-        mean, deviation = (np.array(curves[method][name]) for name in ("mean", "deviation"))
-        axes.fill_between(episodes, mean - deviation, mean + deviation, color=colour, alpha=0.13, linewidth=0)
-        axes.plot(episodes, mean, color=colour, label=labels.get(method, method), linewidth=1.6)
-    optimal = result["measured"]["optimal_reward"]["value"]
-    axes.axhline(optimal, color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label="optimal", zorder=1)
-    axes.set(xscale="log", xlabel="episode", title=schedule_in_words(schedule), xlim=(1, len(episodes)))
-    axes.xaxis.set_major_formatter("{x:g}")
 
 
 def _draw_grid(axes: "Axes", result: Mapping) -> None:
