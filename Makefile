@@ -9,7 +9,11 @@ ifneq ($(wildcard ../shared/data),)
 export LIFELORE_DATA ?= $(abspath ../shared/data)
 endif
 
-.PHONY: help setup setup-test demo test check format bench soak docs reproduce clean
+# Deep RL has an environment of its own: torch is large, and nothing else needs it.
+DEEP := .venv-deep
+DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
+
+.PHONY: help setup setup-test demo test test-deep check format bench soak docs reproduce clean
 
 help: ## Name every target
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -32,6 +36,16 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 
 test: setup-test ## The tests
 	$(BIN)/python -m pytest -m "not soak"
+
+test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
+	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
+	$(DEEP)/bin/python -m pytest -m deep $(DEEP_TESTS)
+
+$(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
+	test -x $(DEEP)/bin/python || $(PYTHON) -m venv $(DEEP)
+	$(DEEP)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
+		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest
+	touch $@
 
 check: setup-test ## Formatting, lint, types, direction of imports
 	$(BIN)/ruff format --check src tests
@@ -56,4 +70,4 @@ reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full
 
 clean: ## Remove the environment and caches
-	rm -rf $(VENV) .pytest_cache .ruff_cache .hypothesis out
+	rm -rf $(VENV) $(DEEP) .pytest_cache .ruff_cache .hypothesis out

@@ -1,5 +1,6 @@
 """The pages' Python runs as it stands, and their commands as they are told."""
 
+import ast
 import json
 import re
 import subprocess
@@ -14,6 +15,7 @@ from lifelore.core.planning import best_actions, optimal_q
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
+COURIER = (DOCS / "courier.md").read_text(encoding="utf-8")
 SEARCH, FEATURES = re.findall(r"```python\n(.*?)```", PRIORS, flags=re.S)
 TEACH, ADVISE = (re.sub(r"#.*", "", line).split() for line in re.findall(r"^lifelore .*", PRIORS, flags=re.M))
 
@@ -31,7 +33,9 @@ def lifelore(arguments: list[str], folder: Path, keys: str = "") -> str:
 
 def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     said = run([sys.executable, "-W", "error", "-c", SEARCH], tmp_path)
-    assert said.startswith("Played(steps=")
+    played, report = said.splitlines()
+    assert played.startswith("Played(steps=")
+    assert f"{ast.literal_eval(report)['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
 
 
@@ -59,6 +63,13 @@ def test_a_lesson_ends_with_its_keys(tmp_path, keys):
     assert "tasks shown" in lifelore(TEACH, tmp_path, keys)
 
 
+def test_the_factorys_numbers_are_those_of_the_benchmark():
+    goals = json.loads((DOCS.parent / "results" / "bench_factory.json").read_text(encoding="utf-8"))["goals"]
+    tables, solved, room = (goal["measured"] for goal in goals)
+    assert f"in {tables:.1f} ms and solved exactly in {solved:.1f} ms" in PRIORS
+    assert f"within {room:.0f} MB above the imports" in PRIORS
+
+
 @pytest.mark.parametrize(
     ("number", "digits"), [("99 times", 0), ("72 times", 0), ("26 times", 0), ("14.5 times", 1)]
 )
@@ -66,3 +77,27 @@ def test_ratios_are_those_of_the_benchmark(number, digits):
     goals = json.loads((DOCS.parent / "results" / "bench_priors.json").read_text(encoding="utf-8"))["goals"]
     assert number in PRIORS
     assert f"{float(number.split()[0]):.{digits}f}" in {f"{goal['measured']:.{digits}f}" for goal in goals}
+
+
+def test_transfer_over_lifetimes_is_what_the_page_says(tmp_path):
+    (code,) = re.findall(r"```python\n(.*?)```", COURIER, flags=re.S)
+    said = dict(
+        line.split(" ", 1) for line in run([sys.executable, "-W", "error", "-c", code], tmp_path).splitlines()
+    )
+    told = re.findall(r"^\| ([a-z]+)[^|]*\| ([+−\d.]+) \[([−\d.]+), ([−\d.]+)\] \|$", COURIER, flags=re.M)
+    assert [word for word, *_ in told] == [
+        "forward", "backward", "forgetting", "performance", "jumpstart", "asymptote", "transfer", "time"
+    ]  # fmt: skip
+    names: dict[str, str] = {
+        "performance": "performance_maintenance",
+        "transfer": "transfer_ratio",
+        "time": "threshold_ratio",
+    }
+    names |= {"forward": "forward_transfer", "backward": "backward_transfer"}
+    for word, *numbers in map(list[str], told):
+        estimate = json.loads(said[names.get(word, word)].replace("'", '"'))
+        ours = [estimate["value"], *estimate["ci95"]]
+        # Compiled returns may differ in their last bits from machine to machine, what is rounded by one digit.
+        near = 0.015 if "." in numbers[0] and len(numbers[0].split(".")[1]) == 2 else 0.15
+        assert [float(number.replace("−", "-")) for number in numbers] == pytest.approx(ours, abs=near)
+    assert len(list((tmp_path / "logs").glob("life*/worker-0/*/data-log.tsv"))) == 10 * 11

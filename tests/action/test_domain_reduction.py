@@ -162,6 +162,26 @@ def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
             assert q[here] == pytest.approx(whole[here], abs=1e-9)
 
 
+@settings(max_examples=200)
+@given(task_sets())
+def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
+    tasks, policies = case
+    domain, repaired = (minimised_domain(tasks, policies, form) for form in ("closed", "repaired"))
+    states = {int(s) for tables in tasks for s in tables.starts}
+    kept = {(s, a) for best in policies for s, a in np.argwhere(best)}
+    for _ in range(tasks[0].n_states):
+        states |= {int(t) for s, a in kept if s in states for t in tasks[0].next_state[s, a]}
+    assert set(np.flatnonzero(domain.states)) == states
+    assert {tuple(pair) for pair in np.argwhere(domain.pairs)} == {(s, a) for s, a in kept if s in states}
+    assert not domain.leading_out.any()
+    assert not (repaired.pairs & ~domain.pairs).any()
+    # Wherever another's steps have led, a task goes on as if nothing were missing (E36).
+    for tables, best in zip(tasks, policies, strict=True):
+        within = optimal_q(tables_within(tables, domain.pairs, "stay"), DISCOUNT)
+        own = domain.states[:, None] & best
+        assert within[own] == pytest.approx(optimal_q(tables, DISCOUNT)[own], abs=1e-9)
+
+
 @settings(max_examples=300)
 @given(task_sets())
 def test_reach_and_futility_are_the_definitions(case):
@@ -290,7 +310,7 @@ def test_broken_rules(call, message):
 
 
 def test_unknown_words_name_the_known_ones():
-    with pytest.raises(NotFoundError, match="form must be one of repaired, printed, got 'fixed'"):
+    with pytest.raises(NotFoundError, match="form must be one of repaired, printed, closed, got 'fixed'"):
         minimised_domain([TASK], [BEST], "fixed")
     with pytest.raises(NotFoundError, match="dead_ends must be one of stay, free"):
         tables_within(TASK, BEST, "leave")

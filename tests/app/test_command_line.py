@@ -104,6 +104,7 @@ def test_the_contract_names_these_commands():
         "version",
     }
     verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}
+    verbs |= {f"reuse {verb}" for verb in ("fit", "choose", "update", "report", "retire", "add", "forget")}
     assert {" ".join(path) for path in COMMANDS} == verbs
 
 

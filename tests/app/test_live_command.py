@@ -205,3 +205,14 @@ def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monke
     assert known.read_bytes() == before
     with open_memory(known) as memory:
         assert memory.tasks("robot") == 2
+
+
+def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
+    said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", "--l2log", tmp_path / "logs")
+    assert (said.status, said.err) == (0, "")
+    assert set(said.document["settings"]) == TOLD
+    rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
+    assert rows == {"lore", "scratch"}
+    (tmp_path / "file").write_text("")
+    assert "folder must be one" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
+    assert not (tmp_path / "none.db").exists()

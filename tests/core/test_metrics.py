@@ -9,9 +9,8 @@ from hypothesis import strategies as st
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import (
     RESAMPLES,
+    difference_estimate,
     entropy,
-    episodes_to_threshold,
-    jumpstart,
     mean_estimate,
     ratio_estimate,
 )
@@ -95,24 +94,12 @@ def test_plain_data_of_an_estimate():
     assert isinstance(plain["ci95"], list)
 
 
-def test_jumpstart_is_the_mean_paired_difference():
-    assert jumpstart([3.0, 5.0, 7.0], [1.0, 1.0, 1.0]).value == 4.0
+def test_difference_is_the_mean_of_the_pairs_own():
+    found = difference_estimate([3.0, 5.0, 10.0], [1.0, 1.0, 1.0])
+    assert (found.value, found.median, found.n) == (5.0, 4.0, 3)
+    assert found == mean_estimate([2.0, 4.0, 9.0])
     with pytest.raises(InputError, match="agree in number, got 3 and 1"):
-        jumpstart([3.0, 5.0, 7.0], [1.0])
-
-
-def test_episodes_to_threshold_by_hand():
-    returns = np.array([0.0, 4.0, 0.0, 4.0, 8.0])
-    assert episodes_to_threshold(returns, 4.0) == 2
-    assert episodes_to_threshold(returns, 4.0, window=3) == 5  # means 4/3, 8/3, 4
-    assert episodes_to_threshold(returns, 9.0) is None
-    assert episodes_to_threshold(np.ones(10), 1.0, window=10) == 10  # a steady 1 has the mean 1
-
-
-@pytest.mark.parametrize("window", [0, 6])
-def test_windows_that_break_a_rule(window):
-    with pytest.raises(InputError, match=rf"window must lie in \[1, 5\], got {window}"):
-        episodes_to_threshold(np.zeros(5), 1.0, window)
+        difference_estimate([3.0, 5.0, 7.0], [1.0])
 
 
 @pytest.mark.parametrize("values", [[], [np.nan, 1.0], [np.inf]])

@@ -6,7 +6,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
-from lifelore.core.planning import best_actions, greedy_policy, mean_start_value, optimal_q, policy_values
+from lifelore.core.planning import (
+    best_actions,
+    greedy_policy,
+    learnt_best_actions,
+    mean_start_value,
+    optimal_q,
+    policy_values,
+)
 
 seeds = st.integers(0, 10**6)
 
@@ -87,6 +94,19 @@ def test_ties_within_the_tolerance_are_best():
     q = np.array([[1.0, 1.0 - 1e-12, 0.5], [0.0, 0.0, -1e-9], [-2.0, -2.0 * (1 + 1e-12), -3.0]])
     assert best_actions(q).tolist() == [[True, True, False]] * 3
     assert best_actions(q, 0.6)[0].tolist() == [True, True, True]
+
+
+def test_ties_at_nothing_are_ties_whatever_the_rounding():
+    q = np.array([[0.0, 3e-15, -2e-14], [0.0, 1e-6, 0.0], [100.0, 50.0, 0.0], [-np.inf, 0.0, 1e-11]])
+    assert best_actions(q).tolist() == [
+        [True, True, True], [False, True, False], [True, False, False], [False, True, True]
+    ]  # fmt: skip
+    # As large a share of smaller values is seen, and without a floor the rounding is.
+    assert best_actions(q / 1e9).tolist() == best_actions(q).tolist()
+    assert best_actions(q, floor=0.0)[0].tolist() == [False, True, False]
+    assert best_actions(np.full((1, 2), -np.inf)).tolist() == [[True, True]]
+    # What is learnt last, far from the goal, is little and yet learnt.
+    assert learnt_best_actions(q)[0].tolist() == [False, True, False]
 
 
 def test_no_policy_where_nothing_is_promised():

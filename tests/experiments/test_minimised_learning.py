@@ -12,7 +12,6 @@ from lifelore.experiments.minimised_learning import (
     WHOLE,
     WITHIN,
     best_returns,
-    closed_domain,
     domains_of,
     exact,
     kept,
@@ -95,7 +94,7 @@ def errata_e8(outcomes=(1.0,), odd: int | None = None) -> TaskSet:
 def test_the_printed_domain_undefined_and_closed_by_hand():
     found = exact(errata_e8())
     assert [found[form]["undefined"] for form in ("printed", "repaired", "closed")] == [1, 0, 0]
-    closed = closed_domain(errata_e8())
+    closed = domains_of(errata_e8())["closed"]
     assert closed.states.all()  # what task 1 would do in 2 leads to 3, which the other forms leave out
     assert not closed.leading_out.any()
     # Task 1 is trapped in 2 and 4 where the repaired form leaves it no way; 1 is its goal, 4 leads nowhere in D.

@@ -1,12 +1,14 @@
 """What a set of tasks leaves of its domain: reachable states, futile states and actions, the minimised domain.
 
 Policies are their sets of best or tied-best actions, (n_states, n_actions) bool. A row without any has no policy:
-goals, where the episode is over, and completed configurations. Two definitions of what is kept:
+goals, where the episode is over, and completed configurations. Three definitions of what is kept:
 
     printed   s reachable under some policy, a optimal in s under some policy (Def. 3.2.5)
     repaired  s reachable and a optimal under one and the same policy
+    closed    s reachable when every step is optimal under some policy, a optimal in s under some policy
 
-The printed one can be left by its own actions (errata E8); the repaired one, the default, cannot.
+The printed one can be left by its own actions (errata E8); the repaired one, the default, cannot. Nor can the
+closed one, which keeps every task's own policy wherever another's may have led (errata E36), and so keeps more.
 Thesis: §3.2.3, Def. 3.2.1-3.2.5, Thm 3.2.6, Props. 3.2.7-3.2.8, Alg. 3, Eq. 3.6.
 """
 
@@ -19,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.mdp import TERMINAL, Tables
 
-FORMS = ("repaired", "printed")
+FORMS = ("repaired", "printed", "closed")
 
 States = NDArray[np.bool_]
 Pairs = NDArray[np.bool_]
@@ -75,7 +77,7 @@ def domain_futile_states(tasks: Sequence[Tables], policies: Sequence[ArrayLike])
 class MinimisedDomain:
     """The task-set minimised domain.
 
-    form : "repaired" or "printed"
+    form : one of `FORMS`
     states : (n_states,) bool, Ŝ
     pairs : (n_states, n_actions) bool, the (s, a) with s in Ŝ that Â keeps
     kept_mass : (n_states, n_actions) float, the probability that a kept pair stays within Ŝ, which is 1/η; 0
@@ -89,7 +91,7 @@ class MinimisedDomain:
 
     @property
     def leading_out(self) -> Pairs:
-        """Kept pairs with an outcome outside Ŝ; none where the form is "repaired"."""
+        """Kept pairs with an outcome outside Ŝ; only the form "printed" has any."""
         return self.pairs & (self.kept_mass < 1)
 
     @property
@@ -109,16 +111,16 @@ def minimised_domain(
         Of one domain: the same states, actions and transitions; at least one.
     policies : sequence of (n_states, n_actions) bool
         Best or tied-best actions of each task; rows of goals and completed configurations all False.
-    form : {"repaired", "printed"}
+    form : {"repaired", "printed", "closed"}
         See the module.
     """
     if form not in FORMS:
         raise NotFoundError(f"form must be one of {', '.join(FORMS)}, got '{form}'")
     paired = _paired(tasks, policies)
     reached = [reachable_states(tables, best) for tables, best in paired]
-    states = np.logical_or.reduce(reached)
     own = [best & here[:, None] for (_, best), here in zip(paired, reached, strict=True)]
     kept = np.logical_or.reduce(own if form == "repaired" else [best for _, best in paired])
+    states = _closure(paired, kept) if form == "closed" else np.logical_or.reduce(reached)
     pairs = kept & states[:, None]
     tables = paired[0][0]
     inside = states[tables.next_state]
@@ -126,6 +128,18 @@ def minimised_domain(
     # Exactly 1 where every outcome is kept, whatever the probabilities add up to in floating point.
     mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
     return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
+
+
+def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:
+    """States on a path of kept pairs from any task's starts, whosever each step is and whatever ends there."""
+    follow = paired[0][0].next_state
+    states = np.zeros(len(kept), bool)
+    frontier = np.unique(np.concatenate([tables.starts for tables, _ in paired]))
+    while frontier.size:
+        states[frontier] = True
+        entered = np.unique(follow[frontier][kept[frontier]])
+        frontier = entered[~states[entered]]
+    return states
 
 
 def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> Tables:

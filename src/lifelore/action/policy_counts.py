@@ -35,7 +35,8 @@ def actions_to_count(
     visits : (n_states, n_actions) int
         How often each action was tried; needed by ``visited``.
     tolerance : float
-        Actions within this of the best, relative to it, are tied; at least 0.
+        Actions within this of the best, relative to it, are tied; at least 0. Exact values have the
+        floor of `best_actions` beside it.
     """
     q = np.asarray(q, np.float64)
     if over not in OVER:
@@ -48,7 +49,7 @@ def actions_to_count(
             raise InputError(f"over 'visited' needs visits of shape {q.shape}, got {tried.shape}")
         known = np.where(tried, q, -np.inf)
         known[~tried.any(axis=1)] = 0.0
-        best = best_actions(known, tolerance) & tried & (known.max(axis=1, keepdims=True) > 0)
+        best = best_actions(known, tolerance, floor=0.0) & tried & (known.max(axis=1, keepdims=True) > 0)
     else:
         best = best_actions(q, tolerance)
     if ended is not None:

@@ -3,6 +3,7 @@
 import os
 import time
 import uuid
+from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, field, fields
 from threading import Event
@@ -58,7 +59,17 @@ class Life:
     stopped: bool = False
 
 
-def live(settings: LifeSettings, *, progress: Progress | None = None, stop: Event | None = None) -> Life:
+Watcher = Callable[[dict, dict[str, TaskResult]], None]
+"""Called with a finished task's entry of the report, and what each agent made of the task."""
+
+
+def live(
+    settings: LifeSettings,
+    *,
+    progress: Progress | None = None,
+    stop: Event | None = None,
+    watch: Watcher | None = None,
+) -> Life:
     """Live through ``settings.tasks`` tasks and keep what was learnt.
 
     Parameters
@@ -68,6 +79,8 @@ def live(settings: LifeSettings, *, progress: Progress | None = None, stop: Even
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
         Set it to end early: the task in progress is given up, all finished ones are kept.
+    watch : callable, optional
+        Called as ``watch(task, results)`` with each task, once memory has it; see `Watcher`.
 
     Raises
     ------
@@ -83,7 +96,7 @@ def live(settings: LifeSettings, *, progress: Progress | None = None, stop: Even
     with open_memory(settings.memory) as memory:
         life = _Living(settings, world, names, memory)
         with ThreadPoolExecutor(settings.jobs) as pool:
-            results = life.run(pool, progress, stop)
+            results = life.run(pool, progress, stop, watch)
         report = _report(settings, world, life, results, time.perf_counter() - began)
     return Life(report, world, results, life.lores[names[0]], stop.is_set())
 
@@ -108,7 +121,9 @@ class _Living:
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.finished: list[dict] = []
 
-    def run(self, pool: ThreadPoolExecutor, progress: Progress | None, stop: Event) -> list[dict[str, TaskResult]]:
+    def run(
+        self, pool: ThreadPoolExecutor, progress: Progress | None, stop: Event, watch: Watcher | None
+    ) -> list[dict[str, TaskResult]]:
         results = []
         total = self.settings.tasks
         for done in range(total):
@@ -116,6 +131,8 @@ class _Living:
                 break
             try:
                 results.append(self._live_task(self.tasks_before + done, done, pool, stop))
+                if watch:
+                    watch(self.finished[-1], results[-1])
                 if done >= KEPT:
                     for result in results[done - KEPT].values():
                         result.drop_arrays()

@@ -5,7 +5,7 @@ from threading import Event
 import numpy as np
 
 from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
-from lifelore.core.curve import EPISODE, STEP, new_curve
+from lifelore.core.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.known_world import Model, best_known_actions, known_policy
 from lifelore.core.mdp import Tables
 from lifelore.core.model_learning import Explorer, Manner, Perceived, check_deterministic, explore
@@ -40,15 +40,19 @@ def live_model_task(
         value = mean_start_value(tables, policy_values(tables, policy, discount))
         trace.append((total, value / optimal))
     reached = value >= THRESHOLD * optimal
-    episode, running = int(explorer.cursor[EPISODE]), explorer.running[0]
+    episode, begun, running = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP]), explorer.running[0]
+    if begun:
+        curve.returns[episode], curve.steps[episode] = running, begun
     return TaskResult(
-        first_return=float(curve.returns[0] if episode > 0 else running),
+        first_return=float(curve.returns[0]),
         collisions=int(curve.collisions.sum()),
         steps_to_80=total if reached else episodes * max_steps,
-        episodes_to_80=episode + int(explorer.cursor[STEP] > 0) if reached else episodes,
+        episodes_to_80=episode + int(begun > 0) if reached else episodes,
         reached=bool(reached),
         final_return=value,
         policy=policy,
         best=best_known_actions(model, explorer.place),
         trace=np.array(trace, float).reshape(-1, 2),
+        curve=first_episodes(curve, episode + int(begun > 0)),
+        complete=episode,
     )

@@ -5,7 +5,7 @@ from threading import Event
 import numpy as np
 
 from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
-from lifelore.core.curve import EPISODE, STEP, new_curve
+from lifelore.core.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.mdp import Tables
 from lifelore.core.planning import greedy_policy, learnt_best_actions, mean_start_value, policy_values
 from lifelore.core.q_learning import Learner, Rows, Schedule, learn
@@ -46,6 +46,8 @@ def live_q_task(
         policy=greedy_policy(learner.q),
         best=learnt_best_actions(learner.q),
         trace=np.array(trace, float).reshape(-1, 2),
+        curve=first_episodes(curve, episodes),
+        complete=episodes,
     )
 
 

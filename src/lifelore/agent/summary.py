@@ -2,7 +2,8 @@
 
 import math
 
-from lifelore.core.metrics import Estimate, jumpstart, mean_estimate, ratio_estimate
+from lifelore.core.learning_metrics import jumpstart
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 
 MEASURES = ("steps_to_80", "collisions", "episodes_to_80", "first_return")
 

@@ -5,6 +5,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.curve import Curve, new_curve
+
 THRESHOLD = 0.8
 """Share of the optimal return at which a task counts as learnt (thesis §3.4.1, Fig. 3.3)."""
 CHECK_EVERY = 100
@@ -24,6 +26,8 @@ class TaskResult:
     policy : (n_states,) greedy action, -1 where none is known
     best : (n_states, n_actions) which actions the learnt policy holds best; rows it does not know are False
     trace : (n_checks, 2) steps and share of optimal at each check
+    curve : the episodes begun
+    complete : how many of them ended; fewer only where the last was broken off
     """
 
     first_return: float
@@ -35,10 +39,13 @@ class TaskResult:
     policy: NDArray[np.int32] = field(repr=False)
     best: NDArray[np.bool_] = field(repr=False)
     trace: NDArray[np.float64] = field(repr=False)
+    curve: Curve = field(repr=False)
+    complete: int = field(repr=False)
 
     def drop_arrays(self) -> None:
-        """Forget the policy, which is as large as the world."""
+        """Forget the policy, which is as large as the world, and the episodes."""
         self.policy, self.best = np.empty(0, np.int32), np.empty((0, 0), np.bool_)
+        self.curve, self.complete = new_curve(0), 0
 
     def to_dict(self) -> dict:
         """The numbers as plain data."""

@@ -8,7 +8,9 @@ import typer
 def bench(
     name: Annotated[
         str,
-        typer.Argument(help="kernels, priors, separator, perceive (speed); relations, pictures, courier (worth)."),
+        typer.Argument(
+            help="kernels, priors, separator, perceive (speed); relations, pictures, courier, deep (worth)."
+        ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,
     map: Annotated[str | None, typer.Option(metavar="YAML", help="courier: a ROS map; else offices.")] = None,

@@ -37,6 +37,7 @@ def _register() -> None:
         memory_commands,
         perceive_command,
         reproduce_command,
+        reuse_command,
         scenes_command,
         teach_command,
     )
@@ -47,6 +48,7 @@ def _register() -> None:
     app.command("scenes")(scenes_command.scenes)
     app.command("teach")(teach_command.teach)
     app.command("advise")(advise_command.advise)
+    app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)

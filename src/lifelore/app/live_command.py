@@ -31,6 +31,9 @@ def live(
     out: Annotated[
         str | None, Option(metavar="DIR", help="Write summary.json, pictures and exports here.")
     ] = None,
+    l2log: Annotated[
+        str | None, Option(metavar="DIR", help="Log every episode here in L2Logger's format.")
+    ] = None,
     seed: Annotated[int, Option(help="Same seed, same life.")] = 0,
     jobs: Annotated[int, Option(help="Threads; results do not depend on them.")] = 2,
     density: Annotated[float | None, Option(help="noise: share of obstacles in (0, 1).")] = None,
@@ -52,7 +55,8 @@ def live(
     What is learnt is kept in memory, one transaction a finished task: run it again and the life goes on, in this
     building or another one.
     """
-    settings = {k: v for k, v in locals().items() if k not in ("out", "as_json", "start")}
+    settings = {k: v for k, v in locals().items() if k not in ("out", "l2log", "as_json", "start")}
+    from lifelore.agent.l2_log import LifeLog
     from lifelore.agent.life import live as live_through
     from lifelore.agent.life_settings import LifeSettings
     from lifelore.agent.portfolio import check_folder, write_portfolio
@@ -62,8 +66,9 @@ def live(
     told = LifeSettings(**settings, start=_row_column(start))
     if out is not None:
         check_folder(out)
+    watch = None if l2log is None else LifeLog(l2log, domain).add
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
-        life = live_through(told, progress=progress, stop=stop)
+        life = live_through(told, progress=progress, stop=stop, watch=watch)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)

@@ -19,6 +19,17 @@ class Curve(NamedTuple):
     reached: NDArray[np.bool_]
 
 
+def first_episodes(curve: Curve, n_episodes: int) -> Curve:
+    """A copy of the first `n_episodes` of a curve."""
+    return Curve(
+        curve.returns[:n_episodes].copy(),
+        curve.rewards[:n_episodes].copy(),
+        curve.steps[:n_episodes].copy(),
+        curve.collisions[:n_episodes].copy(),
+        curve.reached[:n_episodes].copy(),
+    )
+
+
 def new_curve(n_episodes: int) -> Curve:
     """An empty learning curve."""
     return Curve(

@@ -1,4 +1,4 @@
-"""Numbers people compare: means, medians and paired ratios with 95 % intervals, and learning-curve metrics."""
+"""Numbers people compare: means, paired differences and ratios, with medians and 95 % intervals."""
 
 from dataclasses import asdict, dataclass
 
@@ -36,6 +36,13 @@ def mean_estimate(values: ArrayLike) -> Estimate:
     return Estimate(
         float(values.mean()), float(np.median(values)), _interval(values[:, None], _means), len(values)
     )
+
+
+def difference_estimate(values: ArrayLike, others: ArrayLike) -> Estimate:
+    """Mean and median of the differences of paired values (n,), with a paired BCa interval."""
+    first, other = _checked(values), _checked(others)
+    _check_paired(first, other)
+    return mean_estimate(first - other)
 
 
 def ratio_estimate(numerators: ArrayLike, denominators: ArrayLike) -> Estimate:
@@ -101,24 +108,3 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
 def entropy(probs: NDArray[np.float64]) -> NDArray[np.float64]:
     """Entropy in nats of each row of `probs` (n, n_outcomes), rows sum to 1; 0 log 0 is 0."""
     return -(probs * np.log(np.where(probs > 0, probs, 1.0))).sum(axis=1)
-
-
-def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
-    """First-episode advantage: mean paired difference of first returns."""
-    first, other = _checked(returns), _checked(baseline)
-    _check_paired(first, other)
-    return mean_estimate(first - other)
-
-
-def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window: int = 1) -> int | None:
-    """Episodes until the moving mean over `window` first reaches `threshold`; None if it never does.
-
-    The count is of episodes run, so at least `window`.
-    """
-    returns = np.asarray(returns, float)
-    if window < 1 or window > len(returns):
-        raise InputError(f"window must lie in [1, {len(returns)}], got {window}")
-    # Summed before divided: ten returns of 1 have the mean 1, ten tenths of them do not.
-    smooth = np.convolve(returns, np.ones(window), mode="valid") / window
-    reached = np.flatnonzero(smooth >= threshold)
-    return int(reached[0]) + window if reached.size else None

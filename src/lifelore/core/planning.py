@@ -7,7 +7,9 @@ from lifelore.core.jit import inlined, kernel
 from lifelore.core.mdp import TERMINAL, Tables
 
 TIE_TOLERANCE = 1e-9
-"""Actions whose values differ by less than this, relative to the larger, are tied."""
+"""Actions whose values differ by no more than this, relative to the row's best, are tied."""
+TIE_FLOOR = 1e-12
+"""Nor are they told apart below this, relative to the largest value of all: exact values are known no better."""
 
 
 def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
@@ -57,15 +59,25 @@ def _backup(tables, s, a, discount, value):
     return total
 
 
-def best_actions(q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE) -> NDArray[np.bool_]:
-    """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool."""
+def best_actions(
+    q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE, floor: float = TIE_FLOOR
+) -> NDArray[np.bool_]:
+    """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool.
+
+    Tied are those within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
+    whichever is more: where the best is worth nothing, rounding alone must not choose. Not finite means not there.
+    """
     best = q.max(axis=1, keepdims=True)
-    return q >= best - tolerance * np.maximum(np.abs(best), 1e-300)
+    largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
+    return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
 
 
 def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """`best_actions` of a learnt Q; rows that promise nothing above zero are all False: it has no policy there."""
-    return best_actions(q) & (q.max(axis=1, keepdims=True) > 0)
+    """`best_actions` of a learnt Q; rows that promise nothing above zero are all False: it has no policy there.
+
+    What a learner has just heard of may be worth very little yet, so there is no floor.
+    """
+    return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) > 0)
 
 
 def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:

@@ -53,11 +53,16 @@ _HOME = {
 
 ENVIRONMENTS = {
     "lifelore/AdviceMaze-v0": ("advice_environment:AdviceMazeEnvironment", 5000),
+    "lifelore/BallGame-v0": ("ball_game_environment:BallGameEnvironment", 400),
     "lifelore/Building-v0": ("environment:BuildingEnvironment", 2000),
     "lifelore/Factory-v0": ("factory_environment:FactoryEnvironment", 2000),
+    "lifelore/Golf-v0": ("golf_environment:GolfEnvironment", 3),
     "lifelore/Lattice-v0": ("environment:LatticeEnvironment", 1000),
     "lifelore/ModifiedFactory-v0": ("factory_environment:ModifiedFactoryEnvironment", 2000),
     "lifelore/NoiseMaze-v0": ("environment:NoiseMazeEnvironment", 1000),
+    "lifelore/Pacman-v0": ("pacman_environment:PacmanEnvironment", 200),
+    "lifelore/Surveillance-v0": ("surveillance_environment:SurveillanceEnvironment", 50),
+    "lifelore/Telephone-v0": ("telephone_environment:TelephoneEnvironment", 3),
 }
 """Registered name → where its class lives in this package, and the steps after which an episode is cut."""
 

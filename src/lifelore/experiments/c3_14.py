@@ -1,4 +1,4 @@
-"""C3.14: what the task-set minimised domain keeps, how safe exploring in it is, and how fast learning (§3.2.3).
+"""C3.14: what the minimised domain keeps, how often exploring in it collides, how fast it is learnt in (§3.2.3).
 
 Three definitions are measured: the printed one, whose η can be 1/0 (errata E8), the repaired one, and a closed one
 that mends both; the first two decide. For an "unknown task drawn from" the set, learners meet the set's own tasks.
@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from lifelore.action.domain_reduction import FORMS
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.claim import Claim
@@ -67,7 +68,6 @@ CAUSES = {
     "(errata E36)",
     "no slower": "an episode that strays into another task's branch is lost (errata E36)",
 }
-FORMS = ("repaired", "printed", "closed")
 DEFAULT_WAY, PRINTED_WAY, CLOSED_WAY = WITHIN[0], *WITHIN[2:]
 
 Learning = Mapping

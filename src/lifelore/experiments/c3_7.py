@@ -13,7 +13,8 @@ import numpy as np
 
 from lifelore.action.exploration import TIES
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, jumpstart, mean_estimate, ratio_estimate
+from lifelore.core.learning_metrics import jumpstart
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.factory import N_COMPONENTS
 from lifelore.domains.factory_contexts import ENCODINGS, PHI
 from lifelore.experiments.claim import Claim

@@ -13,7 +13,8 @@ import numpy as np
 
 from lifelore.action.action_prior import FORMS
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, jumpstart, mean_estimate, ratio_estimate
+from lifelore.core.learning_metrics import jumpstart
+from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.grid_shares import is_above, is_below, share_of
 from lifelore.experiments.guided_choices import (

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.action.exploration import prior_rows
+from lifelore.core.learning_metrics import episodes_to_threshold
 from lifelore.core.mdp import Tables
-from lifelore.core.metrics import episodes_to_threshold
 from lifelore.core.planning import best_actions, optimal_q
 from lifelore.core.q_learning import Learner, Rows, Schedule
 from lifelore.core.random_state import next_uniform, random_state

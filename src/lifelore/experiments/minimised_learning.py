@@ -1,15 +1,11 @@
 """What a task set's minimised domain keeps and what it costs: exact values, traps, exploration, learning.
 
 The domain as printed renormalises outcomes that lead out of it, and where none is left (η = 1/0) the action is
-taken out, the kindest reading. A third definition mends both faults of the other two (errata E8, E36):
-
-    closed    s reachable from a start when every step is optimal for some task, a optimal in s for some task
-
-Nothing kept leads out, and every task's own policy is kept wherever another's may have led. In a state without
-kept actions, such as another task's goal, a learner stays for nothing (`stay`), or has all actions of the domain
-again (`free`); a policy that could choose to end there is no policy, so exact values give such a state the worst
-reward for ever. Learners within a minimised domain see kept actions alone, in exploring, in ties and in the best,
-and the world's own outcomes, which nothing renormalises. Thesis: §3.2.3, Thm 3.2.6, Props. 3.2.7-3.2.8.
+taken out, the kindest reading. The closed one mends both faults of the other two (errata E8, E36). In a state
+without kept actions, such as another task's goal, a learner stays for nothing (`stay`), or has all actions of the
+domain again (`free`); a policy that could choose to end there is no policy, so exact values give such a state the
+worst reward for ever. Learners within a minimised domain see kept actions alone, in exploring, in ties and in the
+best, and the world's own outcomes, which nothing renormalises. Thesis: §3.2.3, Thm 3.2.6, Props. 3.2.7-3.2.8.
 """
 
 from collections.abc import Iterator, Mapping
@@ -18,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.domain_reduction import (
+    FORMS,
     MinimisedDomain,
     minimised_domain,
     reachable_states,
@@ -25,8 +22,8 @@ from lifelore.action.domain_reduction import (
     trap_states,
 )
 from lifelore.core.curve import Curve, new_curve
+from lifelore.core.learning_metrics import episodes_to_threshold
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
-from lifelore.core.metrics import episodes_to_threshold
 from lifelore.core.planning import optimal_q
 from lifelore.core.q_learning import Schedule, learn, new_learner, uniform_rows
 from lifelore.core.random_state import next_uniform, random_state
@@ -198,24 +195,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def domains_of(tasks: TaskSet) -> dict[str, MinimisedDomain]:
-    """The set's minimised domain by the three definitions."""
+    """The set's minimised domain by each definition."""
     tables, best = [t.tables for t in tasks.tasks], [t.best for t in tasks.tasks]
-    found = {form: minimised_domain(tables, best, form) for form in ("repaired", "printed")}
-    return {**found, "closed": closed_domain(tasks)}
-
-
-def closed_domain(tasks: TaskSet) -> MinimisedDomain:
-    """The minimised domain of the definition `closed`; see the module."""
-    optimal = np.logical_or.reduce([task.best for task in tasks.tasks])
-    follow = tasks.tasks[0].tables.next_state
-    states = np.zeros(len(optimal), bool)
-    frontier = np.unique(np.concatenate([task.tables.starts for task in tasks.tasks]))
-    while frontier.size:
-        states[frontier] = True
-        entered = np.unique(follow[frontier][optimal[frontier]])
-        frontier = entered[~states[entered]]
-    pairs = optimal & states[:, None]
-    return MinimisedDomain("closed", states, pairs, pairs.astype(float))
+    return {form: minimised_domain(tables, best, form) for form in FORMS}
 
 
 def exact(tasks: TaskSet) -> dict:

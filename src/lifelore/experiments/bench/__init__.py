@@ -8,7 +8,18 @@ from lifelore.core.protocols import Progress
 MOST_REPEATS = 1000
 
 
-BENCHES = ("kernels", "courier", "priors", "separator", "perceive", "relations", "pictures")
+BENCHES = (
+    "kernels",
+    "courier",
+    "priors",
+    "separator",
+    "perceive",
+    "relations",
+    "pictures",
+    "factory",
+    "deep",
+    "reuse",
+)
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
 
@@ -21,7 +32,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives; for
-        ``relations``: lots of scenes, judged together.
+        ``relations``: lots of scenes, judged together; for ``deep``: runs of learning.
     map : str, optional
         For ``courier``: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -1,0 +1,54 @@
+"""A prior from what a trained model does: the step from one task, solved by deep learning, to the next."""
+
+from typing import Any
+
+import gymnasium
+
+from lifelore.action.action_prior import ActionPrior
+from lifelore.bridges.observations import Contexts, as_batch, check_actions
+from lifelore.core.streams import stream
+
+
+def count_episodes(
+    prior: ActionPrior,
+    model: Any,
+    env: gymnasium.Env,
+    contexts: Contexts,
+    episodes: int,
+    least: float = 0.0,
+    seed: int = 0,
+) -> int:
+    """Count what a trained model does in the episodes whose return exceeds `least`; returns how many those were.
+
+    Each visit counts once, weighted alike (§3.4.8): what a network believes where it never goes does not count.
+
+    Parameters
+    ----------
+    prior : ActionPrior
+        Changed in place.
+    model : anything with ``predict(observation, deterministic=True)``
+        As all models of Stable-Baselines3 and sb3-contrib.
+    env : gymnasium.Env
+        Episode i is reset by a seed drawn from (`seed`, i).
+    """
+    check_actions(prior, env.action_space)
+    counted = 0
+    for episode in range(episodes):
+        codes, actions, earned = _lived(model, env, contexts, int(stream(seed, "sb3", episode).integers(2**31)))
+        if earned > least:
+            prior.update_trajectory(codes, actions)
+            counted += 1
+    return counted
+
+
+def _lived(model: Any, env: gymnasium.Env, contexts: Contexts, seed: int) -> tuple[list[int], list[int], float]:
+    codes, actions, earned = [], [], 0.0
+    observation, _ = env.reset(seed=seed)
+    over = False
+    while not over:
+        codes.append(int(contexts(as_batch(observation))[0]))
+        actions.append(int(model.predict(observation, deterministic=True)[0]))
+        observation, reward, terminated, truncated, _ = env.step(actions[-1])
+        earned += float(reward)
+        over = terminated or truncated
+    return codes, actions, earned

@@ -1,0 +1,83 @@
+"""Masks from a prior for agents that ask an environment which actions they may choose."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.action_prior import ActionPrior
+from lifelore.bridges.observations import Contexts, as_batch, check_actions
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+
+
+class PriorMask(gymnasium.Wrapper):
+    """Masks for sb3-contrib's ``MaskablePPO``: in each context the actions that the prior's `mask` leaves.
+
+    Parameters
+    ----------
+    env : gymnasium.Env
+        With ``Discrete`` actions.
+    prior : ActionPrior
+        Counts added while learning are heeded from the next episode on.
+    contexts : callable
+        Of batches of this environment's observations.
+    threshold : float
+        An action is left where its share of the counts exceeds it; see `ActionPrior.mask`.
+    escape : float
+        Probability in [0, 1] that a step is not masked at all: a mask can exclude the best action
+        (`ActionPrior.exclusion_rate` tells how often), and then this alone finds it. 0 for none.
+
+    Raises
+    ------
+    InputError
+        The prior is for another number of actions, or `escape` breaks its rule.
+    """
+
+    def __init__(
+        self,
+        env: gymnasium.Env,
+        prior: ActionPrior,
+        contexts: Contexts,
+        threshold: float = 0.0,
+        escape: float = 0.02,
+    ) -> None:
+        super().__init__(env)
+        if not 0 <= escape <= 1:
+            raise InputError(f"escape must lie in [0, 1], got {escape}")
+        check_actions(prior, env.action_space)
+        self.prior, self.contexts, self.threshold, self.escape = prior, contexts, threshold, escape
+        self._escapes = np.random.default_rng()
+        self._all = self._mask = np.ones(prior.n_actions, bool)
+        self._kept: dict[int, NDArray[np.bool_]] = {}
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, dict[str, Any]]:
+        """As the environment's; a seed also fixes which steps escape."""
+        self._kept.clear()
+        if seed is not None:
+            self._escapes = stream(seed, "sb3", "escape")
+        observation, info = self.env.reset(seed=seed, options=options)
+        self._look(observation)
+        return observation, info
+
+    def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
+        """As the environment's."""
+        observation, reward, terminated, truncated, info = self.env.step(action)
+        self._look(observation)
+        return observation, reward, terminated, truncated, info
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Actions that may be chosen now, (n_actions,) bool; the same until the next step."""
+        return self._mask
+
+    def _look(self, observation: Any) -> None:
+        if self._escapes.random() < self.escape:
+            self._mask = self._all
+            return
+        code = int(self.contexts(as_batch(observation))[0])
+        if code not in self._kept:
+            self._kept[code] = self.prior.mask([code], self.threshold)[0]
+        self._mask = self._kept[code]

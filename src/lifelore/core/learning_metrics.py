@@ -1,0 +1,171 @@
+"""What learning with a past is worth, read off learning curves: the five measures of transfer, paired.
+
+A curve is performance episode by episode, larger is better. Curves of many runs are (n_runs, n_episodes); row i
+of a learner and row i of its baseline are the same task on the same random streams. The measures are those of
+Taylor & Stone, Transfer Learning for Reinforcement Learning Domains, JMLR 10 (2009), §2.1.
+"""
+
+from dataclasses import dataclass, fields
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate, difference_estimate, ratio_estimate
+
+LAST_SHARE = 0.1
+"""Share of the episodes, the last ones, whose mean stands for the asymptote."""
+
+
+def jumpstart(returns: ArrayLike, baseline: ArrayLike) -> Estimate:
+    """First-episode advantage: mean paired difference of first returns (n_runs,)."""
+    return difference_estimate(returns, baseline)
+
+
+def asymptotes(curves: ArrayLike, share: float = LAST_SHARE) -> NDArray[np.float64]:
+    """Mean performance of the last `share`, in (0, 1], of the episodes, at least one, (n_runs,)."""
+    curves = _curves(curves, "curves")
+    if not 0 < share <= 1:
+        raise InputError(f"share must lie in (0, 1], got {share}")
+    return curves[:, -max(1, round(share * curves.shape[1])) :].mean(axis=1)
+
+
+def total_rewards(curves: ArrayLike, floor: float = 0.0) -> NDArray[np.float64]:
+    """Area between each curve and `floor`: performance above it, summed over episodes, (n_runs,)."""
+    return (_curves(curves, "curves") - floor).sum(axis=1)
+
+
+def transfer_ratio(curves: ArrayLike, baseline: ArrayLike, floor: float = 0.0) -> Estimate:
+    """(area with transfer − area without) / area without, of means over runs: 0 no transfer, 1 twice the reward.
+
+    Parameters
+    ----------
+    curves, baseline : (n_runs, n_episodes) float
+    floor : float
+        The performance that counts as nothing. A ratio means something only above it, and depends on it.
+
+    Raises
+    ------
+    InputError
+        A curve of the baseline has no area above the floor.
+    """
+    curves, baseline = _paired(curves, baseline)
+    with_past, without = total_rewards(curves, floor), total_rewards(baseline, floor)
+    if not (without > 0).all():
+        raise InputError(
+            f"floor must lie below the baseline's mean in every run, got {floor} and the mean "
+            f"{baseline.mean(axis=1).min():.6g}; name the performance that counts as nothing"
+        )
+    return ratio_estimate(with_past - without, without)
+
+
+def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window: int = 1) -> int | None:
+    """Episodes until the moving mean over `window` first reaches `threshold`; None if it never does.
+
+    The count is of episodes run, so at least `window`.
+    """
+    returns = np.asarray(returns, float)
+    if window < 1 or window > len(returns):
+        raise InputError(f"window must lie in [1, {len(returns)}], got {window}")
+    # Summed before divided: ten returns of 1 have the mean 1, ten tenths of them do not.
+    smooth = np.convolve(returns, np.ones(window), mode="valid") / window
+    reached = np.flatnonzero(smooth >= threshold)
+    return int(reached[0]) + window if reached.size else None
+
+
+@dataclass(frozen=True)
+class LearningGain:
+    """A learner beside its baseline over the same runs; see `learning_gain`.
+
+    jumpstart : difference of first performances
+    asymptote : difference of the last ones
+    total_reward : difference of the areas under the curves
+    transfer_ratio : that difference over the baseline's area; None where the baseline has a run without area
+    threshold_ratio : episodes to the threshold over the baseline's; below 1 is faster
+    threshold_saved : episodes to the threshold that the baseline needs more
+    never, baseline_never : runs that never reached the threshold; they count as all their episodes
+    """
+
+    jumpstart: Estimate
+    asymptote: Estimate
+    total_reward: Estimate
+    transfer_ratio: Estimate | None
+    threshold_ratio: Estimate
+    threshold_saved: Estimate
+    never: int
+    baseline_never: int
+
+    def to_dict(self) -> dict:
+        """Plain data."""
+        plain = {field.name: getattr(self, field.name) for field in fields(self)}
+        return {k: v.to_dict() if isinstance(v, Estimate) else v for k, v in plain.items()}
+
+
+def learning_gain(
+    curves: ArrayLike,
+    baseline: ArrayLike,
+    threshold: ArrayLike,
+    *,
+    window: int = 1,
+    share: float = LAST_SHARE,
+    floor: float = 0.0,
+) -> LearningGain:
+    """All five measures of transfer, paired run by run, with 95 % intervals.
+
+    Parameters
+    ----------
+    curves, baseline : (n_runs, n_episodes) float
+        Performance of the learner with a past, and of the one without.
+    threshold : float or (n_runs,) float
+        Performance at which a run counts as learnt, such as 0.8 of its optimum.
+    window : int
+        Episodes of the moving mean that must reach the threshold.
+    share, floor : float
+        See `asymptotes` and `transfer_ratio`.
+
+    Examples
+    --------
+    >>> gain = learning_gain([[1, 2, 4], [2, 3, 4]], [[0, 1, 4], [0, 2, 4]], threshold=2)
+    >>> gain.jumpstart.value, gain.asymptote.value, round(gain.transfer_ratio.value, 3), gain.threshold_saved.value
+    (1.5, 0.0, 0.455, 1.0)
+    """
+    curves, baseline = _paired(curves, baseline)
+    thresholds = np.asarray(threshold, float)
+    if thresholds.shape not in ((), (len(curves),)):
+        raise InputError(f"threshold must be one number or one a run ({len(curves)}), got {thresholds.shape}")
+    own, never = _times(curves, thresholds, window)
+    other, other_never = _times(baseline, thresholds, window)
+    grounded = (total_rewards(baseline, floor) > 0).all()
+    return LearningGain(
+        jumpstart=jumpstart(curves[:, 0], baseline[:, 0]),
+        asymptote=difference_estimate(asymptotes(curves, share), asymptotes(baseline, share)),
+        total_reward=difference_estimate(total_rewards(curves), total_rewards(baseline)),
+        transfer_ratio=transfer_ratio(curves, baseline, floor) if grounded else None,
+        threshold_ratio=ratio_estimate(own, other),
+        threshold_saved=difference_estimate(other, own),
+        never=never,
+        baseline_never=other_never,
+    )
+
+
+def _times(curves: NDArray[np.float64], thresholds: NDArray[np.float64], window: int) -> tuple[list[int], int]:
+    """Episodes to the threshold of each run, all of them where it is never met; and how many never met it."""
+    each = np.broadcast_to(thresholds, len(curves))
+    times = [episodes_to_threshold(c, float(t), window) for c, t in zip(curves, each, strict=True)]
+    return [curves.shape[1] if time is None else time for time in times], times.count(None)
+
+
+def _curves(curves: ArrayLike, name: str) -> NDArray[np.float64]:
+    array = np.asarray(curves, np.float64)
+    if array.ndim != 2 or not array.size or not np.isfinite(array).all():
+        raise InputError(
+            f"{name} must be finite and (n_runs, n_episodes), at least one of each, got {array.shape}"
+        )
+    return array
+
+
+def _paired(curves: ArrayLike, baseline: ArrayLike) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    own, other = _curves(curves, "curves"), _curves(baseline, "baseline")
+    if own.shape != other.shape:
+        raise InputError(f"curves and baseline must agree run by run, got {own.shape} and {other.shape}")
+    return own, other

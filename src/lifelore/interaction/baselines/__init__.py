@@ -1,0 +1,35 @@
+"""What policy reuse is compared with: methods that see the payoffs of the policies they play, and no types.
+
+All have the same two verbs, ``select()`` and ``update(policy, reward)``; see `Baseline`.
+"""
+
+from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.clustered_ucb import ClusteredUCB
+from lifelore.interaction.baselines.epsilon_greedy_means import EpsilonGreedyMeans
+from lifelore.interaction.baselines.exp3 import EXP3
+from lifelore.interaction.baselines.gp_ucb import GPUCB
+from lifelore.interaction.baselines.interval_estimation import IntervalEstimation
+from lifelore.interaction.baselines.thompson import GaussianThompson
+from lifelore.interaction.baselines.try_all import TryAll
+from lifelore.interaction.baselines.ucb1 import UCB1
+
+BASELINES: dict[str, type[Baseline]] = {
+    kind.name: kind
+    for kind in (
+        TryAll, UCB1, IntervalEstimation, ClusteredUCB, EXP3, GPUCB, GaussianThompson, EpsilonGreedyMeans,
+    )
+}  # fmt: skip
+"""Every baseline by its name."""
+
+__all__ = [
+    "BASELINES",
+    "EXP3",
+    "GPUCB",
+    "UCB1",
+    "Baseline",
+    "ClusteredUCB",
+    "EpsilonGreedyMeans",
+    "GaussianThompson",
+    "IntervalEstimation",
+    "TryAll",
+]

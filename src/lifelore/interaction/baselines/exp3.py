@@ -1,0 +1,101 @@
+"""EXP3: exponential weights against payoffs that may change in any way (Auer et al., 2002)."""
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.ucb1 import checked_scale, to_unit
+
+if TYPE_CHECKING:
+    from lifelore.interaction.policy_library import PolicyLibrary
+
+
+class EXP3(Baseline):
+    """p = (1 - γ) w / Σw + γ / P; the policy played gets w ← w·exp(γ x / (p P)), x the payoff in [0, 1].
+
+    One `select` and one `update` stand for one pull, however long it lasts: k steps of an episode, as the thesis
+    prints it (whose payoff is then 0 until the goal is reached), or a whole episode.
+
+    Parameters
+    ----------
+    gamma : float, optional
+        Share of uniform play, in (0, 1].
+    horizon : int, optional
+        Number of pulls to come: γ = min(1, √(P ln P / ((e - 1) horizon))), which minimises the bound on regret.
+        One of the two has to be given.
+    scale : (float, float), optional
+        Payoffs that become 0 and 1; default (0, 1). What lies outside is clipped: weights need [0, 1].
+    n_policies, n_tasks, seed
+        As in `Baseline`.
+
+    A payoff is weighed by the probability its policy has when it comes in, so a late one is weighed by
+    today's.
+    Thesis: §4.8.5.
+
+    Examples
+    --------
+    >>> player = EXP3(2, gamma=0.5)
+    >>> player.update(0, 1.0)                      # w ← (exp(0.5 · 1 / (½ · 2)), 1)
+    >>> player.probabilities.round(4).tolist()     # 0.5 · e^½ / (e^½ + 1) + 0.25
+    [0.5612, 0.4388]
+    """
+
+    name: ClassVar[str] = "exp3"
+
+    def __init__(
+        self,
+        n_policies: int,
+        *,
+        gamma: float | None = None,
+        horizon: int | None = None,
+        scale: tuple[float, float] | None = None,
+        **common: Any,
+    ) -> None:
+        super().__init__(n_policies, **common)
+        self.gamma, self.scale = _gamma(gamma, horizon, n_policies), checked_scale(scale)
+        self._log_weights = np.zeros((self.rows, n_policies))
+
+    @classmethod
+    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
+        """Scale from the library's bounds; `settings` override."""
+        known: dict[str, Any] = {"scale": library.performance.bounds()}
+        return cls(library.n_policies, **(known | settings))
+
+    @property
+    def probabilities(self) -> NDArray[np.float64]:
+        """Chance of each policy to be played next, (n_policies,) or (n_tasks, n_policies)."""
+        probs = self._scores()
+        return probs[0] if self.n_tasks is None else probs
+
+    def _scores(self) -> NDArray[np.float64]:
+        weights = np.exp(self._log_weights - self._log_weights.max(axis=1, keepdims=True))
+        weights /= weights.sum(axis=1, keepdims=True)
+        return (1 - self.gamma) * weights + self.gamma / self.n_policies
+
+    def _choose(self) -> NDArray[np.int64]:
+        steps = self._scores().cumsum(axis=1)
+        drawn = self._generator.random((self.rows, 1)) * steps[:, -1:]
+        # The last step is the sum itself, which no draw reaches.
+        return (drawn >= steps).sum(axis=1)
+
+    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        every = np.arange(self.rows)
+        payoff = np.clip(to_unit(rewards, self.scale), 0.0, 1.0)
+        weighed = payoff / self._scores()[every, policies]
+        self._log_weights[every, policies] += self.gamma * weighed / self.n_policies
+
+
+def _gamma(gamma: float | None, horizon: int | None, n_policies: int) -> float:
+    if (gamma is None) == (horizon is None):
+        raise InputError("give gamma or horizon, one of the two")
+    if horizon is not None:
+        if horizon < 1:
+            raise InputError(f"horizon must be at least 1, got {horizon}")
+        return float(min(1.0, np.sqrt(n_policies * np.log(n_policies) / ((np.e - 1) * horizon)))) or 1.0
+    assert gamma is not None
+    if not 0 < gamma <= 1:
+        raise InputError(f"gamma must lie in (0, 1], got {gamma}")
+    return float(gamma)

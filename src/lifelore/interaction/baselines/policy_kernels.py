@@ -1,0 +1,150 @@
+"""Covariances between policies, for Gaussian processes over a finite set of them.
+
+Three sources of "near": doing alike in training, a true metric that the caller knows, and the covariance of
+payoffs over a library's types. Thesis: §4.6.4 (the metric is not known and "is approximated from performance in
+the training tasks").
+"""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+
+if TYPE_CHECKING:
+    from lifelore.interaction.policy_library import PolicyLibrary
+
+FORMS = ("gaussian", "exponential")
+JITTER = 1e-10
+"""Share of the mean variance added to the diagonal, so that a factorisation in floats exists."""
+
+
+def performance_distances(mean: ArrayLike) -> NDArray[np.float64]:
+    """Root mean square difference of two policies' mean payoffs over the types, (n_policies, n_policies).
+
+    Parameters
+    ----------
+    mean : (n_types, n_policies) float
+    """
+    columns = np.asarray(mean, np.float64).T
+    if columns.ndim != 2 or not np.isfinite(columns).all():
+        raise InputError("mean must be (n_types, n_policies), finite")
+    squares = ((columns[:, None, :] - columns[None, :, :]) ** 2).mean(axis=2)
+    return np.sqrt(squares)
+
+
+def metric_kernel(
+    distances: ArrayLike, *, length: float, deviation: float = 1.0, form: str = "gaussian"
+) -> NDArray[np.float64]:
+    """deviation²·exp(-d²/2ℓ²), or deviation²·exp(-d/ℓ), made positive semidefinite; (n_policies, n_policies).
+
+    Parameters
+    ----------
+    distances : (n_policies, n_policies) float
+        Symmetric, at least 0, 0 on the diagonal.
+    length : float
+        ℓ > 0, in units of the distances.
+    deviation : float
+        Of a policy's mean payoff before anything was seen, > 0.
+    form : {"gaussian", "exponential"}
+        The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a
+        covariance: negative eigenvalues are then set to 0 and the diagonal is put back.
+    """
+    gaps = np.asarray(distances, np.float64)
+    _check_distances(gaps)
+    if not (length > 0 and deviation > 0):
+        raise InputError(f"length and deviation must be positive, got {length} and {deviation}")
+    if form not in FORMS:
+        raise InputError(f"form must be one of {', '.join(FORMS)}, got {form!r}")
+    like = np.exp(-0.5 * (gaps / length) ** 2) if form == "gaussian" else np.exp(-gaps / length)
+    return deviation**2 * _semidefinite(like)
+
+
+def performance_kernel(
+    mean: ArrayLike, *, length: float | None = None, deviation: float | None = None
+) -> NDArray[np.float64]:
+    """`metric_kernel` on the policies' training performance, as the thesis's GP-UCB has it.
+
+    `length` by default is the one under which the types' own payoffs are likeliest, see `likeliest_length`;
+    `deviation` is the root mean square deviation of payoffs about each policy's mean over types.
+    """
+    table = np.asarray(mean, np.float64)
+    gaps = performance_distances(table)
+    centred = table - table.mean(axis=0)
+    spread = float(np.sqrt((centred**2).mean())) if deviation is None else deviation
+    if not spread > 0:
+        raise InputError("deviation must be given where no policy's payoff differs between types")
+    reach = likeliest_length(gaps, centred, deviation=spread) if length is None else length
+    return metric_kernel(gaps, length=reach, deviation=spread)
+
+
+def prior_covariance(library: "PolicyLibrary") -> NDArray[np.float64]:
+    """Covariance of the policies' mean payoffs when the type is drawn from G₀, (n_policies, n_policies).
+
+    The best second-moment summary a Gaussian process can have of the library.
+    """
+    prior, means = np.asarray(library.prior), np.asarray(library.performance.mean)
+    centred = means - prior @ means
+    return (centred * prior[:, None]).T @ centred
+
+
+def likeliest_length(
+    distances: ArrayLike,
+    centred: ArrayLike,
+    *,
+    deviation: float,
+    lengths: Sequence[float] | None = None,
+    noise: float | None = None,
+) -> float:
+    """Of `lengths` the one that makes `centred`, rows as draws of the process, likeliest.
+
+    Parameters
+    ----------
+    distances : (n_policies, n_policies) float
+    centred : (n_types, n_policies) float
+        Payoffs less each policy's mean.
+    deviation : float
+        Of the kernel, > 0.
+    lengths : sequence of float, optional
+        Default: 24 from a tenth of the least distance that is not 0 to the largest distance, evenly in logarithm.
+    noise : float, optional
+        Deviation of the draws about the process; default a hundredth of `deviation`.
+    """
+    gaps, rows = np.asarray(distances, np.float64), np.asarray(centred, np.float64)
+    apart = gaps[gaps > 0]
+    if lengths is None:
+        if not apart.size:
+            return 1.0
+        lengths = [float(each) for each in np.geomspace(apart.min() / 10, apart.max(), 24)]
+    loud = (deviation / 100 if noise is None else noise) ** 2 * np.eye(len(gaps))
+    fits = [_log_density(metric_kernel(gaps, length=each, deviation=deviation) + loud, rows) for each in lengths]
+    return float(lengths[int(np.argmax(fits))])
+
+
+def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> float:
+    """Log density of all rows, up to the constant they share."""
+    from scipy.linalg import cho_factor, cho_solve
+
+    factor = cho_factor(covariance, lower=True)
+    size = 2 * np.log(np.diag(factor[0])).sum()
+    return float(-0.5 * (rows * cho_solve(factor, rows.T).T).sum() - 0.5 * len(rows) * size)
+
+
+def _check_distances(gaps: NDArray[np.float64]) -> None:
+    square = gaps.ndim == 2 and gaps.shape[0] == gaps.shape[1] and gaps.size > 0
+    if not square or not np.isfinite(gaps).all() or (gaps < 0).any():
+        raise InputError("distances must be (n_policies, n_policies), finite and at least 0")
+    if not np.allclose(gaps, gaps.T, rtol=1e-9, atol=1e-12) or np.diag(gaps).any():
+        raise InputError("distances must be symmetric and 0 on the diagonal")
+
+
+def _semidefinite(like: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The correlation matrix with its negative eigenvalues, if any, set to 0 and its diagonal back at 1."""
+    values, vectors = np.linalg.eigh(like)
+    if values[0] >= -JITTER * len(like):
+        return like
+    kept = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    scale = np.sqrt(np.diag(kept))
+    return kept / np.outer(scale, scale)

@@ -1,0 +1,76 @@
+"""Thompson sampling: draw each policy's mean payoff from what is believed of it, play the largest."""
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.interaction.baselines.arm_statistics import ArmStatistics
+from lifelore.interaction.baselines.baseline import Baseline, row_of
+from lifelore.interaction.baselines.library_moments import library_moments
+
+if TYPE_CHECKING:
+    from lifelore.interaction.policy_library import PolicyLibrary
+
+LEAST = 1e-9
+"""Deviation that stands for 0, where a library is certain."""
+
+
+class GaussianThompson(Baseline):
+    """Normal payoffs of known noise, normal beliefs about each policy's mean, independent of one another.
+
+    After n payoffs of mean m the belief is normal with precision 1/s₀² + n/σ² and mean
+    (m₀/s₀² + n m/σ²) / precision.
+
+    Parameters
+    ----------
+    prior_means, prior_deviations : float or (n_policies,) float
+        m₀ and s₀ > 0 of the belief about each mean.
+    noise : float or (n_policies,) float
+        σ > 0 of a payoff.
+    n_policies, n_tasks, seed
+        As in `Baseline`.
+
+    `from_library` takes all three under the library's prior over types.
+    """
+
+    name: ClassVar[str] = "thompson"
+
+    def __init__(
+        self,
+        n_policies: int,
+        *,
+        prior_means: ArrayLike = 0.0,
+        prior_deviations: ArrayLike = 1.0,
+        noise: ArrayLike = 1.0,
+        **common: Any,
+    ) -> None:
+        super().__init__(n_policies, **common)
+        self._start = row_of("prior_means", prior_means, n_policies)
+        self._start_precision = row_of("prior_deviations", prior_deviations, n_policies, least=0.0) ** -2
+        self._noise_precision = row_of("noise", noise, n_policies, least=0.0) ** -2
+        self.arms = ArmStatistics.empty(self.rows, n_policies)
+
+    @classmethod
+    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
+        """Beliefs and noise under the library's prior; `settings` override."""
+        mean, spread, noise = library_moments(library)
+        known: dict[str, Any] = {
+            "prior_means": mean,
+            "prior_deviations": np.maximum(spread, LEAST),
+            "noise": np.maximum(noise, LEAST),
+        }
+        return cls(library.n_policies, **(known | settings))
+
+    def beliefs(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Mean and deviation believed of each policy's mean payoff, (rows, n_policies) each."""
+        seen = self.arms.pulls * self._noise_precision
+        precision = self._start_precision + seen
+        mean = (self._start_precision * self._start + seen * self.arms.mean) / precision
+        return mean, precision**-0.5
+
+    def _scores(self) -> NDArray[np.float64]:
+        return self._generator.normal(*self.beliefs())
+
+    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        self.arms.add(policies, rewards)

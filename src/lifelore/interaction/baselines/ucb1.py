@@ -1,0 +1,104 @@
+"""UCB1: play the policy whose mean payoff could be the largest (Auer, Cesa-Bianchi and Fischer, 2002)."""
+
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.baselines.arm_statistics import ArmStatistics
+from lifelore.interaction.baselines.baseline import Baseline
+from lifelore.interaction.baselines.library_moments import library_moments
+
+if TYPE_CHECKING:
+    from lifelore.interaction.policy_library import PolicyLibrary
+
+
+class UCB1(Baseline):
+    """Upper confidence bounds: mean + c·√(2 ln t / n), c = `exploration`, payoffs mapped to [0, 1] by `scale`.
+
+    Parameters
+    ----------
+    exploration : float
+        c ≥ 0; 1 is the printed algorithm. On few and noisy plays much smaller values do better.
+    scale : (float, float), optional
+        Payoffs that become 0 and 1; default they are in [0, 1] as they are. Nothing is clipped.
+    prior_means : (n_policies,) float, optional
+        Expected payoffs, in payoffs' own units: no policy has to be tried before the choice begins.
+    prior_pulls : float or (n_policies,) float
+        How many plays those are worth; n and t count them.
+    n_policies, n_tasks, seed
+        As in `Baseline`.
+
+    `from_library` gives the prior means under G₀ and the scale from the library's bounds, as the thesis does.
+    Thesis: §4.6.4, Fig. 4.11.
+
+    Examples
+    --------
+    >>> player = UCB1(2, prior_means=[0.2, 0.6])
+    >>> player.select()
+    1
+    """
+
+    name: ClassVar[str] = "ucb1"
+
+    def __init__(
+        self,
+        n_policies: int,
+        *,
+        exploration: float = 1.0,
+        scale: tuple[float, float] | None = None,
+        prior_means: ArrayLike | None = None,
+        prior_pulls: ArrayLike = 1.0,
+        **common: Any,
+    ) -> None:
+        super().__init__(n_policies, **common)
+        self.exploration, self.scale = checked_exploration(exploration), checked_scale(scale)
+        means = None if prior_means is None else self._unit(np.asarray(prior_means, np.float64))
+        self.arms = ArmStatistics.from_prior(self.rows, n_policies, means, prior_pulls)
+
+    @classmethod
+    def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
+        """Prior means under the library's prior, scale from its bounds; `settings` override."""
+        known: dict[str, Any] = {
+            "prior_means": library_moments(library).mean,
+            "scale": library.performance.bounds(),
+        }
+        return cls(library.n_policies, **(known | settings))
+
+    def _unit(self, rewards: NDArray[np.float64]) -> NDArray[np.float64]:
+        return to_unit(rewards, self.scale)
+
+    def _scores(self) -> NDArray[np.float64]:
+        return upper_bounds(self.arms.pulls, self.arms.mean, self.exploration)
+
+    def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
+        self.arms.add(policies, self._unit(rewards))
+
+
+def upper_bounds(pulls: NDArray[np.float64], mean: NDArray[np.float64], exploration: float) -> NDArray[np.float64]:
+    """mean + c·√(2 ln t / n) with t the row's sum of pulls; infinite where n = 0. Shapes (..., n_arms)."""
+    # Fewer than one pull in all would have a negative logarithm.
+    seen = np.log(np.maximum(pulls.sum(axis=-1, keepdims=True), 1.0))
+    own = np.where(pulls > 0, pulls, 1.0)
+    return np.where(pulls > 0, mean + exploration * np.sqrt(2 * seen / own), np.inf)
+
+
+def checked_exploration(exploration: float) -> float:
+    """A finite constant of at least 0."""
+    if not (exploration >= 0 and np.isfinite(exploration)):
+        raise InputError(f"exploration must be finite and at least 0, got {exploration}")
+    return float(exploration)
+
+
+def checked_scale(scale: tuple[float, float] | None) -> tuple[float, float]:
+    """(low, high) with low < high; (0, 1) for None."""
+    low, high = (0.0, 1.0) if scale is None else (float(scale[0]), float(scale[1]))
+    if not (np.isfinite([low, high]).all() and low < high):
+        raise InputError(f"scale must be (low, high), finite and low < high, got {scale}")
+    return low, high
+
+
+def to_unit(rewards: NDArray[np.float64], scale: tuple[float, float]) -> NDArray[np.float64]:
+    """Payoffs with `scale` mapped to (0, 1)."""
+    return (rewards - scale[0]) / (scale[1] - scale[0])

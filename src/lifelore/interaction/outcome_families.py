@@ -1,0 +1,111 @@
+"""Families of outcomes for finding types of users: what a user's outcomes say of a type, as one matrix product.
+
+Means and probabilities start from the policy's own over all users, worth `PSEUDO` outcomes, so that a type whose
+users never met a policy expects of it what everybody gets.
+"""
+
+from typing import NamedTuple, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+PSEUDO = 1.0
+"""Outcomes that a policy's distribution over all users counts as in each type's."""
+FLOOR = 1e-3
+"""Least deviation of a policy's outcomes within a type, as a share of the deviation of all outcomes."""
+
+
+class UserRows(NamedTuple):
+    """Outcomes one a row.
+
+    users, policies : (n,) int64
+    values : (n,) float64, finite
+    shape : (n_users, n_policies)
+    """
+
+    users: NDArray[np.int64]
+    policies: NDArray[np.int64]
+    values: Array
+    shape: tuple[int, int]
+
+    def sums(self, values: Array | None = None) -> Array:
+        """Sum of `values` (n,), or the number of rows, of each user with each policy, (n_users, n_policies)."""
+        place = self.users * self.shape[1] + self.policies
+        summed = np.bincount(place, values, minlength=self.shape[0] * self.shape[1])
+        return summed.reshape(self.shape).astype(np.float64)
+
+
+class OutcomeFamily(Protocol):
+    """Log likelihoods (n_users, n_types) as a product: ``stats @ fit(shares).T``.
+
+    stats : (n_users, n_stats) float64
+        All that the family needs to know of each user's outcomes.
+    """
+
+    stats: Array
+
+    def fit(self, shares: Array) -> Array:
+        """The likeliest types, (n_types, n_stats), when users belong to them by `shares` (n_users, n_types)."""
+        ...
+
+    def n_parameters(self, n_types: int) -> int:
+        """Free numbers of so many types and their weights."""
+        ...
+
+
+class GaussianFamily:
+    """Stats: number, sum and sum of squares of each user's outcomes with each policy, (n_users, 3 n_policies)."""
+
+    def __init__(self, rows: UserRows) -> None:
+        # Centred, or the sums of squares of large outcomes would lose their digits.
+        values = rows.values - rows.values.mean()
+        parts = rows.sums(), rows.sums(values), rows.sums(values**2)
+        self.stats = np.hstack(parts)
+        number, total, _ = (part.sum(axis=0) for part in parts)
+        self._overall = total / number
+        self._least = max((FLOOR * values.std()) ** 2, 1e-300)
+
+    def fit(self, shares: Array) -> Array:
+        number, total, squares = np.split(shares.T @ self.stats, 3, axis=1)
+        mean = (total + PSEUDO * self._overall) / (number + PSEUDO)
+        spread = (squares - 2 * mean * total + number * mean**2).sum(axis=0) / number.sum(axis=0)
+        variance = np.maximum(spread, self._least)
+        flat = np.broadcast_to(-0.5 / variance, mean.shape)
+        return np.hstack([-0.5 * np.log(2 * np.pi * variance) + flat * mean**2, mean / variance, flat])
+
+    def n_parameters(self, n_types: int) -> int:
+        return n_types * len(self._overall) + len(self._overall) + n_types - 1
+
+
+class CategoricalFamily:
+    """Stats: how often each user got each value with each policy, (n_users, n_values n_policies)."""
+
+    def __init__(self, rows: UserRows) -> None:
+        values, place = np.unique(rows.values, return_inverse=True)
+        self._n_values = len(values)
+        self.stats = np.hstack([rows.sums((place == value).astype(float)) for value in range(len(values))])
+        self._overall = self._by_value(self.stats.sum(axis=0)[None])
+        self._overall = self._overall / self._overall.sum(axis=1, keepdims=True)
+
+    def fit(self, shares: Array) -> Array:
+        counts = self._by_value(shares.T @ self.stats) + PSEUDO * self._overall
+        with np.errstate(divide="ignore"):
+            logs = np.log(counts / counts.sum(axis=1, keepdims=True))
+        # A value that a policy never gave is in nobody's counts: its weight meets only zeros.
+        return np.where(np.isfinite(logs), logs, 0.0).reshape(len(logs), -1)
+
+    def n_parameters(self, n_types: int) -> int:
+        seen = int((self._overall > 0).sum() - self._overall.shape[2])
+        return n_types * seen + n_types - 1
+
+    def _by_value(self, counts: Array) -> Array:
+        return counts.reshape(len(counts), self._n_values, -1)
+
+
+FAMILIES: dict[str, type[GaussianFamily] | type[CategoricalFamily]] = {
+    "gaussian": GaussianFamily,
+    "categorical": CategoricalFamily,
+}
+"""Every family by its name."""

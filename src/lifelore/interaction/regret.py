@@ -1,0 +1,69 @@
+"""Regret: what the best policy of the library would have achieved more.
+
+Thesis: §4.3.2, Defs 4.3.1–2. Given means this is expected regret; given realised utilities, realised regret, which
+also holds the noise of both episodes.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError, NotFoundError
+
+Array = NDArray[np.float64]
+
+
+def library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
+    """Regret of each choice against the best policy in hindsight (Def. 4.3.1), at least 0.
+
+    Parameters
+    ----------
+    utilities : (..., n_policies) float
+        What each policy achieves on the task; finite.
+    chosen : int, (..., K) int
+        Policies chosen, one or K for each task.
+
+    Returns
+    -------
+    (...) or (..., K) float
+
+    Raises
+    ------
+    InputError
+        Utilities are not finite, or shapes do not agree.
+    NotFoundError
+        A chosen policy is none of the library's.
+
+    Examples
+    --------
+    >>> library_regret([3.0, 5.0, 4.0], [0, 2, 1]).tolist()
+    [2.0, 1.0, 0.0]
+    """
+    utilities, chosen = np.asarray(utilities, np.float64), np.asarray(chosen)
+    if utilities.ndim < 1 or not utilities.shape[-1] or not np.isfinite(utilities).all():
+        raise InputError(f"utilities must be finite numbers (..., n_policies), got {utilities.shape}")
+    if chosen.dtype.kind not in "iu" or chosen.ndim not in (utilities.ndim - 1, utilities.ndim):
+        raise InputError(f"chosen must be policy numbers (...) or (..., K), got {chosen.dtype} {chosen.shape}")
+    if chosen.size and not (chosen.min() >= 0 and chosen.max() < utilities.shape[-1]):
+        raise NotFoundError(f"unknown policy among those chosen; the library has 0 to {utilities.shape[-1] - 1}")
+    single = chosen.ndim < utilities.ndim
+    index = chosen[..., None] if single else chosen
+    if index.shape[:-1] != utilities.shape[:-1]:
+        raise InputError(f"chosen must be of the tasks {utilities.shape[:-1]}, got {chosen.shape}")
+    regret = utilities.max(axis=-1, keepdims=True) - np.take_along_axis(utilities, index, axis=-1)
+    return regret[..., 0] if single else regret
+
+
+def average_library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
+    """Mean regret over the K trials of each task (Def. 4.3.2): `chosen` (..., K) to (...)."""
+    return _of_trials(utilities, chosen).mean(axis=-1)
+
+
+def cumulative_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
+    """Regret summed up to each trial: `chosen` (..., K) to (..., K)."""
+    return np.cumsum(_of_trials(utilities, chosen), axis=-1)
+
+
+def _of_trials(utilities: ArrayLike, chosen: ArrayLike) -> Array:
+    if np.ndim(chosen) != np.ndim(utilities) or not np.shape(chosen)[-1]:
+        raise InputError(f"chosen must be (..., K) with at least one trial, got {np.shape(chosen)}")
+    return library_regret(utilities, chosen)

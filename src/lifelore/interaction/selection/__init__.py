@@ -1,0 +1,46 @@
+"""Rules for selecting a policy under a belief over types, by name."""
+
+from lifelore.core.errors import NotFoundError
+from lifelore.interaction.selection.belief_entropy import BeliefEntropy
+from lifelore.interaction.selection.belief_sampling import BeliefSampling
+from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
+from lifelore.interaction.selection.greedy import Greedy
+from lifelore.interaction.selection.information_directed import InformationDirected
+from lifelore.interaction.selection.knowledge_gradient import KnowledgeGradient
+from lifelore.interaction.selection.probability_of_improvement import ProbabilityOfImprovement
+from lifelore.interaction.selection.rule import SelectionRule, choose, tied_shares
+
+RULES: dict[str, type] = {
+    rule.name: rule
+    for rule in (
+        Greedy,
+        EpsilonGreedy,
+        BeliefSampling,
+        ProbabilityOfImprovement,
+        ExpectedImprovement,
+        BeliefEntropy,
+        KnowledgeGradient,
+        InformationDirected,
+    )
+}
+"""Every rule by the name that sessions and the command line use."""
+
+__all__ = [
+    "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
+    "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule", "choose",
+    "rule_named", "tied_shares",
+]  # fmt: skip
+
+
+def rule_named(name: str, **settings) -> SelectionRule:
+    """The rule of that name, with settings if any; NotFoundError where there is none.
+
+    Examples
+    --------
+    >>> rule_named("epsilon-greedy", epsilon=0.1)
+    EpsilonGreedy(epsilon=0.1)
+    """
+    if name not in RULES:
+        raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
+    return RULES[name](**settings)

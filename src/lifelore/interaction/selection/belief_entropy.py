@@ -1,0 +1,81 @@
+"""Belief entropy: utility, and κ for every nat that the signal is expected to tell about the type. Thesis:
+§4.5.2.2.
+
+The thesis prints an expected posterior whose entries sum to more than 1 (each type is weighted by its own
+likelihood and not by the predictive one), and takes the entropy of that. `variant="thesis"` is as printed. The
+quantity meant is the expected entropy of the posterior, H(β) − I(π).
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.belief import expected_utility
+from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection.information import mutual_information
+from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
+from lifelore.interaction.selection.support import MASS, check_mass
+from lifelore.interaction.signal_table import SignalTable
+
+
+@dataclass(frozen=True)
+class BeliefEntropy(Deterministic):
+    """Ũ(π) + κ I(π), or as printed Ũ(π) − κ H(β | π).
+
+    Parameters
+    ----------
+    kappa : float, optional
+        Utility that a nat is worth, ≥ 0. The range of mean utilities unless given.
+    variant : {"standard", "thesis"}
+    mass : float
+        Share of the belief that is looked at, in (0, 1]; the printed form looks at all.
+    n_bins : int
+        Bins of signals that are numbers.
+
+    Raises
+    ------
+    InputError
+        `kappa` is negative, `mass` outside (0, 1], or there is no such variant.
+    """
+
+    kappa: float | None = None
+    variant: Variant = "standard"
+    mass: float = MASS
+    n_bins: int = 8
+    name: ClassVar[str] = "belief-entropy"
+
+    def __post_init__(self) -> None:
+        check_variant(self.variant)
+        check_mass(self.mass)
+        if self.kappa is not None and not (self.kappa >= 0 and np.isfinite(self.kappa)):
+            raise InputError(f"kappa must be at least 0, got {self.kappa}")
+
+    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
+        """Utilities with the worth of information, (..., n_policies)."""
+        mean, table = library.performance.mean, library.table(self.n_bins)
+        kappa = float(np.ptp(mean)) if self.kappa is None else self.kappa
+        worth = expected_utility(belief, mean)
+        if self.variant == "thesis":
+            return worth - kappa * _printed_entropy(printed_posterior(belief, table))
+        return worth + kappa * mutual_information(belief, table, self.mass)
+
+
+def printed_posterior(belief: Array, table: SignalTable) -> Array:
+    """The thesis's βᵖ(τ) = Σ F(σ | τ)² β(τ) / Σ F β, (..., n_policies, n_types); its sums exceed 1."""
+    squares = table.probs**2
+
+    def scored(belief: Array) -> Array:
+        predicted = np.matmul(belief if belief.ndim > 1 else belief[None], table.probs)
+        inverse = np.divide(1.0, predicted, out=np.zeros_like(predicted), where=predicted > 0)
+        posterior = np.matmul(inverse, squares.transpose(0, 2, 1)).transpose(1, 0, 2)
+        posterior = posterior * np.atleast_2d(belief)[:, None, :]
+        return posterior[0] if belief.ndim == 1 else posterior.reshape(len(belief), -1)
+
+    flat = in_blocks(belief, table.probs[:, :, 0].size + table.probs[:, 0].size, scored)
+    return flat.reshape(*np.shape(belief)[:-1], table.n_policies, table.n_types)
+
+
+def _printed_entropy(vector: Array) -> Array:
+    return -(vector * np.log(np.where(vector > 0, vector, 1.0))).sum(axis=-1)

@@ -1,0 +1,55 @@
+"""Greedy, but any policy at all with probability ε. Thesis: §4.5."""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.belief import expected_utility
+from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection.rule import Array, check_generator, tied_shares
+
+
+@dataclass(frozen=True)
+class EpsilonGreedy:
+    """ε-greedy on the expected utility.
+
+    Parameters
+    ----------
+    epsilon : float
+        In [0, 1]; the thesis's surveillance experiments take 0.3.
+
+    Raises
+    ------
+    InputError
+        `epsilon` lies outside [0, 1].
+    """
+
+    epsilon: float = 0.3
+    name: ClassVar[str] = "epsilon-greedy"
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.epsilon <= 1:
+            raise InputError(f"epsilon must lie in [0, 1], got {self.epsilon}")
+
+    def scores(
+        self,
+        library: PolicyLibrary,
+        belief: Array,
+        *,
+        episodes_left: float | None = None,
+        generator: np.random.Generator | None = None,
+    ) -> Array:
+        """Expected utilities, or with probability ε random numbers, (..., n_policies)."""
+        generator = check_generator(self.name, generator)
+        worth = expected_utility(belief, library.performance.mean)
+        explores = generator.random(worth.shape[:-1]) < self.epsilon
+        if not np.any(explores):
+            return worth
+        return np.where(np.asarray(explores)[..., None], generator.random(worth.shape), worth)
+
+    def probabilities(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
+        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        best = tied_shares(expected_utility(belief, library.performance.mean))
+        return self.epsilon / best.shape[-1] + (1 - self.epsilon) * best

@@ -1,0 +1,65 @@
+"""What a signal is expected to tell about the type: I(π) = H(Σ β F) − Σ β H(F), in nats.
+
+The expected entropy of the belief after a signal is H(β) − I(π), by the symmetry of mutual information.
+Computed this way it needs the mixture of signals and not one posterior for each signal: T P S operations and P
+S logarithms. Thesis: §4.5.2.2, whose own expression is another (see the errata).
+"""
+
+import numpy as np
+
+from lifelore.interaction.belief import Array, entropy
+from lifelore.interaction.selection.information_kernels import mixtures
+from lifelore.interaction.selection.rule import in_blocks
+from lifelore.interaction.selection.support import supported_types, truncated
+from lifelore.interaction.signal_table import SignalTable
+
+_TINY = np.float32(1e-37)
+
+
+def mutual_information(belief: Array, table: SignalTable, mass: float = 1.0) -> Array:
+    """I(π) for every policy, (..., n_policies) nats, at least 0.
+
+    Parameters
+    ----------
+    belief : (..., n_types) float
+    table : SignalTable
+    mass : float
+        Share of the belief that is kept, in (0, 1]: the least likely types are left out.
+    """
+
+    def scored(belief: Array) -> Array:
+        return _of_one(belief, table, mass) if belief.ndim == 1 else _of_many(belief, table, mass)
+
+    return in_blocks(belief, table.n_policies * table.n_signals, scored)
+
+
+def expected_entropy(belief: Array, table: SignalTable, mass: float = 1.0) -> Array:
+    """Entropy in nats to expect of the belief after one signal of each policy, (..., n_policies)."""
+    return entropy(belief)[..., None] - mutual_information(belief, table, mass)
+
+
+def _of_one(belief: Array, table: SignalTable, mass: float) -> Array:
+    kept, share = supported_types(belief, mass)
+    law = table.probs
+    if 2 * len(kept) > len(belief):
+        # Reading all rows in order is as fast as picking most of them.
+        whole = np.zeros(len(belief))
+        whole[kept] = share
+        mixed = np.matmul(whole.astype(law.dtype, copy=False), law)
+        return _difference(mixed, table.conditional_entropy @ whole)
+    mixed = np.empty((table.n_policies, table.n_signals), law.dtype)
+    mixtures(share.astype(law.dtype, copy=False), kept, law, mixed)
+    return _difference(mixed, table.conditional_entropy[:, kept] @ share)
+
+
+def _of_many(belief: Array, table: SignalTable, mass: float) -> Array:
+    belief = truncated(belief, mass)
+    mixed = np.matmul(belief.astype(table.probs.dtype, copy=False), table.probs).transpose(1, 0, 2)
+    return _difference(mixed, belief @ table.conditional_entropy.T)
+
+
+def _difference(mixed: Array, noise: Array) -> Array:
+    # 0 log 0 is 0, whatever number stands in for the logarithm.
+    logs = np.log(np.maximum(mixed, _TINY))
+    # Rounding alone makes it negative.
+    return np.maximum(-np.einsum("...s,...s->...", logs, mixed) - noise, 0.0)

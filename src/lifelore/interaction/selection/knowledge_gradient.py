@@ -1,0 +1,132 @@
+"""Knowledge gradient: utility now, and how much better the best choice is expected to be after the signal.
+
+    v(π) = Σ_σ max_q Σ_τ β(τ) F(σ | τ, π) E[U | τ, q] − max_q Ũ(q)
+
+The posterior of each signal need not be normalised, for its weight is the very sum that would be divided by.
+So v is one matrix product and one maximum. The thesis (Eq. 4.6) averages over signals *before* it takes the
+maximum; then the two terms are equal and v is 0 for every policy. `variant="thesis"` is as printed. Thesis:
+§4.5.2.3.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.belief import expected_utility
+from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection.information_kernels import best_after_signals
+from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
+from lifelore.interaction.selection.support import MASS, check_mass, supported_types
+from lifelore.interaction.signal_table import SignalTable
+
+Candidates = Literal["responses", "all"]
+
+
+@dataclass(frozen=True)
+class KnowledgeGradient(Deterministic):
+    """Ũ(π) + (K − t) v(π).
+
+    Parameters
+    ----------
+    variant : {"standard", "thesis"}
+    mass : float
+        Share of the belief that is looked at, in (0, 1].
+    n_bins : int
+        Bins of signals that are numbers.
+    lookahead : float
+        K − t where the agent has no horizon; ≥ 0.
+    candidates : {"responses", "all"}
+        Which policies are looked at as the next choice: best responses to the types kept and the policy best now,
+        or all. A policy that is best on no type but second best on many is seen by "all" only.
+
+    Raises
+    ------
+    InputError
+        `mass` lies outside (0, 1], `lookahead` is negative, or there is no such variant.
+    """
+
+    variant: Variant = "standard"
+    mass: float = MASS
+    n_bins: int = 8
+    lookahead: float = 50.0
+    candidates: Candidates = "responses"
+    name: ClassVar[str] = "knowledge-gradient"
+
+    def __post_init__(self) -> None:
+        check_variant(self.variant)
+        check_mass(self.mass)
+        if not (self.lookahead >= 0 and np.isfinite(self.lookahead)):
+            raise InputError(f"lookahead must be at least 0, got {self.lookahead}")
+        if self.candidates not in ("responses", "all"):
+            raise InputError(f"candidates must be 'responses' or 'all', got {self.candidates!r}")
+
+    def scores(
+        self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
+    ) -> Array:
+        """Utilities with the worth of what is learnt, (..., n_policies)."""
+        mean, table = library.performance.mean, library.table(self.n_bins)
+        if self.variant == "thesis":
+            gain = printed_gain(belief, mean, table)
+        else:
+            gain = knowledge_gain(belief, mean, table, self.mass, self.candidates)
+        weight = self.lookahead if episodes_left is None else episodes_left
+        return expected_utility(belief, mean) + weight * gain
+
+
+def knowledge_gain(
+    belief: Array, mean: Array, table: SignalTable, mass: float = 1.0, candidates: Candidates = "all"
+) -> Array:
+    """v(π) of every policy, (..., n_policies), at least 0 up to rounding.
+
+    Parameters
+    ----------
+    belief : (..., n_types) float
+    mean : (n_types, n_policies) float
+    table : SignalTable
+    mass : float
+        Share of the belief that is looked at.
+    candidates : {"responses", "all"}
+        As for `KnowledgeGradient`.
+    """
+
+    def one(belief: Array) -> Array:
+        kept, share = supported_types(belief, mass)
+        means = mean[kept] if len(kept) < len(belief) else mean
+        if candidates == "responses":
+            means = means[:, responses(means, share)]
+        worth = np.ascontiguousarray((means * share[:, None]).T)
+        best = np.empty(table.n_policies)
+        best_after_signals(worth.astype(table.probs.dtype, copy=False), kept, table.probs, best)
+        return best - worth.sum(axis=1).max()
+
+    rows = np.asarray(belief, np.float64)
+    if rows.ndim == 1:
+        return one(rows)
+    flat = np.array([one(row) for row in rows.reshape(-1, rows.shape[-1])])
+    return flat.reshape(*rows.shape[:-1], table.n_policies)
+
+
+def responses(means: Array, share: Array) -> NDArray[np.int64]:
+    """Best responses to each type, `means` (k, n_policies), and to their mixture by `share` (k,); rising."""
+    marked = np.zeros(means.shape[1], np.bool_)
+    marked[means.argmax(axis=1)] = True
+    marked[(share @ means).argmax()] = True
+    return np.flatnonzero(marked)
+
+
+def printed_gain(belief: Array, mean: Array, table: SignalTable) -> Array:
+    """v(π) as Eq. 4.6 has it, signals averaged before the maximum: 0 for every policy, up to rounding."""
+
+    def scored(belief: Array) -> Array:
+        rows = np.atleast_2d(belief)
+        predicted = np.matmul(rows, table.probs)
+        # Σ over signals of their probability times the posterior, which is the belief again.
+        share = np.divide(predicted, predicted, out=np.zeros_like(predicted), where=predicted > 0)
+        after = np.matmul(share, table.probs.transpose(0, 2, 1)) * rows
+        gain = (after @ mean).max(axis=-1).T - (rows @ mean).max(axis=-1)[:, None]
+        return gain[0] if belief.ndim == 1 else gain
+
+    return in_blocks(belief, table.n_policies * (table.n_types + table.n_signals), scored)

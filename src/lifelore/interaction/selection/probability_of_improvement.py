@@ -1,0 +1,72 @@
+"""Probability of improvement: how likely a policy is to achieve more than U⁺. Thesis: §4.5.2.1.
+
+The thesis prints the *density* at U⁺ instead of the probability above it: then a policy that is far better than U⁺
+counts as little as one far worse. `variant="thesis"` is as printed.
+"""
+
+from dataclasses import dataclass
+from typing import Any, ClassVar
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.belief import expected_utility
+from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
+
+MARGIN_SHARE = 0.02
+"""Default margin of the printed form, as a share of the utilities' range; the thesis names none."""
+
+
+@dataclass(frozen=True)
+class ProbabilityOfImprovement(Deterministic):
+    """Σ β(τ) P(U > U⁺ | τ, π), or as printed Σ β(τ) p(U⁺ | τ, π).
+
+    Parameters
+    ----------
+    target : float, optional
+        U⁺. Unless given: the best mean of any policy on any type still possible; as printed, "some utility which
+        is larger than the current best estimate", Ũᵗ + `margin`.
+    variant : {"standard", "thesis"}
+    margin : float, optional
+        How far the printed form's U⁺ lies above the best expected utility; 2 % of the range of mean utilities
+        unless given. > 0.
+
+    Raises
+    ------
+    InputError
+        `target` is not finite, `margin` not positive, or there is no such variant.
+    """
+
+    target: float | None = None
+    variant: Variant = "standard"
+    margin: float | None = None
+    name: ClassVar[str] = "probability-of-improvement"
+
+    def __post_init__(self) -> None:
+        check_variant(self.variant)
+        if self.target is not None and not np.isfinite(self.target):
+            raise InputError(f"target must be finite, got {self.target}")
+        if self.margin is not None and not (self.margin > 0 and np.isfinite(self.margin)):
+            raise InputError(f"margin must be positive, got {self.margin}")
+
+    def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
+        """Probabilities (as printed: densities), (..., n_policies)."""
+        model = library.performance
+
+        def scored(belief: Array) -> Array:
+            above = self._target(library, belief)
+            return weighted(belief, (model.density if self.variant == "thesis" else model.exceedance)(above))
+
+        return in_blocks(belief, model.n_types * model.n_policies, scored)
+
+    def _target(self, library: PolicyLibrary, belief: Array) -> Any:
+        if self.target is not None:
+            return np.full(belief.shape[:-1], self.target) if belief.ndim > 1 else self.target
+        mean = library.performance.mean
+        if self.variant == "standard":
+            best = np.where(belief > 0, mean.max(axis=1), -np.inf).max(axis=-1)
+        else:
+            margin = MARGIN_SHARE * float(np.ptp(mean)) if self.margin is None else self.margin
+            best = expected_utility(belief, mean).max(axis=-1) + margin
+        return float(best) if belief.ndim == 1 else best

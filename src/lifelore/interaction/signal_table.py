@@ -1,0 +1,85 @@
+"""Signals from a finite alphabet as one table: P(signal | type, policy), and how uncertain each leaves one.
+
+The rules that look ahead (belief entropy, knowledge gradient, information-directed) sum over signals, and need
+nothing else. Thesis: §4.4.1, Def. 4.4.2.
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+
+LEAST = 1e-9
+"""Probabilities below become 0: they change no choice, and their products are subnormal, 9 to 24 times as slow."""
+
+
+class SignalTable:
+    """P(signal | type, policy) over a finite alphabet.
+
+    Parameters
+    ----------
+    probs : (n_policies, n_types, n_signals) float
+        At least 0; each row over signals sums to 1 to 1e-6. Policy first, so that one policy's rows lie together.
+        float32 stays float32; all else becomes float64.
+    copy : bool
+        False cleans the caller's own array in place, to spare memory.
+
+    Attributes
+    ----------
+    probs : (n_policies, n_types, n_signals) float
+        Entries below 1e-9 are 0, rows sum to 1.
+    conditional_entropy : (n_policies, n_types) float
+        H(signal | type, policy) in nats.
+
+    Raises
+    ------
+    InputError
+        The shape is another, or a row is no distribution.
+
+    Examples
+    --------
+    >>> table = SignalTable([[[0.5, 0.5], [1.0, 0.0]]])
+    >>> table.conditional_entropy.round(4).tolist()
+    [[0.6931, 0.0]]
+    """
+
+    def __init__(self, probs: ArrayLike, copy: bool = True) -> None:
+        probs = np.asarray(probs)
+        kind = np.float32 if probs.dtype == np.float32 else np.float64
+        self.probs: NDArray[Any] = np.array(probs, kind, order="C", copy=copy or None)
+        if self.probs.ndim != 3 or not self.probs.size:
+            raise InputError(
+                f"probs must be (n_policies, n_types, n_signals) numbers, none of them 0, got {self.probs.shape}"
+            )
+        self.conditional_entropy: NDArray[Any] = np.empty(self.probs.shape[:2], kind)
+        # One policy at a time: a thousand types and policies leave no room for temporaries of the table's size.
+        for policy, rows in enumerate(self.probs):
+            _clean(rows, policy)
+            self.conditional_entropy[policy] = 0 - _times_log(rows).sum(axis=1)
+
+    @property
+    def n_policies(self) -> int:
+        return self.probs.shape[0]
+
+    @property
+    def n_types(self) -> int:
+        return self.probs.shape[1]
+
+    @property
+    def n_signals(self) -> int:
+        return self.probs.shape[2]
+
+
+def _clean(rows: NDArray[Any], policy: int) -> None:
+    """Refuse what is no distribution; then zero what is too small and renormalise, in place."""
+    sums = rows.sum(axis=1, keepdims=True)
+    if not ((rows >= 0).all() and (np.abs(sums - 1) <= 1e-6 * max(1.0, rows.shape[1] ** 0.5)).all()):
+        raise InputError(f"probs must be at least 0 and each row over signals sum to 1, policy {policy}'s do not")
+    rows[rows < LEAST] = 0
+    rows /= rows.sum(axis=1, keepdims=True)
+
+
+def _times_log(rows: NDArray[Any]) -> NDArray[Any]:
+    return rows * np.log(np.where(rows > 0, rows, 1))

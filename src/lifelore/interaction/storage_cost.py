@@ -1,0 +1,104 @@
+"""What each observation model costs to store, by the formulas of §4.7.6, as printed and right.
+
+In print the formulas of (s, a, s') and of rewards have changed places: the distribution over next states of every
+state and action has |S|² |A| entries, that over rewards |S| |A| |R|. With them the printed order, performance <
+reward < state-action-state for |R| > |S|, becomes performance < state-action-state < reward; the printed order
+holds where |R| < |S|. And one number a level of reward for the performance holds a return only as finely as one
+reward: sums of rewards take more values (`n_returns`). Thesis: §4.7.6.
+"""
+
+from dataclasses import dataclass
+from math import comb, inf
+from typing import Literal
+
+from lifelore.core.errors import InputError
+
+
+@dataclass(frozen=True)
+class StorageSizes:
+    """Sizes of a problem, in the thesis's letters: |Π|, N, |S|, |A|, |R|, T, γ, B.
+
+    n_policies, n_types, n_states, n_actions, n_rewards, horizon : int
+        At least 1.
+    discount : float
+        In [0, 1].
+    bits : int
+        Of one probability.
+    """
+
+    n_policies: int
+    n_types: int
+    n_states: int
+    n_actions: int
+    n_rewards: int
+    horizon: int = 1
+    discount: float = 1.0
+    bits: int = 64
+
+    def __post_init__(self) -> None:
+        for name, value in vars(self).items():
+            if name != "discount" and not (isinstance(value, int) and value >= 1):
+                raise InputError(f"{name} must be a whole number of at least 1, got {value!r}")
+        if not 0 <= self.discount <= 1:
+            raise InputError(f"discount must lie in [0, 1], got {self.discount}")
+
+
+@dataclass(frozen=True)
+class StorageCost:
+    """Bits of each observation model."""
+
+    performance: float
+    discounted_performance: float
+    reward: float
+    state_action_state: float
+
+    def order(self) -> tuple[str, ...]:
+        """The three signals, cheapest first."""
+        costs = {
+            "performance": self.performance,
+            "reward": self.reward,
+            "state-action-state": self.state_action_state,
+        }
+        return tuple(sorted(costs, key=costs.__getitem__))
+
+
+def storage_cost(sizes: StorageSizes, variant: Literal["standard", "thesis"] = "standard") -> StorageCost:
+    """Bits that each observation model takes.
+
+    Parameters
+    ----------
+    variant : {"standard", "thesis"}
+        ``thesis`` swaps the two formulas of (s, a, s') and of rewards, as printed.
+
+    Examples
+    --------
+    >>> storage_cost(StorageSizes(2, 3, n_states=10, n_actions=4, n_rewards=5, bits=1)).order()
+    ('performance', 'reward', 'state-action-state')
+    """
+    if variant not in ("standard", "thesis"):
+        raise InputError(f"variant must be 'standard' or 'thesis', got {variant!r}")
+    each = sizes.n_policies * sizes.n_types * sizes.bits
+    rewards = each * sizes.n_states * sizes.n_actions * sizes.n_rewards
+    states = each * sizes.n_states**2 * sizes.n_actions
+    if variant == "thesis":
+        rewards, states = states, rewards
+    levels = each * sizes.n_rewards
+    return StorageCost(levels, levels * effective_horizon(sizes.horizon, sizes.discount), rewards, states)
+
+
+def effective_horizon(horizon: int, discount: float) -> float:
+    """(1 - γ^T) / (1 - γ): how many undiscounted rewards an episode's discounted ones sum to; T where γ is 1."""
+    return float(horizon) if discount == 1 else (1 - discount**horizon) / (1 - discount)
+
+
+def n_returns(n_rewards: int, horizon: int, discounted: bool) -> float:
+    """The most values that the return of `horizon` rewards can take, each one of `n_rewards`.
+
+    Undiscounted, only how often each reward came counts; discounted, the order too.
+    """
+    if not discounted:
+        return float(comb(horizon + n_rewards - 1, horizon))
+    try:
+        return float(n_rewards) ** horizon
+    except OverflowError:
+        return inf

@@ -1,0 +1,156 @@
+"""`lifelore reuse …`: what is printed, and one line for every mistake, with nothing lost."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from lifelore.agent.reuse import choose, update
+from lifelore.agent.reuse_fit import fit
+from lifelore.agent.reuse_study import open_study
+from lifelore.memory import open_memory
+
+
+@pytest.fixture(scope="module")
+def log(tmp_path_factory):
+    """Two kinds of users, each best served by another policy."""
+    generator = np.random.default_rng(0)
+    lines = ["user,policy,outcome"]
+    for user in range(40):
+        for _ in range(10):
+            policy = generator.integers(2)
+            chance = 0.9 if policy == user % 2 else 0.1
+            lines.append(f"u{user},{('big', 'dark')[policy]},{int(generator.random() < chance)}")
+    path = tmp_path_factory.mktemp("log") / "log.csv"
+    path.write_text("\n".join(lines) + "\n")
+    return path
+
+
+@pytest.fixture
+def reuse(ask, tmp_path):
+    """Ask with a memory of this test's own."""
+
+    def asked(verb, *arguments):
+        return ask("reuse", verb, *arguments, "--memory", tmp_path / "m.db")
+
+    return asked
+
+
+def test_from_a_log_to_a_report(reuse, log, tmp_path):
+    said = reuse("fit", log, "--control", "0.4")
+    assert said.status == 0
+    assert said.out.startswith("study default: 400 outcomes of 40 users, 2 policies, 2 types found, categorical")
+    assert "best served by dark" in said.out
+    for user in range(12):
+        for _ in range(2):
+            made = reuse("choose", "--user", f"n{user}", "--json").document
+            outcome = int(made["policy"] == ("big", "dark")[user % 2])
+            ended = reuse("update", "--decision", made["decision"], "--outcome", outcome, "--json").document
+            assert ended["taken"]
+            assert sum(ended["belief"].values()) == pytest.approx(1)
+    document = reuse("report", "--out", tmp_path / "out", "--log", tmp_path / "d.csv", "--json").document
+    assert (document["decisions"], document["pending"]) == (24, 0)
+    assert document["uplift"]["value"] == pytest.approx(
+        document["personal"]["value"] - document["control"]["value"]
+    )
+    assert (tmp_path / "out" / "report.png").exists()
+    assert "uplift: " in reuse("report").out
+    assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 424 outcomes of 52 users")
+
+
+def test_in_words(reuse, log):
+    reuse("fit", log)
+    policy, decision = reuse("choose", "--user", "ann").out.splitlines()
+    assert policy in ("big", "dark")
+    word, identifier, _ = decision.split(" ", 2)
+    assert word == "decision"
+    assert "(probability 1" in decision
+    first = reuse("update", "--decision", identifier, "--outcome", "1")
+    assert f"outcome 1 of {policy} taken; ann is most likely type" in first.out
+    again = reuse("update", "--decision", identifier, "--outcome", "1")
+    assert (again.status, "was there already, nothing changed" in again.out) == (0, True)
+    assert reuse("retire", "big").out == "big is retired\n"
+    assert reuse("add", "big").out == "big is in use again\n"
+    assert "given to the held-out users" in reuse("add", "round").out
+    assert reuse("forget", "ann").out == "2 contributions of ann forgotten\n"
+    assert "no outcome yet" in reuse("report").out
+
+
+def test_a_belief_outlives_its_process(reuse, log, start, answer, tmp_path):
+    """Each step a program of its own."""
+    reuse("fit", log, "--control", "0", "--rule", "sampling")
+    made = reuse("choose", "--user", "ann", "--json").document
+    ended = reuse("update", "--decision", made["decision"], "--outcome", "1", "--json").document
+    said = answer(start("reuse", "choose", "--user", "ann", "--memory", tmp_path / "m.db", "--json")).document
+    assert said["belief"] == ended["belief"]
+    assert said["number"] == 1
+
+
+@pytest.fixture(scope="module")
+def lived(log):
+    """A memory with a decision made, and one that ended with 1."""
+    path = log.parent / "lived.db"
+    with open_memory(path) as memory:
+        fit([log], memory)
+        study = open_study(memory)
+        made, done = (choose(memory, study, user)["decision"] for user in ("ann", "bo"))
+        update(memory, study, done, 1.0)
+    return path, made, done
+
+
+BAD_LOGS = {
+    "user,outcome\na,1\n": "it has no policy",
+    "user,policy,outcome\na,x,nan\n": "line 2: outcome must be a finite number, got 'nan'",
+    "": "must begin with a header",
+    "user,policy,outcome\n": "must hold at least one line with an outcome",
+}
+
+
+@pytest.mark.parametrize("text", BAD_LOGS)
+def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
+    shutil.copy(lived[0], tmp_path / "m.db")
+    before = reuse("choose", "--user", "cy", "--json").document
+    (tmp_path / "bad.csv").write_text(text)
+    assert BAD_LOGS[text] in reuse("fit", tmp_path / "bad.csv").refusal
+    assert reuse("choose", "--user", "di", "--json").document["belief"] == before["belief"]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["fit", "nowhere.csv"], "log 'nowhere.csv' does not exist"),
+        (["fit", "{log}", "--incumbent", "none"], "incumbent must be a policy in use, got 'none'"),
+        (["fit", "{log}", "--control", "1"], "control must lie between 0 and 1"),
+        (["fit", "{log}", "--rule", "none"], "rule must be one of"),
+        (["fit", "{log}", "--types", "41"], "n_types must lie between 1 and the 40 users"),
+        (["fit"], "Missing argument"),
+        (["choose"], "Missing option '--user'"),
+        (["choose", "--user", ""], "user must be 1 to 200 printable characters"),
+        (["choose", "--user", "ann", "--name", "none"], "no study 'none'"),
+        (["update", "--decision", "x", "--outcome", "1"], "decision must be what `reuse choose` printed"),
+        (["update", "--decision", "0123456789abcdef-0", "--outcome", "1"], "no decision 0123456789abcdef-0"),
+        (["update", "--decision", "{made}", "--outcome", "nan"], "outcome must be a finite number, got 'nan'"),
+        (["update", "--decision", "{made}", "--outcome", "good"], "outcome must be a finite number, got 'good'"),
+        (["update", "--decision", "{made}", "--outcome", "7"], "outcome must be one of 0, 1, got 7"),
+        (["update", "--decision", "{done}", "--outcome", "0"], "ended with 1 already, got 0; nothing changed"),
+        (["report", "--out", "{log}"], "cannot write"),
+        (["report", "--name", "none"], "no study 'none'"),
+        (["retire", "none"], "no policy 'none'; there are big, dark"),
+        (["add", "big"], "'big' is there already (active)"),
+        (["forget", "nobody"], "nothing is kept of user 'nobody'"),
+        (["dance"], "No such command"),
+    ],
+    ids=lambda value: " ".join(value) if isinstance(value, list) else "",
+)
+def test_mistakes_are_one_line_and_lose_nothing(arguments, said, reuse, log, lived, tmp_path):
+    path, made, done = lived
+    shutil.copy(path, tmp_path / "m.db")
+    places = {"log": str(log), "made": made, "done": done}
+    assert said in reuse(*(word.format(**places) for word in arguments)).refusal
+    assert reuse("update", "--decision", made, "--outcome", "1", "--json").document["taken"]
+    with open_memory(tmp_path / "m.db") as memory:
+        assert memory.check() == []
+
+
+def test_no_memory_is_made_into_a_study_by_asking(reuse):
+    assert "no study 'default'" in reuse("choose", "--user", "ann").refusal

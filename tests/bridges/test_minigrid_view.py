@@ -1,0 +1,150 @@
+"""MiniGrid as arrays: views and ways by hand, poses solved exactly by walking, contexts as the robot sees them."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.spaces import Discrete
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.bridges.minigrid_view import (
+    BLOCKED,
+    FORWARD,
+    FREE,
+    GOAL,
+    LEFT,
+    RIGHT,
+    UNSEEN,
+    SymbolicView,
+    open_ways,
+    solved_layout,
+)
+from lifelore.core.errors import InputError
+
+minigrid = pytest.importorskip("minigrid")
+
+CROSSING = "MiniGrid-SimpleCrossingS9N3-v0"
+
+
+def cells(observation):
+    """Kinds (7, 7) and the compass of one observation."""
+    assert (observation[:196].reshape(49, 4).sum(axis=1) == 1).all()
+    assert observation[196:].sum() == 1
+    return observation[:196].reshape(7, 7, 4).argmax(axis=-1), int(observation[196:].argmax())
+
+
+def poses_by_search(env):
+    """Steps to the goal of every pose by a breadth-first search in the environment itself."""
+    inner, steps = env.unwrapped, {}
+    goal = tuple(int(x) for x in np.argwhere(inner.grid.encode()[..., 0] == 8)[0])
+
+    def follow(pose, move):
+        inner.agent_pos, inner.agent_dir, inner.step_count = (pose[0], pose[1]), pose[2], 0
+        env.step(move)
+        return (int(inner.agent_pos[0]), int(inner.agent_pos[1]), int(inner.agent_dir))
+
+    start = (int(inner.agent_pos[0]), int(inner.agent_pos[1]), int(inner.agent_dir))
+    following, open_poses = {}, [start]
+    while open_poses:
+        pose = open_poses.pop()
+        if pose in following or pose[:2] == goal:
+            continue
+        following[pose] = [follow(pose, move) for move in range(3)]
+        open_poses += following[pose]
+    steps = {pose: 0 for after in following.values() for pose in after if pose[:2] == goal}
+    for number in range(1, 500):
+        known = set(steps)
+        for pose, after in following.items():
+            if pose not in known and any(one in known for one in after):
+                steps[pose] = number
+    return start, following, steps
+
+
+def test_the_view_by_hand():
+    env = SymbolicView(gymnasium.make("MiniGrid-Empty-5x5-v0"))
+    observation, _ = env.reset(seed=0)
+    assert env.observation_space.contains(observation)
+    assert env.action_space == Discrete(3)
+    # In the upper left corner looking right: the robot at (3, 6), two free cells before it, then the outer wall;
+    # to its right two more rows, the goal in the far corner. This world lets it see through walls: beyond is wall.
+    kinds, compass = cells(observation)
+    assert compass == 0
+    assert kinds[3].tolist() == [BLOCKED] * 4 + [FREE] * 3
+    assert kinds[2].tolist() == [BLOCKED] * 7
+    assert kinds[5].tolist() == [BLOCKED] * 4 + [GOAL, FREE, FREE]
+    assert open_ways(observation[None]).tolist() == [0b110]  # right and front
+    assert open_ways(np.stack([observation, env.step(RIGHT)[0], env.step(RIGHT)[0]])).tolist() == [6, 0b011, 0b001]
+
+
+def test_what_walls_hide_is_unseen():
+    env = SymbolicView(gymnasium.make(CROSSING))
+    kinds, _ = cells(env.reset(seed=0)[0])
+    # At the left wall, which hides all that is to its left.
+    assert kinds[2].tolist()[-1] == BLOCKED
+    assert (kinds[:2] == UNSEEN).all()
+    assert cells(env.step(RIGHT)[0])[1] == 1  # it looks down
+
+
+def test_the_goal_is_an_open_way():
+    env = SymbolicView(gymnasium.make("MiniGrid-Empty-5x5-v0"))
+    env.reset(seed=0)
+    for move in (FORWARD, FORWARD, RIGHT, FORWARD):
+        observation, reward, *_ = env.step(move)
+    assert reward == 0
+    assert open_ways(observation[None]).tolist() == [0b110]  # the goal before it, free cells to its right
+    assert env.step(FORWARD)[1] > 0
+
+
+def test_an_empty_room_solved_by_hand():
+    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
+    env.reset(seed=0)
+    layout = solved_layout(env)
+    assert len(layout.steps) == 8 * 4
+    # Two forward, one turn, two forward; and no other way is as short.
+    assert layout.steps[layout.passed].tolist() == [5, 4, 3, 2, 1]
+    moves = [np.flatnonzero(best).tolist() for best in layout.best[layout.passed]]
+    assert moves == [[FORWARD], [FORWARD], [RIGHT], [FORWARD], [FORWARD]]
+    assert layout.ways[layout.passed].tolist() == [0b110, 0b110, 0b100, 0b110, 0b110]
+
+
+@settings(deadline=None, max_examples=4)
+@given(st.integers(0, 10_000))
+def test_poses_are_solved_as_by_walking(seed):
+    env = SymbolicView(gymnasium.make(CROSSING))
+    env.reset(seed=seed)
+    layout = solved_layout(env)
+    inner = env.unwrapped
+    start, following, steps = poses_by_search(env)
+    poses = sorted(following)
+    assert layout.steps.tolist() == [steps[pose] for pose in poses]
+    best = [[steps[after] + 1 == steps[pose] for after in following[pose]] for pose in poses]
+    assert layout.best.tolist() == best
+    passed, open_poses = set(), [start]
+    while open_poses:
+        pose = open_poses.pop()
+        if pose in following and pose not in passed:
+            passed.add(pose)
+            open_poses += [after for after in following[pose] if steps[after] + 1 == steps[pose]]
+    assert layout.passed.tolist() == [pose in passed for pose in poses]
+    for pose, ways in zip(poses, layout.ways, strict=True):
+        inner.agent_pos, inner.agent_dir = (pose[0], pose[1]), pose[2]
+        assert open_ways(env.observation(inner.gen_obs())[None]).tolist() == [ways]
+
+
+def test_turning_left_and_right_are_not_confused():
+    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
+    env.reset(seed=0)
+    env.step(LEFT)
+    layout = solved_layout(env)
+    first = layout.best[layout.passed & (layout.steps == layout.steps[layout.passed].max())]
+    assert np.flatnonzero(first[0]).tolist() == [RIGHT]
+
+
+def test_what_cannot_be_solved():
+    with pytest.raises(InputError, match="must be a MiniGrid environment"):
+        solved_layout(gymnasium.make("CartPole-v1"))
+    env = gymnasium.make("MiniGrid-Empty-5x5-v0")
+    env.reset(seed=0)
+    env.unwrapped.grid.set(3, 3, None)
+    with pytest.raises(InputError, match="must have a goal"):
+        solved_layout(env)

@@ -1,0 +1,78 @@
+"""The printed shots by hand, and measures of C4.1 from made-up cells."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.c4_1 import CLAIM, QUICK, follow_printed, greedy_shares, measure, rows, run_cell
+from lifelore.experiments.golf_runs import exact_library, learnt_library
+
+SMALL = {**QUICK, "rounds": 60, "libraries": 5}
+
+
+def test_belief_after_the_printed_shots_by_hand():
+    """The 3-wood is 20 to 50 yards long with 0.0304 at 150 yards, 0.7331 at 170, 0.0009 at 220 (normal tables)."""
+    found = follow_printed(exact_library())
+    likely = np.array([0.0, 0.0304, 0.7331, 0.0009])
+    assert found["belief"][1] == pytest.approx(likely / likely.sum(), abs=2e-4)
+    assert found["entropy"][0] == pytest.approx(np.log(4))
+    assert found["entropy"][1] == pytest.approx(0.1762, abs=5e-5)
+    assert found["entropy"][2] == pytest.approx(0.0316, abs=5e-5)
+    assert found["iron"] == [1.0] * 7
+
+
+def test_the_first_club_is_the_six_iron_not_the_wood():
+    """Erratum: under the uniform prior the 6-iron misses by 33.7 yards on average, the wood by 55.6."""
+    assert greedy_shares(exact_library()) == [0, 0, 1, 0]
+    mean = exact_library().performance.mean.mean(axis=0)
+    assert mean[[2, 0]] == pytest.approx([-33.70, -55.65], abs=0.005)
+
+
+def test_learnt_models_near_the_exact_ones_with_many_shots():
+    library = learnt_library(np.random.default_rng(0), 40_000, 0.5)
+    assert library.performance.mean == pytest.approx(exact_library().performance.mean, abs=0.25)
+    assert follow_printed(library)["entropy"][1] == pytest.approx(0.1762, abs=0.02)
+
+
+def test_a_tiny_run():
+    cells = [run_cell(SMALL, cell, 3) for cell in CLAIM.cells(SMALL)]
+    assert cells == [run_cell(SMALL, cell, 3) for cell in CLAIM.cells(SMALL)]
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    assert found["entropy_2"].value == pytest.approx(0.1762, abs=5e-5)
+    assert found["first_is_wood"].value == 0
+    assert found["iron_after_first_wood"].n == 60
+    played = cells[-1]
+    assert played["clubs"][0] == [60, 0, 0, 0]
+    assert all(sum(clubs) == 60 for clubs in played["clubs"])
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert len(figure.axes) == 3
+
+
+def test_shares_by_hand():
+    cells = [run_cell(SMALL, {"part": "printed"}, 0)]
+    for first in (None, 0):
+        cells.append({"part": "played", "first": first, "iron_after_first": 15, "iron_after_second": 45})
+    cells.append(
+        {
+            "part": "learnt", "samples": 100, "pseudo_count": 0.0, "irons": [1.0, 0.5],
+            "entropy": [[0.3, 0.0], [0.1, 0.2]],
+        }
+    )  # fmt: skip
+    found = measure(SMALL, cells)
+    assert found["iron_after_first_wood"].value == 0.25
+    assert found["iron_after_second_greedy"].value == 0.75
+    assert found["share_above_printed_100_0"].value == 0.5
+    assert found["share_settled_third_100_0"].value == 0.5
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [({"shots": 1}, "shots must be at least 2"), ({"pseudo_counts": "[-1]"}, "pseudo_counts must be at least 0")],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)

@@ -1,0 +1,88 @@
+"""C4.2: the dynamic program on golf by brute force, and a tiny run."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.c4_2 import CLAIM, QUICK, measure, rows, run_cell
+from lifelore.experiments.golf_programs import program_gaps
+from lifelore.experiments.golf_runs import exact_library, play_holes
+from lifelore.experiments.reuse_rules import RULES_SHOWN
+from lifelore.interaction.selection import Greedy
+
+SMALL = {**QUICK, "groups": 3, "holes": 12, "shots": 3, "horizon": 2}
+
+
+@pytest.fixture(scope="module")
+def cells():
+    kept = [run_cell(SMALL, cell, 2) for cell in CLAIM.cells(SMALL) if cell.get("rule", "greedy") in SHOWN]
+    return json.loads(json.dumps(kept))
+
+
+SHOWN = ("greedy", "IDS", "sampling")
+
+
+def test_two_shots_of_the_program_by_plain_loops():
+    library = exact_library()
+    mean, probs, prior = library.performance.mean, library.signal.probs, library.prior
+    best = []
+    for first in range(4):
+        later = sum(max((prior * probs[:, first, c]) @ mean[:, p] for p in range(4)) for c in range(7))
+        best.append(prior @ mean[:, first] + later)
+    found = program_gaps(2)
+    assert found["dynamic program"]["yards"] == pytest.approx(-max(best), abs=1e-5)
+    assert found["dynamic program"]["first_club"] == "6-iron"
+    assert set(RULES_SHOWN) <= set(found)
+    assert min(way["gap"] for name, way in found.items() if name != "hole known") >= 0
+
+
+def test_a_known_hole_beats_the_program_and_one_club_alone_does_not():
+    found = program_gaps(2)
+    assert found["hole known"]["gap"] < 0 < found["only the 3-iron"]["gap"]
+    # By hand: 35 yards and more with the 6-iron on average, twice.
+    assert found["only the 6-iron"]["yards"] == pytest.approx(2 * 33.697, abs=0.001)
+
+
+def test_holes_are_played_with_their_luck():
+    luck = np.array([[0.0, 1.0], [0.0, -1.0]])
+    found = play_holes(Greedy(), exact_library(), np.array([150.0, 219.0]), luck, 0, first=2)
+    assert found.error[:, 0].tolist() == [0.0, -69.0]
+    # "Within 5" makes 150 yards likeliest, "short by > 50" 220: the 6-iron again, and the wood.
+    assert found.clubs.tolist() == [[2, 2], [2, 0]]
+    assert found.error[:, 1].tolist() == [6.0, 215 - 8 - 219]
+
+
+def test_a_tiny_run(cells):
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    assert found["error_shot_2_exact"].value < found["error_shot_1_exact"].value
+    assert found["entropy_fall_first_exact"].value > 0.5
+    errors = np.array(next(c["error"] for c in cells if c.get("rule") == "greedy" and c["model"] == "exact"))
+    assert errors.shape == (3, 3)
+    assert found["error_shot_2_exact"].value == pytest.approx(errors[:, 1].mean())
+
+
+def test_the_figure_is_drawn_from_rows_alone(cells):
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert [axes.get_title("left") for axes in figure.axes] == [
+        "Mean error, yards",
+        "Entropy of the belief, nats",
+        "Yards above the optimum",
+    ]
+    assert len(figure.axes[2].patches) == len(RULES_SHOWN)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [
+        ({"shots": 1}, "shots must be at least 2"),
+        ({"yards": "[220.0, 120.0]"}, "two distances"),
+        ({"pseudo_count": -1.0}, "pseudo_count must be at least 0"),
+    ],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)

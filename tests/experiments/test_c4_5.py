@@ -1,0 +1,74 @@
+"""C4.5: the figure's statements by hand, and a tiny run."""
+
+import json
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate
+from lifelore.experiments.c4_5 import CLAIM, QUICK, late_by_seen, measure, rows, run_cell, verdicts
+from lifelore.experiments.surveillance_runs import CASES, RULES
+
+SMALL = {
+    **QUICK,
+    "tasks": 2,
+    "groups": 2,
+    "grid_groups": 2,
+    "episodes": 6,
+    "noises": ["deviation 20"],
+    "after": [5],
+}
+
+
+@pytest.fixture(scope="module")
+def cells():
+    return json.loads(json.dumps([run_cell(SMALL, cell, 1) for cell in CLAIM.cells(SMALL)]))
+
+
+def _summary(ended: float, late: float):
+    return {"ended_median": Estimate(ended, ended, None, 1), "late_median": Estimate(late, late, None, 1)}
+
+
+def test_statements_by_hand():
+    found = {name: _summary(15, 0.0) for name in RULES} | {"EI": _summary(6, 0.0), "PI": _summary(51, 80.0)}
+    found |= {"eps-greedy": _summary(51, 5.0), "EI, printed": _summary(20, 0.0)}
+    assert verdicts(found) == {
+        "BE converges": True, "KG converges": True, "sampling converges": True, "EI fastest": True,
+        "PI fails": True, "eps-greedy fails": False,
+    }  # fmt: skip
+    printed = verdicts(found, printed=True)
+    assert not printed["EI fastest"]
+    assert not printed["PI fails"]
+
+
+def test_a_tiny_run(cells):
+    assert len(cells) == len(RULES) * len(CASES)
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    assert found["stuck_EI_exact"].n == 4
+    assert found["grid_all"].n == 1
+
+
+def test_late_regret_on_seen_and_unseen_tasks():
+    assert late_by_seen({"late": [1.0, 3.0, 5.0], "seen": [1, 0, 1]}) == {"seen": 3.0, "unseen": 3.0}
+    assert late_by_seen({"late": [1.0], "seen": [1]}) == {"seen": 1.0}
+
+
+def test_the_figure_is_drawn_from_rows_alone(cells):
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert len(figure.axes) == 4
+    assert len(figure.axes[0].lines) == len(RULES)
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [
+        ({"layouts": '["ring"]'}, "layouts must include the default, X"),
+        ({"metrics": '["taxi"]'}, "metrics must be among"),
+        ({"groups": 0}, "groups must be at least 1"),
+    ],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)

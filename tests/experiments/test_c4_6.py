@@ -1,0 +1,94 @@
+"""C4.6: agreement with print by hand, and a tiny run."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.c4_6 import (
+    CLAIM,
+    PRINTED,
+    QUICK,
+    READINGS,
+    agreement,
+    deviations,
+    measure,
+    rows,
+    run_cell,
+)
+from lifelore.experiments.reuse_rules import OF_THESIS
+
+SMALL = {**QUICK, "tasks": 3, "groups": 3}
+SHOWN = ("sampling", "EI", "eps-greedy")
+
+
+@pytest.fixture(scope="module")
+def cells():
+    """Three rules are run; the others stand in for them, so that the test stays short."""
+    found = []
+    for cell in CLAIM.cells(SMALL):
+        stand_in = {**cell, "method": cell["method"] if cell["method"] in SHOWN else "sampling"}
+        if cell["noise"] == "variance 20":
+            stand_in["noise"] = "deviation 20"
+        key = json.dumps(stand_in)
+        if key not in _KEPT:
+            _KEPT[key] = run_cell(SMALL, stand_in, 1)
+        found.append({**_KEPT[key], **cell})
+    return json.loads(json.dumps(found))
+
+
+_KEPT: dict[str, dict] = {}
+
+
+def test_deviations_by_hand():
+    result = {"groups": 2, "realised": {"5": [3.0, -3.0, 0.0, 2.0]}, "at": {"5": [0.0, 4.0, 1.0, 1.0]}}
+    # Sizes 3, 3 and 0, 2; with signs 3, -3.
+    assert deviations(result, "size of the difference of two pays", 5).tolist() == [0.0, 2**0.5]
+    assert deviations(result, "difference of two pays", 5) == pytest.approx([18**0.5, 2**0.5])
+    assert deviations(result, "expected", 5) == pytest.approx([8**0.5, 0.0])
+
+
+def test_agreement_by_hand():
+    spread = np.repeat(np.arange(101.0), 2)
+    spread[1::2] = 0
+    result = {"groups": 101, "at": {str(k): spread.tolist() for k in (5, 10, 20, 50)}}
+    # Deviations of (x, 0) are x / √2 for x from 0 to 100; the middle 95 % of x lies from 2.5 to 97.5.
+    printed = [2.4 / 2**0.5, 2.6 / 2**0.5, 97.4 / 2**0.5, 97.6 / 2**0.5]
+    assert agreement(result, printed, "expected") == [False, True, True, False]
+
+
+def test_the_printed_table_has_six_rules_and_four_episodes():
+    assert set(PRINTED) == set(OF_THESIS)
+    assert {len(numbers) for numbers in PRINTED.values()} == {4}
+
+
+def test_a_tiny_run(cells):
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    assert found["agree_all_exact"].n == 24
+    assert set(cells[0]) == {
+        "method",
+        "case",
+        "layout",
+        "metric",
+        "noise",
+        "groups",
+        "at",
+        "against_mean",
+        "realised",
+    }
+
+
+def test_the_figure_is_drawn_from_rows_alone(cells):
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    assert len(kept) == len(cells) * len(READINGS)
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert [axes.get_title("left") for axes in figure.axes] == list(PRINTED)
+
+
+def test_settings_that_cannot_be_run():
+    with pytest.raises(InputError, match="after must be"):
+        CLAIM.settings("quick", {"after": "[5, 10]"})
+    with pytest.raises(InputError, match="episodes at least 50"):
+        CLAIM.settings("quick", {"episodes": 20})

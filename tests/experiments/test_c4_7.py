@@ -1,0 +1,56 @@
+"""C4.7: comparisons from made-up sums by hand, and a tiny run."""
+
+import json
+
+import pytest
+
+from lifelore.experiments.c4_7 import CASES_SHOWN, CLAIM, QUICK, REUSE, best_gp, measure, rows, run_cell
+from lifelore.experiments.surveillance_peers import PEERS
+from lifelore.experiments.surveillance_runs import DEFAULT_WORLD
+
+SMALL = {**QUICK, "tasks": 2, "groups": 3, "episodes": 12}
+
+
+def made_up(first: float = 10.0):
+    """Sums of 100 for expected improvement, 200 for GP-UCB with the true metric, 400 for others, plus the task."""
+    found = []
+    for case in CASES_SHOWN:
+        for name in (*REUSE, *PEERS):
+            base = {"EI": 100.0, "GP-UCB, true metric": 200.0, "UCB1": 500.0}.get(name, 400.0)
+            curve = [first, 1.0, 1.0] if name == "EI" else [5.0, 5.0, 5.0]
+            found.append(
+                {
+                    "method": name, "case": case, **DEFAULT_WORLD, "groups": 3, "tuned": {},
+                    "sums": [base + task for task in range(6)], "ended": [3] * 6, "late": [0.0] * 6,
+                    "curve": {"mean": curve, "error": [0.1] * 3},
+                }
+            )  # fmt: skip
+    return found
+
+
+def test_comparisons_by_hand():
+    results = made_up()
+    assert best_gp(results, "exact") == "GP-UCB, true metric"
+    found = measure(SMALL, results)
+    assert found["best_GP_UCB_minus_EI_exact"].value == pytest.approx(100)
+    assert found["UCB1_minus_GP_UCB_headline"].value == pytest.approx(100)
+    assert found["interval_estimation_minus_UCB1_exact"].value == pytest.approx(-100)
+    assert found["EI_over_best_GP_UCB_exact"].value == pytest.approx(102.5 / 202.5)
+    assert found["EI_over_eps_greedy_on_means_exact"].value == pytest.approx(102.5 / 402.5)
+    # In the first episode it has more, from the second on less.
+    assert found["first_episode_below_for_good_exact"].value == 2
+    assert measure(SMALL, made_up(first=1.0))["first_episode_below_for_good_exact"].value == 1
+    assert found["cumulative_first_4_tasks_EI_exact"].value == pytest.approx(101.5)
+
+
+def test_a_tiny_run():
+    cells = [run_cell(SMALL, cell, 1) for cell in CLAIM.cells(SMALL) if "GP-UCB," not in cell["method"]]
+    missing = [c for c in CLAIM.cells(SMALL) if "GP-UCB," in c["method"]]
+    plain = {c["case"]: c for c in cells if c["method"] == "GP-UCB"}
+    cells = json.loads(json.dumps(cells + [{**plain[cell["case"]], **cell} for cell in missing]))
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    assert all(row["given"] for row in kept)
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert len(figure.axes) == 3

@@ -1,0 +1,64 @@
+"""C4.8: regret against both bests by hand, and a tiny run."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.c4_8 import CLAIM, QUICK, measure, rows, run_cell
+
+SMALL = {**QUICK, "trials": 4, "shares": [0.1, 1.0], "episodes": [2, 6], "samples": 3}
+
+
+@pytest.fixture(scope="module")
+def cells():
+    return json.loads(json.dumps([run_cell(SMALL, cell, 1) for cell in CLAIM.cells(SMALL)]))
+
+
+def test_a_tiny_run(cells):
+    found = measure(SMALL, cells)
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
+    assert found["saved_by_size_late_EI_exact"].n == 4
+    for cell in cells:
+        whole, own = np.array(cell["all"]), np.array(cell["library"])
+        assert (whole >= own).all()
+        if cell["share"] == 1.0:
+            # The whole library's best is the best of all.
+            assert (whole == own).all()
+            assert cell["met"] == [1] * 4
+
+
+def test_counts_by_hand():
+    results = []
+    for model in ("learnt", "exact"):
+        for share, values in ((0.1, [[8.0, 4.0], [6.0, 5.0]]), (1.0, [[6.0, 1.0], [6.0, 3.0]])):
+            results.append(
+                {"rule": "EI", "model": model, "share": share, "all": values, "library": values, "met": [1, 0]}
+            )
+    found = measure(SMALL, results)
+    assert found["saved_by_size_early_EI_exact"].value == 1.0
+    assert found["saved_by_size_late_EI_exact"].value == 2.5
+    assert found["saved_by_episodes_small_EI_exact"].value == 2.5
+    assert found["steps_of_size_EI_exact"].value == 1.0
+    assert found["regret_whole_6_EI_exact"].value == 2.0
+    assert rows(SMALL, results)[0]["share_met"] == 0.5
+
+
+def test_the_figure_is_drawn_from_rows_alone(cells):
+    kept = json.loads(json.dumps(rows(SMALL, cells)))
+    figure = CLAIM.draw({"settings": SMALL, "rows": kept})
+    assert len([axes for axes in figure.axes if axes.lines]) == 3
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [
+        ({"shares": "[1.0, 0.5]"}, "shares must be"),
+        ({"episodes": "[5]"}, "episodes must be"),
+        ({"rules": '["sampling"]'}, "rules must include EI"),
+    ],
+)
+def test_settings_that_cannot_be_run(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)

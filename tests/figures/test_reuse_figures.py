@@ -1,0 +1,74 @@
+"""Pictures of policy reuse's problems: what is drawn is what was given."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import NotFoundError
+from lifelore.domains.golf import CLUBS, EDGES, HOLES, Golf
+from lifelore.domains.surveillance import BASE, SIDE, Surveillance
+from lifelore.domains.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
+from lifelore.experiments.reuse_rules import NEAR_GREEDY, RULES_SHOWN
+from lifelore.experiments.surveillance_peers import PEERS
+from lifelore.experiments.telephone_runs import SIGNAL_OF_PATH
+from lifelore.figures.call_graph import PLACES, draw_call_graph
+from lifelore.figures.category_bars import draw_category_bars
+from lifelore.figures.performance_curves import draw_performance_curves
+from lifelore.figures.reserve_map import draw_reserve_maps
+from lifelore.figures.reuse_palette import LOOKS, look_of
+from lifelore.figures.telephone_curves import EDGES as CALL_EDGES
+from lifelore.figures.type_model import draw_type_model
+
+
+def test_category_bars_show_the_tables():
+    golf = Golf()
+    figure = draw_category_bars(golf.category_probs, EDGES, CLUBS, HOLES)
+    assert len(figure.axes) == 16
+    for k, axes in enumerate(figure.axes):
+        assert [bar.get_height() for bar in axes.patches] == pytest.approx(golf.category_probs[k // 4, k % 4])
+        # As wide as the category: 15 yards from 5 to 20.
+        assert axes.patches[4].get_width() == 15
+
+
+def test_call_graph_is_the_worlds():
+    assert set(PLACES) == set(STATES)
+    for (before, after), (_, paid) in CALL_EDGES.items():
+        assert paid == reward(STATES.index(before), STATES.index(after))
+    there = {(STATES[s], STATES[s2]) for s in OPEN for s2 in (s + 1, SUCCESS, HUNG_UP)}
+    assert set(CALL_EDGES) == there
+    circles = {text.get_text() for text in draw_call_graph(CALL_EDGES).axes[0].texts}
+    assert {STATES[ANGRY], "[10]", "[3]", "(1−η)ρ"} <= circles
+
+
+def test_reserve_map_shows_targets_hilltops_and_base():
+    world = Surveillance("ring")
+    figure = draw_reserve_maps({"ring": (world.targets, world.is_hilltop)}, BASE, SIDE)
+    assert len(figure.axes[0].patches) == 64 + 4 + 1
+
+
+def test_performance_curves_mark_what_is_known_and_what_is_asked():
+    tasks = np.linspace(0, 10, 50)
+    figure = draw_performance_curves(
+        tasks, {"$\\pi_1$": tasks, "$\\pi_2$": 10 - tasks}, {"$\\tau_1$": 2.0, "$\\tau_2$": 8.0}, 5.0,
+        shown=("$\\tau_1$", "$\\pi_2$"), deviation=0.5, epsilon=2.0,
+    )  # fmt: skip
+    points = [line for line in figure.axes[0].lines if line.get_marker() == "o"]
+    known = [line.get_ydata() for line in points if len(line.get_xdata()) == 2]
+    assert np.concatenate(known).tolist() == pytest.approx([2, 8, 8, 2])
+    asked = [float(line.get_ydata()[0]) for line in points if len(line.get_xdata()) == 1]
+    assert asked == pytest.approx([5, 5])
+
+
+def test_type_model_has_five_nodes():
+    figure = draw_type_model()
+    labels = [text.get_text() for axes in figure.axes for text in axes.texts]
+    assert labels.count("$G_0$") == 2
+    assert "$\\mu_{\\tau}$" in labels
+
+
+def test_every_method_has_a_look():
+    for name in (*RULES_SHOWN, *NEAR_GREEDY, *PEERS, *SIGNAL_OF_PATH):
+        assert look_of(name) == LOOKS[name]
+    assert len({look_of(name) for name in (*RULES_SHOWN, *NEAR_GREEDY)}) == len(RULES_SHOWN) + 1
+    assert len({look_of(name) for name in PEERS}) == len(PEERS)
+    with pytest.raises(NotFoundError, match="no look for 'magic'"):
+        look_of("magic")

@@ -1,0 +1,77 @@
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.baselines import UCB1
+
+
+def test_bounds_by_hand():
+    player = UCB1(2, seed=0)
+    for policy, paid in ((0, 1.0), (1, 0.5), (0, 0.0)):
+        player.update(policy, paid)
+    # Means 0.5 and 0.5; t = 3: √(2 ln 3 / 2) = 1.0481, √(2 ln 3 / 1) = 1.4823.
+    assert player._scores()[0] == pytest.approx([1.5481, 1.9823], abs=1e-4)
+    assert player.select() == 1
+
+
+def test_every_policy_is_played_before_any_is_played_twice():
+    player = UCB1(5, seed=1)
+    chosen = []
+    for _ in range(5):
+        chosen.append(player.select())
+        player.update(chosen[-1], 1.0)
+    assert sorted(chosen) == [0, 1, 2, 3, 4]
+
+
+def test_prior_means_count_as_pulls():
+    player = UCB1(2, prior_means=[0.2, 0.6], prior_pulls=2)
+    # t = 4: both bounds are √(2 ln 4 / 2) above the means.
+    assert player._scores()[0] == pytest.approx(np.array([0.2, 0.6]) + np.sqrt(np.log(4)))
+    player.update(1, 0.0)
+    # 0.6 · 2 / 3 = 0.4, t = 5.
+    assert player._scores()[0] == pytest.approx([0.2 + np.sqrt(np.log(5)), 0.4 + np.sqrt(2 * np.log(5) / 3)])
+
+
+def test_scale_maps_payoffs_and_prior():
+    player = UCB1(2, exploration=0, scale=(-100, 300), prior_means=[100, 0])
+    assert player._scores()[0] == pytest.approx([0.5, 0.25])
+    player.update(0, 300)
+    assert player._scores()[0] == pytest.approx([0.75, 0.25])
+
+
+def test_a_naive_ucb1_chooses_the_same():
+    generator = np.random.default_rng(3)
+    payoffs = generator.random((80, 4))
+    player = UCB1(4, exploration=0.7, prior_means=[0.4, 0.5, 0.6, 0.3], seed=0)
+    sums, counts = [0.4, 0.5, 0.6, 0.3], [1, 1, 1, 1]
+    for paid in payoffs:
+        t = sum(counts)
+        bounds = [s / n + 0.7 * (2 * np.log(t) / n) ** 0.5 for s, n in zip(sums, counts, strict=True)]
+        best = bounds.index(max(bounds))
+        assert player.select() == best
+        player.update(best, paid[best])
+        sums[best] += paid[best]
+        counts[best] += 1
+
+
+def test_from_library_has_means_under_the_prior_on_the_unit_scale(library):
+    player = UCB1.from_library(library, exploration=0)
+    # 0.75 (1, .2, .4, 0) + 0.25 (0, .8, .6, .1), from [-0.4, 1.4] to [0, 1].
+    assert player._scores()[0] == pytest.approx((np.array([0.75, 0.35, 0.45, 0.025]) + 0.4) / 1.8)
+    assert UCB1.from_library(library, prior_means=None)._scores()[0].tolist() == [np.inf] * 4
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"exploration": -1}, "exploration must be finite and at least 0, got -1"),
+        ({"exploration": np.nan}, "exploration must be"),
+        ({"scale": (1, 1)}, "scale must be"),
+        ({"prior_means": [1, 2, 3]}, "prior_means must be one number or 2 of them"),
+        ({"prior_means": [1, np.nan]}, "prior_means must be finite"),
+        ({"prior_means": [1, 2], "prior_pulls": 0}, "prior_pulls must be finite and above 0"),
+    ],
+)
+def test_bad_settings(settings, said):
+    with pytest.raises(InputError, match=said):
+        UCB1(2, **settings)

@@ -1,0 +1,78 @@
+"""docs/policy_reuse.md: its Python runs as it stands, its commands as told, its numbers are what they print."""
+
+import re
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.app.command_line import run as run_command
+from lifelore.interaction.categorical_outcomes import CategoricalOutcomes
+from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
+
+PAGE = (Path(__file__).parents[1] / "docs" / "policy_reuse.md").read_text(encoding="utf-8")
+BLOCKS = re.findall(r"^```(python|sh)\n(.*?)^```", PAGE, flags=re.S | re.M)
+ALONE, TUTORIAL = BLOCKS[:4], BLOCKS[4:]
+
+
+@pytest.fixture
+def run(tmp_path, monkeypatch, capsys):
+    """Run a block here, in an empty folder with a memory of its own; what it prints."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("XDG_DATA_HOME", str(tmp_path / "data"))
+
+    def run(kind: str, text: str) -> str:
+        if kind == "python":
+            exec(compile(text, "policy_reuse.md", "exec"), {"__name__": "page"})
+        else:
+            for line in text.splitlines():
+                assert run_command(shlex.split(line)[1:]) == 0, capsys.readouterr().err
+        return capsys.readouterr().out
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("place", "said"),
+    [
+        (0, r"C \[0\. 0\. 1\.\]\n"),
+        (1, r"\[0\.\d+ 0\.\d+\] \[.*\]\n(left|right) \d+\.\d+\n"),
+        (2, r"\[0\.\d+ 0\.\d+\] 1\n"),
+        (3, r"\[0\.\d+ 0\.\d+\]\n"),
+    ],
+)
+def test_each_piece_alone(place, said, run):
+    assert re.fullmatch(said, run(*ALONE[place]))
+
+
+def test_the_tutorial_from_a_log_to_its_end(run, tmp_path):
+    kinds = [kind for kind, _ in TUTORIAL]
+    assert kinds == ["python", "sh", "python", "sh"]
+    assert run(*TUTORIAL[0]) == ""
+    fitted, *_, policy, decision = run(*TUTORIAL[1]).splitlines()
+    assert re.match(r"study default: 720 outcomes of 60 users, 6 policies, 10 types named", fitted)
+    assert policy in ("top", "bottom", "left", "right", "rows", "columns")
+    assert decision.startswith("decision ")
+    for line in run(*TUTORIAL[2]).splitlines():
+        assert line in PAGE
+    assert (tmp_path / "report" / "report.png").exists()
+    told = run(*TUTORIAL[3])
+    assert "columns is retired" in told
+    assert "whole is given to the held-out users" in told
+    assert "contributions of new 3 forgotten" in told
+
+
+def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():
+    probs = np.random.default_rng(0).random((4, 5))
+    performance = CategoricalOutcomes([0, 1], np.stack([1 - probs, probs], axis=2))
+    library = PolicyLibrary(performance)
+    for belief in np.random.default_rng(1).dirichlet(np.ones(4), 20):
+        greedy, improving = (rule.scores(library, belief) for rule in (Greedy(), ExpectedImprovement()))
+        assert np.argsort(greedy).tolist() == np.argsort(improving).tolist()
+
+
+def test_every_rule_is_told():
+    named = set(re.findall(r"`([A-Z]\w+)\(", PAGE.split("## Choosing")[1].split("## What it believes")[0]))
+    assert {rule.__name__ for rule in RULES.values()} <= named
