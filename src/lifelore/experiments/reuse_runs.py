@@ -134,5 +134,12 @@ def curve(values: Array, digits: int = 3) -> dict[str, list[float]]:
 
 
 def plain(estimates: Mapping[str, Estimate]) -> dict[str, Any]:
-    """Estimates as rows keep them."""
-    return {name: estimate.to_dict() for name, estimate in estimates.items()}
+    """Estimates as rows keep them: value, interval and number, to four places."""
+    return {
+        name: {
+            "value": round(estimate.value, 4),
+            "ci95": None if estimate.ci95 is None else [round(bound, 4) for bound in estimate.ci95],
+            "n": estimate.n,
+        }
+        for name, estimate in estimates.items()
+    }
