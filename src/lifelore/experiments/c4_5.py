@@ -154,11 +154,15 @@ def _of_case(case: str, found: Mapping[str, Mapping[str, Estimate]]) -> dict[str
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row a cell: its summary; in the default reserve also its curves and late regret on unseen tasks."""
+    """A row a cell: its summary, over the grid its values; in the default reserve also its curves and late regret
+    on unseen tasks."""
     kept = []
     for result in results:
         world = {key: result[key] for key in DEFAULT_WORLD}
-        row = {"method": result["method"], "case": result["case"], **world, **plain(summary(result))}
+        numbers = plain(summary(result))
+        if world != DEFAULT_WORLD:
+            numbers = {name: {"value": number["value"]} for name, number in numbers.items()}
+        row = {"method": result["method"], "case": result["case"], **world, **numbers}
         if world == DEFAULT_WORLD:
             row |= {"curve": result["curve"], "entropy": result.get("entropy")}
             row["late_by_seen"] = late_by_seen(result)
