@@ -1,6 +1,9 @@
 """The ball game by hand, against naive twins, and its simulated player."""
 
 import heapq
+import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.ball_game import MOVES, SIDE, LossScale, ball_game, check_place, slide, step
+from lifelore.domains.ball_game import MOVES, SIDE, LossScale, ball_game, check_place, slide, step, travel
 from lifelore.domains.ball_game_layouts import (
     Layout,
     blobs,
@@ -31,6 +34,7 @@ from lifelore.domains.ball_user import (
 
 GAME = ball_game()
 FIELD = GAME.field
+STAYS = ball_game(blocked="stays").field
 NORTH, SOUTH, EAST, WEST = range(4)
 NO_SLIP, NO_PUSH = 0.999, (0.0, 0.0)
 
@@ -94,6 +98,8 @@ def test_games_that_cannot_be_played():
         ball_game(sizes=(0,))
     with pytest.raises(InputError, match="care must be finite"):
         ball_game(care=-1.0)
+    with pytest.raises(InputError, match="blocked must be one of slides, stays, got 'bounces'"):
+        ball_game(blocked="bounces")
     with pytest.raises(InputError, match="place must be free for a ball of size 60"):
         check_place(GAME, 5, 20, 20)
 
@@ -131,6 +137,40 @@ def test_moves_by_hand():
     assert step(FIELD, 3, 500, 80, EAST, 30, 4.0, NO_SLIP, one, 0.5)[:2] == (530, 76)
     # Pushed against a wall it stops there, and that is a collision too.
     assert step(FIELD, 3, 500, 12, EAST, 30, 4.0, NO_SLIP, one, 0.5)[:3] == (530, 11, True)
+
+
+def test_a_blocked_ball_that_stays_by_hand():
+    # As above: 69 units of room to the north. Of a move of 70 nothing is made, and it is a collision all the same.
+    assert step(STAYS, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, *NO_PUSH) == (500, 80, True, False)
+    assert step(STAYS, 3, 500, 80, NORTH, 69, 4.0, NO_SLIP, *NO_PUSH) == (500, 11, False, False)
+    # A blocked push is not made, and the move before it is: pushed by 4 units there, with 1 unit of room.
+    one = 1 - np.exp(-0.5)
+    assert step(STAYS, 3, 500, 12, EAST, 30, 4.0, NO_SLIP, one, 0.5) == (530, 12, True, False)
+    # A blocked move leaves the push: 4 units to the east, across the way to the north.
+    assert step(STAYS, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, one, 0.5) == (504, 80, True, False)
+    # A slip to the east, where the border at x = 1000 stops it: 1000 less the radius, less 1.
+    assert step(STAYS, 3, 950, 80, NORTH, 50, 4.0, 0.05, *NO_PUSH) == (950, 80, True, False)
+    assert step(FIELD, 3, 950, 80, NORTH, 50, 4.0, 0.05, *NO_PUSH) == (989, 80, True, False)
+    assert step(STAYS, 5, 830, 960, SOUTH, 30, 0.0, NO_SLIP, *NO_PUSH) == (830, 960, True, False)
+    # The goal comes before the border that the move would touch: the game is over there.
+    below = Layout("below", (), (100, 100), (0, 960, 1000, 1000))
+    for blocked in ("slides", "stays"):
+        field = ball_game(below, blocked=blocked).field
+        assert step(field, 3, 500, 940, SOUTH, 70, 0.0, NO_SLIP, *NO_PUSH) == (500, 989, True, True)
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=150)
+def test_a_ball_that_stays_makes_whole_moves_or_none(data):
+    kind = data.draw(st.integers(0, 5))
+    x, y = data.draw(places(kind))
+    dx, dy = MOVES[data.draw(st.integers(0, 3))].tolist()
+    distance = data.draw(st.integers(0, 90))
+    moved = naive_slide(FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, distance)
+    in_goal = x + dx * moved >= 840 and y + dy * moved >= 840
+    made = moved if moved == distance or in_goal or (x >= 840 and y >= 840) else 0
+    expected = (x + dx * made, y + dy * made, moved < distance)
+    assert travel(STAYS, STAYS.radius[kind], x, y, dx, dy, distance) == expected
 
 
 def test_the_goal_is_reached_by_passing_over_its_edge():
@@ -224,8 +264,9 @@ def test_she_goes_along_the_corridor_and_never_aims_through_a_wall():
     assert choose_heading(field, 0, 800, 480, 70) == EAST
 
 
+@pytest.mark.parametrize("field", [FIELD, STAYS], ids=["slides", "stays"])
 @pytest.mark.parametrize(("speed", "kind"), [(30, 0), (50, 3), (70, 5)])
-def test_of_her_choices_none_is_cheaper(speed, kind):
+def test_of_her_choices_none_is_cheaper(speed, kind, field):
     free = np.argwhere(FIELD.clearance > FIELD.radius[kind])
     for y, x in free[:: len(free) // 200]:
         worth = []
@@ -233,9 +274,11 @@ def test_of_her_choices_none_is_cheaper(speed, kind):
             moved = naive_slide(FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, speed)
             x1, y1 = x + dx * moved, y + dy * moved
             in_goal = x1 >= 840 and y1 >= 840
+            if field.stays and moved < speed:
+                x1, y1 = x, y
             cost = FIELD.cost[kind, (y1 + 2) // CELL, (x1 + 2) // CELL] + STOPPED * (moved < speed)
             worth.append(-1.0 if in_goal else cost)
-        assert choose_heading(FIELD, kind, x, y, speed) == int(np.argmin(worth))
+        assert choose_heading(field, kind, x, y, speed) == int(np.argmin(worth))
 
 
 def test_everybody_reaches_the_goal_and_small_balls_hardly_collide():
@@ -303,3 +346,35 @@ def test_players_that_cannot_be():
     for kinds in ([6], [-1], []):
         with pytest.raises(InputError, match=r"kinds must be numbers in \[0, 6\)"):
             new_balls(GAME, kinds, 1.0, random)
+
+
+PLAIN = """
+import numpy as np
+from lifelore.domains.ball_game import ball_game
+from lifelore.domains.ball_game_moves import read_moves
+from lifelore.domains.ball_user import advance, new_balls, random_states
+for blocked in ("slides", "stays"):
+    field = ball_game(blocked=blocked).field
+    random = random_states(np.random.default_rng(1), 6)
+    balls = new_balls(ball_game(blocked=blocked), range(6), 6.0, random)
+    heading, before, signal = np.empty(6, np.int64), np.empty((6, 2), np.int64), np.empty(6, np.int64)
+    for _ in range(60):
+        speed = np.array([0, 1, 2, 3, 4, 4])
+        advance(field, balls, speed, 2, 400, heading, before)
+        read_moves(field, before, heading, speed, balls.x, balls.y, signal)
+        print(heading.tolist(), balls.x.tolist(), balls.y.tolist(), balls.hits.tolist(), signal.tolist())
+"""
+
+
+def test_compiled_and_plain_python_agree():
+    def said(disabled):
+        command = [sys.executable, "-W", "error", "-c", PLAIN]
+        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.splitlines()
+
+    compiled = said("0")
+    assert len(compiled) == 120
+    assert compiled[:60] != compiled[60:]
+    assert compiled == said("1")

@@ -21,10 +21,11 @@ def test_gymnasium_finds_nothing_to_say(role):
         check_env(gymnasium.make(NAME, role=role, render_mode=render_mode).unwrapped, skip_render_check=True)
 
 
+@pytest.mark.parametrize("blocked", ["slides", "stays"])
 @pytest.mark.parametrize("size", [2, 60])
-def test_environment_and_step_agree(size):
-    env = BallGameEnvironment(size=size, speed=40)
-    game = ball_game()
+def test_environment_and_step_agree(size, blocked):
+    env = BallGameEnvironment(size=size, speed=40, blocked=blocked)
+    game = ball_game(blocked=blocked)
     field, kind = game.field, game.sizes.index(size)
     uniforms, _ = seeding.np_random(4)
     observation, info = env.reset(seed=4)
@@ -81,6 +82,7 @@ def test_arguments_that_cannot_be():
         ({"size": 3}, "size must be one of 2, 5, 10, 20, 40, 60, got 3"),
         ({"speed": 35}, "speed must be one of 30, 40, 50, 60, 70, got 35"),
         ({"role": "referee"}, "role must be one of player, interface"),
+        ({"blocked": "bounces"}, "blocked must be one of slides, stays"),
         ({"render_mode": "human"}, "render_mode must be None or one of"),
     ):
         with pytest.raises(InputError, match=rule):

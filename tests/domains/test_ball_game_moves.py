@@ -1,11 +1,13 @@
 """Signals of the ball game by hand and against a naive reading."""
 
+import inspect
+
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.domains import ball_game_moves
-from lifelore.domains.ball_game import MOVES, ball_game
+from lifelore.domains.ball_game import MOVES, ball_game, step
 from lifelore.domains.ball_game_moves import (
     AFTER_EDGES,
     BEFORE_EDGES,
@@ -25,7 +27,7 @@ from lifelore.domains.ball_game_moves import (
 from lifelore.domains.ball_user import advance, new_balls, random_states
 
 FIELD = ball_game().field
-EAST, SOUTH = 2, 1
+NORTH, SOUTH, EAST = 0, 1, 2
 
 
 def test_classes_of_room_by_hand():
@@ -56,6 +58,20 @@ def test_a_signal_by_hand():
     here = np.array([500, 500]), np.array([130, 130])
     read_moves(FIELD, before, np.array([SOUTH, -1]), np.array([2, 2]), *here, signal)
     assert signal.tolist() == [context * N_OUTCOMES + 7, -1]
+
+
+def test_signals_of_a_blocked_ball_by_hand():
+    # Size 20 in mid corridor, 70 to the north: the way leads to 10 units from the border (room class 3 of 8 … 16).
+    signals = []
+    for blocked, y in (("slides", 11), ("stays", 80)):
+        field = ball_game(blocked=blocked).field
+        assert step(field, 3, 500, 80, NORTH, 70, 0.0, 0.999, 0.0, 0.0)[:3] == (500, y, True)
+        assert move_context(field, 500, 80, NORTH, 70) == 6 * N_BEFORE + 3
+        signals.append(move_outcome(field, 500, 80, NORTH, 70, 500, y))
+    # One that slid 69 of 70 has made its move and has room of 11; one that stays has not, and has room of 80.
+    assert signals == [0 * N_AFTER + 4, 3 * N_AFTER + 11]
+    # With room of its own a smaller ball gets there: what became of the same command tells the sizes apart.
+    assert step(field, 2, 500, 80, NORTH, 70, 0.0, 0.999, 0.0, 0.0)[:3] == (500, 10, False)
 
 
 @given(st.integers(1, 999), st.integers(1, 999), st.integers(0, 3), st.integers(30, 70))
@@ -96,6 +112,6 @@ def test_commands_by_place_by_hand():
 
 
 def test_nothing_in_a_signal_depends_on_the_type():
-    source = ball_game_moves.__loader__.get_source(ball_game_moves.__name__)
+    source = inspect.getsource(ball_game_moves)
     for hidden in ("radius", "slip", ".cost", "kind"):
         assert hidden not in source

@@ -23,7 +23,7 @@ from lifelore.experiments.ball_game_play import (
     populations,
     train,
 )
-from lifelore.experiments.ball_game_settings import GAMES, Setting, check_games
+from lifelore.experiments.ball_game_settings import DEFAULT, GAMES, Setting, check_games
 from lifelore.interaction.baselines.exp3 import EXP3
 
 GAME = ball_game()
@@ -154,12 +154,17 @@ def test_games_that_cannot_be_played_are_refused():
     check_games({"games": GAMES, "n": 1}, ["n"])
     for games, rule in (
         ([], "games must name at least one"),
-        ([["moon", 0.5, 3.0, "fixed"]], "cannot be played: unknown layout"),
-        ([["blobs", 0.5, 3.0, "loud"]], "the last one of fixed, maxima"),
+        ([["moon", 0.5, 3.0, "fixed", "slides"]], "cannot be played: unknown layout"),
+        ([["blobs", 0.5, 3.0, "loud", "slides"]], "the normalisation one of fixed, maxima"),
+        ([["blobs", 0.5, 3.0, "fixed", "bounces"]], "cannot be played: blocked must be one of slides, stays"),
+        ([["blobs", 0.5, 3.0, "fixed"]], r"must be \[layout, radius_share, care, normalisation, blocked\]"),
     ):
         with pytest.raises(InputError, match=rule):
             check_games({"games": games}, [])
     with pytest.raises(InputError, match="n must be at least 1"):
         check_games({"games": GAMES, "n": 0}, ["n"])
     assert Setting(*GAMES[-1]).words == "s-maze 160, r = b/2, by maxima"
-    assert Setting("blobs", 1.0, 0.0, "fixed").words == "blobs, r = b, careless"
+    assert Setting("blobs", 1.0, 0.0, "fixed", "stays").words == "blobs, r = b, careless, stays"
+    assert Setting(*DEFAULT).game.blocked == "slides"
+    assert [Setting(*game).game.field.stays for game in GAMES].count(True) == 3
+    assert len({Setting(*game).words for game in GAMES}) == len(GAMES)

@@ -39,7 +39,11 @@ def test_a_transition_by_hand():
 
 def result_of(loss):
     """Steps that give these losses, no collisions."""
-    return {"game": ["s-maze 160", 0.5, 3.0, "fixed"], "steps": (400 * loss).tolist(), "hits": (0 * loss).tolist()}
+    return {
+        "game": ["s-maze 160", 0.5, 3.0, "fixed", "slides"],
+        "steps": (400 * loss).tolist(),
+        "hits": (0 * loss).tolist(),
+    }
 
 
 def test_measures_by_hand():
@@ -52,6 +56,7 @@ def test_measures_by_hand():
     assert measure({}, [rising])["best_speed_rises_by"].value == 30
     row = rows({}, [falling])[0]
     assert row["transition"]
+    assert (row["game"], row["blocked"]) == (["s-maze 160", 0.5, 3.0], "slides")
     assert row["best"] == [70, 60, 60, 60, 40, 30]
 
 

@@ -64,7 +64,7 @@ def test_under_reading_b_states_tell_what_rewards_tell(cells):
 def test_the_figure_is_drawn_from_rows_alone(cells):
     kept = json.loads(json.dumps(rows(SMALL, cells)))
     figure = CLAIM.draw({"settings": SMALL, "rows": kept})
-    assert figure.axes[2].get_title("left") == "Regret with 4 language models, exact models"
+    assert figure.axes[2].get_title("left") == "4 language models, exact models"
     assert len(figure.axes[2].lines) == 6
 
 

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.domains.surveillance import NOISES
 from lifelore.experiments.c4_6 import (
     CLAIM,
     PRINTED,
@@ -92,3 +93,20 @@ def test_settings_that_cannot_be_run():
         CLAIM.settings("quick", {"after": "[5, 10]"})
     with pytest.raises(InputError, match="episodes at least 50"):
         CLAIM.settings("quick", {"episodes": 20})
+
+
+def test_only_the_size_of_a_difference_with_deviation_20_can_leave_what_is_printed():
+    """Erratum: what has converged varies by noise alone; print has 10 to 19 after 20 and 50 episodes."""
+    late = [n for rule in ("sampling", "BE", "EI") for n in PRINTED[rule][2:]]
+    luck = np.random.default_rng(0).standard_normal((4000, 2, 10))
+    sizes = {}
+    for noise, deviation in NOISES.items():
+        differences = deviation * (luck[:, 0] - luck[:, 1])
+        sizes[noise] = np.quantile(np.abs(differences).std(axis=1, ddof=1), [0.025, 0.975])
+    low, high = sizes["deviation 20"]
+    assert low <= min(late)
+    assert max(late) <= high
+    assert sizes["variance 20"][1] < min(late)
+    # With its sign the difference varies by 20 √2, and groups of ten leave less than 15 seldom.
+    signed = np.quantile((20 * (luck[:, 0] - luck[:, 1])).std(axis=1, ddof=1), 0.025)
+    assert sum(n < signed for n in late) >= 3

@@ -29,6 +29,14 @@ def test_a_tiny_run(cells):
             assert cell["met"] == [1] * 4
 
 
+def test_a_library_of_one_policy_has_no_regret_of_its_own():
+    """Erratum: by Definition 4.3.1 the smallest library would be the best."""
+    settings = {**SMALL, "shares": [0.01, 1.0]}
+    found = run_cell(settings, {"rule": "EI", "model": "exact", "share": 0.01}, 1)
+    assert found["library"] == [[0.0, 0.0]] * 4
+    assert np.mean(found["all"]) > 100
+
+
 def test_counts_by_hand():
     results = []
     for model in ("learnt", "exact"):

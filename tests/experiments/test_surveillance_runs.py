@@ -20,6 +20,7 @@ from lifelore.experiments.surveillance_runs import (
     run_method,
     summary,
 )
+from lifelore.interaction.selection.information import mutual_information
 
 SETTINGS = {"tasks": 5, "episodes": 12, "samples": 4, "after": [5, 10, 20]}
 WORLD = Surveillance()
@@ -104,3 +105,14 @@ def test_find_takes_the_default_reserve():
     results = [{**base, **DEFAULT_WORLD, "layout": "ring"}, {**base, **DEFAULT_WORLD}]
     assert find(results, "EI", "exact")["layout"] == "X"
     assert find(results, "EI", "exact", layout="ring")["layout"] == "ring"
+
+
+def test_a_hilltop_tells_the_most_and_costs_the_most():
+    """Erratum: "a weak signal" says the thesis; and from far away it pays less than nothing."""
+    library = library_of(WORLD, EXACT, 0, 1, 0)
+    told = mutual_information(library.prior, library.table(32))
+    assert set(np.argsort(told)[-4:]) == set(np.flatnonzero(WORLD.is_hilltop))
+    cost = library.prior @ (WORLD.mean.max(axis=1, keepdims=True) - WORLD.mean)
+    assert cost[WORLD.is_hilltop] == pytest.approx(np.full(4, 258.0), abs=0.5)
+    assert cost[~WORLD.is_hilltop].max() < 200
+    assert WORLD.mean.min() == 200 - 30 * 15 + 10

@@ -2,9 +2,11 @@
 
 A player, whose type is the size b of the ball, commands one of four directions at every step; the ball moves by
 the speed in force, with probability b/2 % another way. Then it is pushed sideways by a rounded normal number
-whose deviation σ is drawn for the episode. It stops where it touches an obstacle, and such a step counts as a
-collision. Places are whole numbers. The game is over when the ball's centre comes into the goal; the loss is the
-normalised time plus the normalised number of collisions. Thesis: §4.8.5.1.
+whose deviation σ is drawn for the episode. A step in which it would go into an obstacle counts as a collision;
+what becomes of such a move the thesis does not say: the ball slides up to the obstacle, or, in a variant of the
+game, the move is not made and the ball stays (`BLOCKED`). Places are whole numbers. The game is over when the
+ball's centre comes into the goal; the loss is the normalised time plus the normalised number of collisions.
+Thesis: §4.8.5.1.
 
 `step` is the one definition: the batched kernel (`advance`) and the environment both call it.
 """
@@ -30,6 +32,8 @@ MOVES = np.array([[0, -1], [0, 1], [1, 0], [-1, 0]], np.int64)
 """(dx, dy) of each heading; y grows southwards."""
 SIGMA_RANGE = (0.3, 8.0)
 MAX_STEPS = 400
+BLOCKED = ("slides", "stays")
+"""What becomes of a ball whose move, or push, would touch an obstacle: it goes as far as it can, or nowhere."""
 
 
 class Field(NamedTuple):
@@ -45,6 +49,8 @@ class Field(NamedTuple):
     goal : (4,) int64
         Left, top, right, bottom.
     start : (2,) int64
+    stays : bool
+        Whether a move that would touch an obstacle is not made, see `BLOCKED`.
     """
 
     clearance: NDArray[np.float32]
@@ -54,6 +60,7 @@ class Field(NamedTuple):
     speeds: NDArray[np.int64]
     goal: NDArray[np.int64]
     start: NDArray[np.int64]
+    stays: bool
 
 
 @dataclass(frozen=True)
@@ -68,6 +75,8 @@ class BallGame:
         Radius of the ball as a share of its size b: 0.5, or 1 where b is read as the radius.
     care : float
         How much the player keeps away from walls, see `cost_to_go`.
+    blocked : str
+        What becomes of a ball whose way is blocked, see `BLOCKED`.
     field : Field
     """
 
@@ -76,6 +85,7 @@ class BallGame:
     speeds: tuple[int, ...]
     radius_share: float
     care: float
+    blocked: str
     field: Field
 
     @property
@@ -119,13 +129,15 @@ def ball_game(
     care: float = CARE,
     sizes: tuple[int, ...] = SIZES,
     speeds: tuple[int, ...] = SPEEDS,
+    blocked: str = "slides",
 ) -> BallGame:
     """A game, its distances and ways worked out once.
 
     Raises
     ------
     InputError
-        Sizes, speeds, a share or care out of range, or a ball that cannot get from the start to the goal.
+        Sizes, speeds, a share or care out of range, `blocked` unknown, or a ball that cannot get from the start to
+        the goal.
     """
     from scipy.ndimage import distance_transform_edt
 
@@ -135,6 +147,8 @@ def ball_game(
         raise InputError(f"radius_share must lie in (0, 1], got {radius_share}")
     if not 0 <= care < np.inf:
         raise InputError(f"care must be finite and at least 0, got {care}")
+    if blocked not in BLOCKED:
+        raise InputError(f"blocked must be one of {', '.join(BLOCKED)}, got {blocked!r}")
     layout = layout if isinstance(layout, Layout) else layout_of(layout)
     clearance = np.asarray(distance_transform_edt(~obstacle_points(layout)), np.float32)
     radius = radius_share * np.asarray(sizes, np.float64)
@@ -149,8 +163,9 @@ def ball_game(
     field = Field(
         clearance, cost, radius, np.asarray(sizes, np.float64) / 200.0,
         np.asarray(speeds, np.int64), np.asarray(layout.goal, np.int64), np.asarray(layout.start, np.int64),
+        blocked == "stays",
     )  # fmt: skip
-    return BallGame(layout, tuple(sizes), tuple(speeds), float(radius_share), float(care), field)
+    return BallGame(layout, tuple(sizes), tuple(speeds), float(radius_share), float(care), blocked, field)
 
 
 def _cell(place: int) -> int:
@@ -179,6 +194,25 @@ def crosses(goal, x0, y0, x1, y1):
 
 
 @kernel
+def travel(field, radius, x, y, dx, dy, distance):
+    """Where a ball gets that is to go a distance along an axis, and whether something is in its way.
+
+    A ball that stays where it is blocked still goes on where its centre comes into the goal first: the game is
+    over there.
+
+    Returns
+    -------
+    x, y : int
+    touched : bool
+    """
+    moved = slide(field.clearance, radius, x, y, dx, dy, distance)
+    touched = moved < distance
+    if touched and field.stays and not crosses(field.goal, x, y, x + dx * moved, y + dy * moved):
+        moved = 0
+    return x + dx * moved, y + dy * moved, touched
+
+
+@kernel
 def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     """One move.
 
@@ -202,7 +236,7 @@ def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     -------
     x, y : int
     hit : bool
-        Whether it touched something.
+        Whether something was in its way.
     reached : bool
         Whether it came to the goal.
     """
@@ -211,14 +245,12 @@ def step(field, kind, x, y, heading, distance, sigma, u, v, w):
         heading = (heading + 1 + min(int(3.0 * u / slip), 2)) % 4
     dx, dy = MOVES[heading, 0], MOVES[heading, 1]
     radius = field.radius[kind]
-    moved = slide(field.clearance, radius, x, y, dx, dy, distance)
-    x1, y1 = x + dx * moved, y + dy * moved
+    x1, y1, blocked = travel(field, radius, x, y, dx, dy, distance)
     push = int(np.rint(sigma * np.sqrt(-2.0 * np.log(1.0 - v)) * np.cos(2.0 * np.pi * w)))
     sign = 1 if push > 0 else -1
-    pushed = slide(field.clearance, radius, x1, y1, dy * sign, dx * sign, abs(push))
-    x2, y2 = x1 + dy * sign * pushed, y1 + dx * sign * pushed
+    x2, y2, pressed = travel(field, radius, x1, y1, dy * sign, dx * sign, abs(push))
     reached = crosses(field.goal, x, y, x1, y1) or crosses(field.goal, x1, y1, x2, y2)
-    return x2, y2, moved < distance or pushed < abs(push), reached
+    return x2, y2, blocked or pressed, reached
 
 
 def draw_sigma(generator: np.random.Generator, size: int | tuple[int, ...] | None = None):

@@ -46,7 +46,8 @@ class BallGameEnvironment(gymnasium.Env):
     ## Arguments
     `layout`: a name, ``"s-maze 160"``. `size`: of the ball, one of 2, 5, 10, 20, 40, 60. `speed`: in force at the
     start, one of 30, 40, 50, 60, 70; `set_speed` changes it. `role`: ``"player"`` or ``"interface"``.
-    `radius_share`: radius of the ball as a share of its size, 0.5. `scale`: a `LossScale`. `render_mode`: None or
+    `radius_share`: radius of the ball as a share of its size, 0.5. `blocked`: a ball whose move would touch an
+    obstacle ``"slides"`` up to it, or ``"stays"`` where it is. `scale`: a `LossScale`. `render_mode`: None or
     ``"rgb_array"``.
 
     ``info`` has ``"collision"``, ``"speed"`` in force, the ``"heading"`` commanded last, or None, and ``"sigma"``.
@@ -61,6 +62,7 @@ class BallGameEnvironment(gymnasium.Env):
         speed: int = 50,
         role: str = "player",
         radius_share: float = 0.5,
+        blocked: str = "slides",
         scale: LossScale | None = None,
         render_mode: str | None = None,
     ) -> None:
@@ -69,7 +71,7 @@ class BallGameEnvironment(gymnasium.Env):
         if role not in ROLES:
             raise InputError(f"role must be one of {', '.join(ROLES)}, got {role!r}")
         self.render_mode, self.role = render_mode, role
-        self.game = ball_game(layout, radius_share)
+        self.game = ball_game(layout, radius_share, blocked=blocked)
         self.kind = _number(self.game.sizes, size, "size")
         self.scale = scale or LossScale()
         self.set_speed(speed)

@@ -2,9 +2,10 @@
 
 At every step she commands the direction whose end point, at the distance of the speed she reckons with, has the
 lowest cost. The thesis says no more of the cost, and "toward the location, at distance z", taken literally, aims
-through walls thinner than z, again and again. So the end point here is the one that the ball reaches, being
-stopped costs `STOPPED` units, and ways near walls cost more than their length (`ball_game_ways`), since
-collisions are part of her loss. She knows her own size. Thesis: §4.8.5.1.
+through walls thinner than z, again and again. So the end point here is the one that the ball reaches, which is
+where it stands if a ball that is blocked stays; being stopped costs `STOPPED` units, and ways near walls cost
+more than their length (`ball_game_ways`), since collisions are part of her loss. She knows her own size.
+Thesis: §4.8.5.1.
 
 She may need some steps to adapt to a new speed: until then she reckons with the old one.
 """
@@ -17,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.jit import kernel
 from lifelore.core.random_state import next_uniform
-from lifelore.domains.ball_game import MAX_STEPS, MOVES, BallGame, crosses, draw_sigma, slide, step
+from lifelore.domains.ball_game import MAX_STEPS, MOVES, BallGame, crosses, draw_sigma, step, travel
 from lifelore.domains.ball_game_ways import CELL
 
 STOPPED = 30.0
@@ -97,11 +98,10 @@ def choose_heading(field, kind, x, y, distance):
     best, least = 0, np.inf
     for heading in range(4):
         dx, dy = MOVES[heading, 0], MOVES[heading, 1]
-        moved = slide(field.clearance, field.radius[kind], x, y, dx, dy, distance)
-        if crosses(field.goal, x, y, x + dx * moved, y + dy * moved):
+        x1, y1, stopped = travel(field, field.radius[kind], x, y, dx, dy, distance)
+        if crosses(field.goal, x, y, x1, y1):
             return heading
-        row, column = (y + dy * moved + CELL // 2) // CELL, (x + dx * moved + CELL // 2) // CELL
-        cost = field.cost[kind, row, column] + STOPPED * (moved < distance)
+        cost = field.cost[kind, (y1 + CELL // 2) // CELL, (x1 + CELL // 2) // CELL] + STOPPED * stopped
         if cost < least:
             best, least = heading, cost
     return best

@@ -61,7 +61,7 @@ def _draw_edge(axes: "Axes", start: str, end: str, probability: str, reward: str
     arrow = {"arrowstyle": "-|>", "color": GREY, "lw": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", head, tail, arrowprops=arrow, zorder=2)
     # Nearer the start, where edges to one state have not yet met.
-    share = 0.5 if dy == 0 else 0.42
+    share = 0.5 if dy == 0 else 0.52 if start == "frustrated" else 0.34
     x, y = tail[0] + share * (head[0] - tail[0]), tail[1] + share * (head[1] - tail[1])
     box = {"boxstyle": "round,pad=0.12", "fc": PAPER, "ec": "none"}
     above = 0.28 if dy == 0 else 0.17

@@ -74,6 +74,6 @@ def _draw_grid(axes: "Axes", rows: Sequence[Mapping], sizes: Sequence[int], spee
     axes.set_yticks(np.arange(len(rows) + 1) - 0.5, minor=True)
     axes.grid(which="minor", color=PAPER, linewidth=1.5)
     axes.tick_params(which="both", length=0)
-    axes.set_title("best speed (● a transition for certain)")
+    axes.set_title("best speed (● a transition for certain)", loc="right")
     for spine in axes.spines.values():
         spine.set_visible(False)
