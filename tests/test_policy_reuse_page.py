@@ -1,5 +1,6 @@
 """docs/policy_reuse.md: its Python runs as it stands, its commands as told, its numbers are what they print."""
 
+import json
 import re
 import shlex
 from pathlib import Path
@@ -12,6 +13,7 @@ from lifelore.interaction.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
 
+RESULTS = Path(__file__).parents[1] / "results"
 PAGE = (Path(__file__).parents[1] / "docs" / "policy_reuse.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(python|sh)\n(.*?)^```", PAGE, flags=re.S | re.M)
 ALONE, TUTORIAL = BLOCKS[:4], BLOCKS[4:]
@@ -76,3 +78,27 @@ def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():
 def test_every_rule_is_told():
     named = set(re.findall(r"`([A-Z]\w+)\(", PAGE.split("## Choosing")[1].split("## What it believes")[0]))
     assert {rule.__name__ for rule in RULES.values()} <= named
+
+
+def test_verdicts_are_those_of_the_results():
+    told = re.findall(
+        r"^\| \[(C4\.\d+)\]\(.*?\) \|[^|]*\| (holds in part|holds|does not hold): ", PAGE, flags=re.M
+    )
+    assert [claim for claim, _ in told] == [f"C4.{number}" for number in (*range(1, 14), 15, 16)]
+    for claim, verdict in told:
+        result = json.loads((RESULTS / claim / "result.json").read_text(encoding="utf-8"))
+        assert verdict == result["verdict"], claim
+
+
+def test_speeds_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_reuse.json").read_text(encoding="utf-8"))
+    goals = [goal["measured"] for goal in found["goals"]]
+    told = re.findall(r"^\| [a-z][^|]*\| (?:[\d.,]+ µs)? ?\| ([\d.,]+) \| [\d,]+ \|$", PAGE, flags=re.M)
+    assert [float(number.replace(",", "")) for number in told] == pytest.approx(goals[:7], rel=0.02)
+    for name, unit in (
+        ("flat", "expected improvement"),
+        ("flat", "belief entropy"),
+        ("settled", "knowledge gradient"),
+    ):
+        (goal,) = (g for g in found["goals"] if g["name"] == f"{unit}, {name} belief, 1000 x 1000 x 100, ms")
+        assert f"{goal['measured']:.1f} ms" in PAGE

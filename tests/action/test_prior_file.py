@@ -3,6 +3,7 @@
 import io
 import json
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -21,7 +22,7 @@ from lifelore.action.prior_file import (
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.streams import stream
 
-ABOUT = {"format": FORMAT, "version": 1, "n_actions": 2, "alpha0": 0.5, "key": "k", "about": {}}
+ABOUT = {"format": FORMAT.name, "version": 1, "n_actions": 2, "alpha0": 0.5, "key": "k", "about": {}}
 rows = st.lists(
     st.tuples(st.integers(-(2**60), 2**60), st.lists(st.booleans(), min_size=3, max_size=3)), max_size=9
 )
@@ -133,7 +134,7 @@ def test_every_flipped_byte_is_noticed_or_harmless():
 def test_newer_files_and_large_ones(monkeypatch):
     with pytest.raises(InputError, match="has version 2, this Lifelore reads 1; update it"):
         prior_from_bytes(packed({"version": 2}))
-    monkeypatch.setattr("lifelore.action.prior_file.LARGEST", 100)
+    monkeypatch.setattr("lifelore.action.prior_file.FORMAT", replace(FORMAT, largest=100))
     with pytest.raises(InputError, match="bytes, more than 100"):
         prior_from_bytes(packed())
 
@@ -151,7 +152,7 @@ def test_places_that_cannot_be(tmp_path):
         load_prior(tmp_path / "gone.npz")
     with pytest.raises(StoreError, match=r"cannot be written to .*: No such file"):
         save_prior(small(), tmp_path / "no" / "where.npz")
-    with pytest.raises(InputError, match="about must be JSON values"):
+    with pytest.raises(InputError, match="must be JSON values"):
         prior_bytes(small(), {"x": object()})
-    with pytest.raises(InputError, match="about must be JSON values"):
+    with pytest.raises(InputError, match="must be JSON values"):
         prior_bytes(small(), {"x": float("nan")})

@@ -18,6 +18,7 @@ from lifelore.interaction.selection import (
     KnowledgeGradient,
 )
 from lifelore.interaction.selection.support import supported_types
+from lifelore.interaction.selection.type_classes import type_classes
 
 
 @pytest.fixture
@@ -84,8 +85,9 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     assert len(undecided) == 5
     assert all("MABWiser" in name or "BoTorch" in name for name in undecided)
     assert len(result["goals"]) == 16
-    assert sum("settled belief" in name for name in names) == 6
+    assert sum("settled belief" in name for name in names) == 9
     assert sum("knowledge gradient, flat" in name for name in names) == 1
+    assert sum("learnt models" in name for name in names) == 4 + 8
     assert {line["name"]: line["value"] for line in result["rows"]}["memory a user"] == 272
 
 
@@ -113,6 +115,10 @@ def test_a_large_reserve_is_as_it_says():
     assert case.settled.sum() == pytest.approx(1)
     assert len(supported_types(case.settled, 0.999)[0]) == 104
     assert (case.library.performance.mean.argmax(axis=1) == np.arange(200)).all()
+    assert type_classes(case.library.table(7)).few
+    learnt = LargeReserve(200, 7, learnt=True)
+    assert np.array_equal(learnt.library.performance.mean, case.library.performance.mean)
+    assert type_classes(learnt.library.table(7)).number.mean() > 190
 
 
 @pytest.mark.skipif(not installed(MABWISER), reason="MABWiser is not installed")

@@ -28,9 +28,10 @@ from lifelore.interaction.selection import (
 )
 from lifelore.interaction.selection import rule as rule_module
 from lifelore.interaction.selection.information import expected_entropy, mutual_information
-from lifelore.interaction.selection.information_kernels import best_after_signals, mixtures
+from lifelore.interaction.selection.information_kernels import best_after_signals, class_mixtures, mixtures
 from lifelore.interaction.selection.knowledge_gradient import knowledge_gain, responses
 from lifelore.interaction.selection.support import supported_types, truncated
+from lifelore.interaction.selection.type_classes import type_classes
 from lifelore.interaction.signal_table import SignalTable
 
 from . import naive_selection as naive
@@ -137,10 +138,47 @@ def test_the_kernels_by_hand():
     assert mixed == pytest.approx(probs[:, 1])
     best = np.empty(2)
     # Two candidates worth 1 on their own type: the larger joint of each signal, summed.
-    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), probs, best)
+    alone, both = np.array([[0, 1], [0, 1]], np.int32), np.array([2, 2])
+    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), alone, both, probs, best)
     assert best == pytest.approx([max(0.2, 0.4) + 0.4, max(0.0, 0.2) + max(0.2, 0.6)])
-    best_after_signals(np.array([[0.0], [3.0]]), np.array([1]), probs, best)
+    best_after_signals(np.array([[0.0, 3.0]]), np.array([1]), alone, both, probs, best)
     assert best == pytest.approx([3.0, 3.0])
+
+
+@settings(deadline=None, max_examples=25)
+@given(st.integers(0, 2**32 - 1), st.sampled_from([1.0, 0.9]))
+def test_types_that_a_policy_cannot_tell_apart_count_as_one(seed, mass):
+    random = np.random.default_rng(seed)
+    patterns = random.dirichlet(np.full(4, 0.5), (5, 3))
+    which = random.integers(0, 3, (5, 9))
+    which[4] = np.arange(9) % 2
+    probs = np.stack([patterns[policy][which[policy]] for policy in range(5)])
+    table, mean = SignalTable(probs), random.normal(scale=20, size=(9, 5))
+    classes = type_classes(table)
+    assert classes.few
+    assert classes.number.max() <= 3
+    for policy in range(5):
+        same = which[policy][:, None] == which[policy]
+        assert np.array_equal(classes.of_type[policy][:, None] == classes.of_type[policy], same)
+    assert type_classes(table) is classes
+    belief = random.dirichlet(np.full(9, 0.5))
+    cut = truncated(belief[None], mass)[0].tolist()
+    laws = table.probs.tolist()
+    assert entropy(np.array(cut)) - mutual_information(belief, table, mass) == pytest.approx(
+        naive.expected_entropy(cut, laws), abs=1e-9
+    )
+    assert knowledge_gain(belief, mean, table, mass) == pytest.approx(
+        naive.knowledge_gain(cut, mean.tolist(), laws), abs=1e-9
+    )
+
+
+def test_laws_that_only_look_alike_are_told_apart(monkeypatch):
+    laws = np.array([[[0.5, 0.5, 0.0], [0.5, 0.0, 0.5], [0.5, 0.5, 0.0]]])
+    mark = "lifelore.interaction.selection.type_classes.stream"
+    monkeypatch.setattr(mark, lambda *_: type("Flat", (), {"random": staticmethod(np.ones)}))
+    classes = type_classes(SignalTable(laws))
+    assert classes.number.tolist() == [2]
+    assert classes.of_type[0, 0] == classes.of_type[0, 2] != classes.of_type[0, 1]
 
 
 @settings(deadline=None, max_examples=20)
@@ -150,6 +188,9 @@ def test_mixtures_of_any_number_of_types(seed, n_kept):
     probs, kept = random.dirichlet(np.ones(5), (3, 13)), np.sort(random.permutation(13)[:n_kept])
     share, mixed = random.dirichlet(np.ones(n_kept)), np.empty((3, 5))
     mixtures(share, kept, probs, mixed)
+    assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
+    apart = np.tile(np.arange(13, dtype=np.int32), (3, 1))
+    class_mixtures(share, kept, apart, probs, mixed)
     assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
 
 

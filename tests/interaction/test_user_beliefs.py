@@ -268,7 +268,7 @@ def test_files_that_are_none_are_refused(tmp_path):
     content = path.read_bytes()
     for cut in (0, 20, len(content) // 2, len(content) - 5):
         path.write_bytes(content[:cut])
-        with pytest.raises(InputError, match="no user beliefs that can be read"):
+        with pytest.raises(InputError, match="no file of user beliefs that can be read"):
             load_users(path)
     users.log_belief[1] = np.nan
     save_users(users, path)

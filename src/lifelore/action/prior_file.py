@@ -7,10 +7,6 @@
 Reading gives back the same bits. Other programs read it with ``numpy.load``; counts divide by 2^20.
 """
 
-import io
-import json
-import zipfile
-import zlib
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -20,10 +16,9 @@ from numpy.typing import NDArray
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import PackedFormat
 
-FORMAT, VERSION = "lifelore action prior", 1
-LARGEST = 2**32
-"""Bytes that a file may unpack to: a stranger's file must not fill the memory."""
+FORMAT = PackedFormat("lifelore action prior", 1, "action prior", "save_prior", 2**32)
 
 
 def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
@@ -56,33 +51,28 @@ def load_prior(path: str | Path) -> ActionPrior:
 
 def prior_about(path: str | Path) -> dict[str, Any]:
     """What a file says of itself: format, version, n_actions, alpha0, key and `about`."""
-    return _opened(_content(path), str(path))[0]
+    return FORMAT.unpack(_content(path), str(path))[0]
 
 
 def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
     """The prior as the bytes of an npz file."""
-    header = {"format": FORMAT, "version": VERSION, "n_actions": prior.n_actions, "alpha0": prior.alpha0}
-    try:
-        text = json.dumps(header | {"key": prior.key, "about": dict(about or {})}, sort_keys=True, allow_nan=False)
-    except (TypeError, ValueError) as error:
-        raise InputError(f"about must be JSON values, got something else: {error}") from None
-    stream = io.BytesIO()
+    header = {"n_actions": prior.n_actions, "alpha0": prior.alpha0, "key": prior.key, "about": dict(about or {})}
     contexts, counts = prior.fixed_point_counts()
-    np.savez_compressed(stream, contexts=contexts, counts=counts, about=np.frombuffer(text.encode(), np.uint8))
-    return stream.getvalue()
+    return FORMAT.pack(header, {"contexts": contexts, "counts": counts})
 
 
 def prior_from_bytes(content: bytes, where: str = "the prior") -> ActionPrior:
     """The prior of `prior_bytes`; `where` is named when it cannot be read."""
-    header, contexts, counts = _opened(content, where)
+    header, arrays = FORMAT.unpack(content, where)
     try:
+        contexts, counts = arrays["contexts"], arrays["counts"]
         n_actions, alpha0, key = header["n_actions"], header["alpha0"], header["key"]
         if type(n_actions) is not int or type(alpha0) is not float or type(key) is not str:
             raise ValueError("n_actions, alpha0 and key must be a whole number, a number and a text")
         _check(contexts, counts, n_actions)
         return ActionPrior.from_fixed_point_counts(contexts, counts, alpha0, key)
     except (KeyError, ValueError) as error:
-        raise _damaged(where, error) from None
+        raise FORMAT.damaged(where, error) from None
 
 
 def _check(contexts: NDArray[Any], counts: NDArray[Any], n_actions: int) -> None:
@@ -104,28 +94,3 @@ def _content(path: str | Path) -> bytes:
         return Path(path).read_bytes()
     except OSError as error:
         raise InputError(f"the prior {path} cannot be read: {error.strerror}") from None
-
-
-def _opened(content: bytes, where: str) -> tuple[dict[str, Any], NDArray[Any], NDArray[Any]]:
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as packed:
-            if (size := sum(entry.file_size for entry in packed.infolist())) > LARGEST:
-                raise ValueError(f"it unpacks to {size} bytes, more than {LARGEST}")
-        with np.load(io.BytesIO(content), allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in ("about", "contexts", "counts")}
-        header = json.loads(arrays["about"].tobytes())
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ValueError("another kind of file")
-    except (
-        zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-        RuntimeError, MemoryError,
-    ) as error:  # fmt: skip
-        raise _damaged(where, error) from None
-    if header.get("version") != VERSION:
-        raise InputError(f"{where} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")
-    return header, arrays["contexts"], arrays["counts"]
-
-
-def _damaged(where: str, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:200]
-    return InputError(f"{where} is no action prior that can be read ({reason}); write it anew with save_prior")

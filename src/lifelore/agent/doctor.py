@@ -36,6 +36,9 @@ PACKAGES = {
     "mujoco": "simulated tabletop scenes (extra sim)",
     "unified-planning": "solving scenes as planning problems (extra planning)",
     "rosbags": "clouds from rosbags (extra ros)",
+    "stable-baselines3": "priors in deep Q-learning (extra deep)",
+    "mabwiser": "a peer in benchmarks (extra peers)",
+    "botorch": "a peer in benchmarks (extra peers)",
 }
 SLOW = 5.0
 """Million steps a second below which kernels hardly run compiled."""

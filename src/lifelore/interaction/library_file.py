@@ -9,29 +9,19 @@ Reading gives back the same bits. A signal model that is the caller's own functi
 says so, and `load_library` takes the model again.
 """
 
-import io
-import json
-import zipfile
-import zlib
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.outcome_kinds import KINDS as OUTCOMES
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.signal_kinds import KINDS as SIGNALS
 
-FORMAT, VERSION = "lifelore policy library", 1
-LARGEST = 2**33
-"""Bytes that a file may unpack to: a stranger's file must not fill the memory."""
+FORMAT = PackedFormat("lifelore policy library", 1, "policy library", "save")
 DEEPEST = 8
 """Signals within signals that a file may hold."""
-
-Arrays = dict[str, NDArray[Any]]
 
 
 def save_library(library: PolicyLibrary, path: str | Path) -> None:
@@ -79,24 +69,19 @@ def library_bytes(library: PolicyLibrary) -> bytes:
     arrays: Arrays = {"prior": library.prior}
     arrays.update({f"performance.{name}": value for name, value in library.performance.to_arrays().items()})
     header = {
-        "format": FORMAT,
-        "version": VERSION,
         "types": library.types,
         "policies": library.policies,
         "performance": kind,
         "signal": _packed(library.signal, "signal", library, arrays),
     }
-    text = json.dumps(header, sort_keys=True).encode()
-    stream = io.BytesIO()
-    np.savez_compressed(stream, about=np.frombuffer(text, np.uint8), **arrays)  # pyright: ignore[reportArgumentType]
-    return stream.getvalue()
+    return FORMAT.pack(header, arrays)
 
 
 def library_from_bytes(
     content: bytes, where: str = "the library", signal: SignalModel | None = None
 ) -> PolicyLibrary:
     """The library of `library_bytes`; `where` is named when it cannot be read."""
-    header, arrays = _opened(content, where)
+    header, arrays = FORMAT.unpack(content, where)
     try:
         performance = OUTCOMES[header["performance"]].from_arrays(_under("performance", arrays))
         model: SignalModel = signal or _unpacked(header["signal"], "signal", performance, arrays, where)
@@ -106,7 +91,7 @@ def library_from_bytes(
     except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError) as error:
         if isinstance(error, InputError) and str(error).startswith(where):
             raise
-        raise _damaged(where, error) from None
+        raise FORMAT.damaged(where, error) from None
 
 
 def _packed(part: Any, name: str, library: PolicyLibrary, arrays: Arrays) -> dict[str, Any]:
@@ -148,28 +133,3 @@ def _unpacked(
 def _under(name: str, arrays: Arrays) -> Arrays:
     start = f"{name}."
     return {key.removeprefix(start): value for key, value in arrays.items() if key.startswith(start)}
-
-
-def _opened(content: bytes, where: str) -> tuple[dict[str, Any], Arrays]:
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as packed:
-            if (size := sum(entry.file_size for entry in packed.infolist())) > LARGEST:
-                raise ValueError(f"it unpacks to {size} bytes, more than {LARGEST}")
-        with np.load(io.BytesIO(content), allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in packed.files}
-        header = json.loads(arrays.pop("about").tobytes())
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ValueError("another kind of file")
-    except (
-        zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-        RuntimeError, MemoryError,
-    ) as error:  # fmt: skip
-        raise _damaged(where, error) from None
-    if header.get("version") != VERSION:
-        raise InputError(f"{where} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")
-    return header, arrays
-
-
-def _damaged(where: str, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:200]
-    return InputError(f"{where} is no policy library that can be read ({reason}); write it anew with save")

@@ -8,18 +8,14 @@ scores           (n_policies,) float64 of the last selection, where there was on
 log_likelihood   (n, n_types) float64 of the signals kept; evidence_policy and log_evidence (n,) beside it
 """
 
-import io
-import json
-import zipfile
-import zlib
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.evidence import Evidence
@@ -28,11 +24,7 @@ from lifelore.interaction.library_file import library_bytes, library_from_bytes
 from lifelore.interaction.selection import RULES, rule_named
 from lifelore.interaction.type_dynamics import TypeDynamics
 
-FORMAT, VERSION = "lifelore policy reuse session", 1
-LARGEST = 2**33
-"""Bytes that a file may unpack to: a stranger's file must not fill the memory."""
-
-Arrays = dict[str, NDArray[Any]]
+FORMAT = PackedFormat("lifelore policy reuse session", 1, "session", "save_session")
 
 
 def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
@@ -77,8 +69,6 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
     if RULES.get(getattr(agent.rule, "name", "")) is not type(agent.rule):
         raise InputError(f"rule must be one of {', '.join(RULES)} to be saved, got {type(agent.rule).__name__}")
     header = {
-        "format": FORMAT,
-        "version": VERSION,
         "rule": agent.rule.name,
         "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
         "dynamics": agent.dynamics.kind,
@@ -90,20 +80,14 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
         "selected": None if agent._selected is None else agent._selected[0],
         "generator": generator_state(agent.generator),
     }
-    try:
-        text = json.dumps(header, sort_keys=True, allow_nan=False).encode()
-    except (TypeError, ValueError) as error:
-        raise InputError(f"settings must be plain values to be saved: {error}") from None
-    stream = io.BytesIO()
-    np.savez_compressed(stream, about=np.frombuffer(text, np.uint8), **_arrays(agent))  # pyright: ignore
-    return stream.getvalue()
+    return FORMAT.pack(header, _arrays(agent))
 
 
 def session_from_bytes(
     content: bytes, where: str = "the session", signal: SignalModel | None = None
 ) -> BayesianPolicyReuse:
     """The agent of `session_bytes`; `where` is named when it cannot be read."""
-    header, arrays = _opened(content, where)
+    header, arrays = FORMAT.unpack(content, where)
     try:
         library = library_from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
@@ -114,7 +98,7 @@ def session_from_bytes(
     except InputError:
         raise
     except (LookupError, ValueError, TypeError, AttributeError) as error:
-        raise _damaged(where, error) from None
+        raise FORMAT.damaged(where, error) from None
     return agent
 
 
@@ -147,28 +131,3 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     agent._evidence.extend(Evidence(int(policy), said, float(evidence)) for policy, said, evidence in kept)
     if header["selected"] is not None:
         agent._selected = int(header["selected"]), arrays["scores"]
-
-
-def _opened(content: bytes, where: str) -> tuple[dict[str, Any], Arrays]:
-    try:
-        with zipfile.ZipFile(io.BytesIO(content)) as packed:
-            if (size := sum(entry.file_size for entry in packed.infolist())) > LARGEST:
-                raise ValueError(f"it unpacks to {size} bytes, more than {LARGEST}")
-        with np.load(io.BytesIO(content), allow_pickle=False) as packed:
-            arrays = {name: packed[name] for name in packed.files}
-        header = json.loads(arrays.pop("about").tobytes())
-        if not isinstance(header, dict) or header.get("format") != FORMAT:
-            raise ValueError("another kind of file")
-    except (
-        zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-        RuntimeError, MemoryError,
-    ) as error:  # fmt: skip
-        raise _damaged(where, error) from None
-    if header.get("version") != VERSION:
-        raise InputError(f"{where} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")
-    return header, arrays
-
-
-def _damaged(where: str, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:200]
-    return InputError(f"{where} is no session that can be read ({reason}); write it anew with save_session")

@@ -7,39 +7,30 @@ log_prior        (n_types,) of the same, what a user who is forgotten starts fro
 law              the dynamics' prior or matrix, where they have one
 """
 
-import json
-import zipfile
-import zlib
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.generator_state import generator_from_state, generator_state
 from lifelore.interaction.library_file import library_bytes, library_from_bytes
 from lifelore.interaction.type_dynamics import TypeDynamics
 from lifelore.interaction.user_beliefs import UserBeliefs
 
-FORMAT, VERSION = "lifelore user beliefs", 1
-
-Arrays = dict[str, NDArray[Any]]
+FORMAT = PackedFormat("lifelore user beliefs", 1, "file of user beliefs", "save_users", 2**40)
 
 
 def save_users(users: UserBeliefs, path: str | Path) -> None:
     """Write all beliefs, uncompressed; StoreError where the disk refuses."""
     header = {
-        "format": FORMAT,
-        "version": VERSION,
         "dtype": users.dtype,
         "dynamics": users.dynamics.kind,
         "rate": users.dynamics.rate,
         "generator": generator_state(users.generator),
     }
     arrays: Arrays = {
-        "about": np.frombuffer(json.dumps(header, sort_keys=True).encode(), np.uint8),
         "library": np.frombuffer(library_bytes(users.library), np.uint8),
         "log_belief": users.log_belief,
         "log_prior": users.log_prior,
@@ -49,7 +40,7 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
     try:
         # Opened here, for NumPy would add its own ending to the name.
         with Path(path).open("wb") as file:
-            np.savez(file, **arrays)  # pyright: ignore[reportArgumentType]
+            FORMAT.write(file, header, arrays, compress=False)
     except OSError as error:
         raise StoreError(f"the users cannot be written to {path}: {error.strerror}") from None
 
@@ -62,9 +53,10 @@ def load_users(path: str | Path, signal: SignalModel | None = None) -> UserBelie
     InputError
         There is no such file, or it is none of ours, newer, or damaged.
     """
-    header, arrays = _opened(path)
-    if header.get("version") != VERSION:
-        raise InputError(f"{path} has version {header.get('version')}, this Lifelore reads {VERSION}; update it")
+    if not Path(path).is_file():
+        raise InputError(f"the users {path} cannot be read: no such file")
+    with Path(path).open("rb") as file:
+        header, arrays = FORMAT.unpack(file, str(path))
     try:
         library = library_from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
@@ -79,7 +71,7 @@ def load_users(path: str | Path, signal: SignalModel | None = None) -> UserBelie
     except InputError:
         raise
     except (LookupError, ValueError, TypeError, AttributeError) as error:
-        raise _damaged(path, error) from None
+        raise FORMAT.damaged(str(path), error) from None
     return users
 
 
@@ -92,24 +84,3 @@ def _restore(users: UserBeliefs, arrays: Arrays) -> None:
         if not ((value <= 0).all() and (value.max(axis=-1) > -np.inf).all()):
             raise ValueError(f"{name} holds rows that are no beliefs")
     users.log_belief, users.log_prior = arrays["log_belief"], arrays["log_prior"]
-
-
-def _opened(path: str | Path) -> tuple[dict[str, Any], Arrays]:
-    if not Path(path).is_file():
-        raise InputError(f"the users {path} cannot be read: no such file")
-    try:
-        with Path(path).open("rb") as content, np.load(content, allow_pickle=False) as packed:
-            header = json.loads(packed["about"].tobytes())
-            if not isinstance(header, dict) or header.get("format") != FORMAT:
-                raise ValueError("another kind of file")
-            return header, {name: packed[name] for name in packed.files if name != "about"}
-    except (
-        zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
-        RuntimeError, MemoryError,
-    ) as error:  # fmt: skip
-        raise _damaged(path, error) from None
-
-
-def _damaged(path: str | Path, error: Exception) -> InputError:
-    reason = " ".join(str(error).split())[:200]
-    return InputError(f"{path} holds no user beliefs that can be read ({reason}); write it anew with save_users")

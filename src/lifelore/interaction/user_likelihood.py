@@ -39,9 +39,11 @@ def rows_of_normals(signal: Any) -> tuple[NDArray[np.float64], NDArray[np.float6
 
     These are the model's own arrays, so that what it learns in place is seen at once.
     """
-    if type(signal) is not ReturnSignal or type(signal.outcomes) is not GaussianOutcomes:
+    if not isinstance(signal, ReturnSignal) or type(signal).log_likelihood is not ReturnSignal.log_likelihood:
         return None
     outcomes = signal.outcomes
+    if type(outcomes) is not GaussianOutcomes:
+        return None
     return outcomes._centre, outcomes._precision, outcomes._log_height
 
 

@@ -59,6 +59,11 @@ class Reserve:
         """The signals' table, (n_policies, n_types, n_signals)."""
         return self.library.table(self.n_signals).probs
 
+    def learnt(self, n: int = 10) -> PolicyLibrary:
+        """A library fitted to `n` samples of every pair."""
+        noise = stream(0, "bench", "reuse", "samples").standard_normal((*self.mean.shape, n))
+        return PolicyLibrary.from_samples(self.mean[..., None] + NOISE * noise)
+
     def rules(self) -> dict[str, SelectionRule]:
         """The rules whose loops are measured beside them."""
         n = self.n_signals
@@ -102,15 +107,20 @@ class Reserve:
 
 
 class LargeReserve:
-    """As many targets as asked for, scattered as densely as the thesis's; each surveys 15 cells around it."""
+    """As many targets as asked for, scattered as densely as the thesis's; each surveys 15 cells around it.
 
-    def __init__(self, size: int, n_signals: int) -> None:
-        self.size, self.n_signals = size, n_signals
+    `learnt` gives every pair a deviation of its own, so that no two types are alike to any policy.
+    """
+
+    def __init__(self, size: int, n_signals: int, learnt: bool = False) -> None:
+        self.size, self.n_signals, self.learnt = size, n_signals, learnt
         random = stream(0, "bench", "reuse", "large", size)
         places = random.random((size, 2)) * 26 * np.sqrt(size / 68)
         apart = np.abs(places[:, None] - places).max(axis=-1)
         mean = 10 + np.where(apart <= 15, 200 - 30 * apart, 0.0)
-        outcomes = GaussianOutcomes(mean, NOISE)
+        # Deviations as of some two hundred samples each: no two pairs have the same.
+        deviation = NOISE * (1 + 0.05 * random.standard_normal(mean.shape).clip(-3, 3)) if learnt else NOISE
+        outcomes = GaussianOutcomes(mean, deviation)
         self.library = PolicyLibrary(outcomes, BinnedReturn(outcomes))
         self.library.table(n_signals)
         self.flat = self.library.prior
@@ -120,4 +130,4 @@ class LargeReserve:
     @property
     def label(self) -> str:
         """Types, policies and signals."""
-        return f"{self.size} x {self.size} x {self.n_signals}"
+        return f"{self.size} x {self.size} x {self.n_signals}" + (", learnt models" if self.learnt else "")

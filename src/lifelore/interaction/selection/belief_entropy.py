@@ -1,5 +1,4 @@
-"""Belief entropy: utility, and κ for every nat that the signal is expected to tell about the type. Thesis:
-§4.5.2.2.
+"""Belief entropy: utility, and κ for every nat that a signal is expected to tell. Thesis: §4.5.2.2.
 
 The thesis prints an expected posterior whose entries sum to more than 1 (each type is weighted by its own
 likelihood and not by the predictive one), and takes the entropy of that. `variant="thesis"` is as printed. The

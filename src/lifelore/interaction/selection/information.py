@@ -8,9 +8,10 @@ S logarithms. Thesis: §4.5.2.2, whose own expression is another (see the errata
 import numpy as np
 
 from lifelore.interaction.belief import Array, entropy
-from lifelore.interaction.selection.information_kernels import mixtures
+from lifelore.interaction.selection.information_kernels import class_mixtures, mixtures
 from lifelore.interaction.selection.rule import in_blocks
 from lifelore.interaction.selection.support import supported_types, truncated
+from lifelore.interaction.selection.type_classes import type_classes
 from lifelore.interaction.signal_table import SignalTable
 
 _TINY = np.float32(1e-37)
@@ -40,15 +41,18 @@ def expected_entropy(belief: Array, table: SignalTable, mass: float = 1.0) -> Ar
 
 def _of_one(belief: Array, table: SignalTable, mass: float) -> Array:
     kept, share = supported_types(belief, mass)
-    law = table.probs
-    if 2 * len(kept) > len(belief):
+    law, classes = table.probs, type_classes(table)
+    if 2 * len(kept) > len(belief) and not classes.few:
         # Reading all rows in order is as fast as picking most of them.
         whole = np.zeros(len(belief))
         whole[kept] = share
         mixed = np.matmul(whole.astype(law.dtype, copy=False), law)
         return _difference(mixed, table.conditional_entropy @ whole)
-    mixed = np.empty((table.n_policies, table.n_signals), law.dtype)
-    mixtures(share.astype(law.dtype, copy=False), kept, law, mixed)
+    mixed, weights = np.empty((table.n_policies, table.n_signals), law.dtype), share.astype(law.dtype, copy=False)
+    if classes.few:
+        class_mixtures(weights, kept, classes.of_type, law, mixed)
+    else:
+        mixtures(weights, kept, law, mixed)
     return _difference(mixed, table.conditional_entropy[:, kept] @ share)
 
 

@@ -20,6 +20,7 @@ from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.selection.information_kernels import best_after_signals
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
 from lifelore.interaction.selection.support import MASS, check_mass, supported_types
+from lifelore.interaction.selection.type_classes import type_classes
 from lifelore.interaction.signal_table import SignalTable
 
 Candidates = Literal["responses", "all"]
@@ -97,10 +98,14 @@ def knowledge_gain(
         means = mean[kept] if len(kept) < len(belief) else mean
         if candidates == "responses":
             means = means[:, responses(means, share)]
-        worth = np.ascontiguousarray((means * share[:, None]).T)
+        worth = np.ascontiguousarray(means * share[:, None])
         best = np.empty(table.n_policies)
-        best_after_signals(worth.astype(table.probs.dtype, copy=False), kept, table.probs, best)
-        return best - worth.sum(axis=1).max()
+        best_after_signals(
+            worth.astype(table.probs.dtype, copy=False), kept, classes.of_type, classes.number, table.probs, best
+        )
+        return best - worth.sum(axis=0).max()
+
+    classes = type_classes(table)
 
     rows = np.asarray(belief, np.float64)
     if rows.ndim == 1:

@@ -1,0 +1,106 @@
+"""Arrays with a JSON header as one npz archive: no pickle, no surprise; equal content gives equal bytes.
+
+The header lies in the archive as ``about``, UTF-8 JSON in an array of uint8, and names its format and version.
+What is read may be a stranger's: archives that unpack to too much, of another kind, newer or damaged are refused
+in one line.
+"""
+
+import io
+import json
+import zipfile
+import zlib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, BinaryIO
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+
+Arrays = dict[str, NDArray[Any]]
+UNREADABLE = (
+    zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
+    RuntimeError, MemoryError,
+)  # fmt: skip
+"""What the readers of damaged archives raise."""
+
+
+@dataclass(frozen=True)
+class PackedFormat:
+    """A kind of archive.
+
+    Parameters
+    ----------
+    name : str
+        What the header says it is.
+    version : int
+    what, writer : str
+        For people: "action prior", and the function that writes one.
+    largest : int
+        Bytes that it may unpack to: a stranger's file must not fill the memory.
+    """
+
+    name: str
+    version: int
+    what: str
+    writer: str
+    largest: int = 2**33
+
+    def pack(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
+        """The archive's bytes, compressed; see `write`."""
+        stream = io.BytesIO()
+        self.write(stream, header, arrays)
+        return stream.getvalue()
+
+    def write(
+        self, file: BinaryIO, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]], compress: bool = True
+    ) -> None:
+        """Write the archive into an open file.
+
+        Raises
+        ------
+        InputError
+            The header holds something that is not JSON; nothing is written.
+        """
+        try:
+            told = {"format": self.name, "version": self.version, **header}
+            text = json.dumps(told, sort_keys=True, allow_nan=False).encode()
+        except (TypeError, ValueError) as error:
+            raise InputError(f"{self.what}: what is saved beside arrays must be JSON values: {error}") from None
+        save = np.savez_compressed if compress else np.savez
+        save(file, about=np.frombuffer(text, np.uint8), **arrays)  # pyright: ignore[reportArgumentType]
+
+    def unpack(self, content: bytes | BinaryIO, where: str) -> tuple[dict[str, Any], Arrays]:
+        """Header and arrays; `where` is named when they cannot be read.
+
+        Raises
+        ------
+        InputError
+            The archive is none of this format, of another version, too large, or damaged.
+        """
+        source = io.BytesIO(content) if isinstance(content, bytes) else content
+        try:
+            with zipfile.ZipFile(source) as packed:
+                if (size := sum(entry.file_size for entry in packed.infolist())) > self.largest:
+                    raise ValueError(f"it unpacks to {size} bytes, more than {self.largest}")
+            source.seek(0)
+            with np.load(source, allow_pickle=False) as packed:
+                arrays = {name: packed[name] for name in packed.files}
+            header = json.loads(arrays.pop("about").tobytes())
+            if not isinstance(header, dict) or header.get("format") != self.name:
+                raise ValueError("another kind of file")
+        except UNREADABLE as error:
+            raise self.damaged(where, error) from None
+        if header.get("version") != self.version:
+            raise InputError(
+                f"{where} has version {header.get('version')}, this Lifelore reads {self.version}; update it"
+            )
+        return header, arrays
+
+    def damaged(self, where: str, error: Exception) -> InputError:
+        """What to say of an archive that cannot be read."""
+        reason = " ".join(str(error).split())[:200]
+        return InputError(
+            f"{where} is no {self.what} that can be read ({reason}); write it anew with {self.writer}"
+        )
