@@ -1,5 +1,6 @@
-"""The page on deep reinforcement learning: its Python runs as it stands, only shorter."""
+"""The page on deep learning with a prior: its Python runs, only shorter, and its numbers are the benchmark's."""
 
+import json
 import re
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import pytest
 
 from lifelore.action.action_prior import ActionPrior
 from lifelore.action.prior_file import save_prior
+from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "deep_rl.md").read_text(encoding="utf-8")
@@ -56,3 +58,38 @@ def test_masks(tmp_path):
 @pytest.mark.parametrize("code", [EXPLORES, COUNTS, MASKS])
 def test_what_a_user_writes_is_short(code):
     assert len([line for line in code.splitlines() if line.strip()]) <= 15
+
+
+def test_numbers_are_those_of_the_benchmark():
+    result = json.loads((ROOT / "results" / "bench_deep.json").read_text(encoding="utf-8"))
+    lines = {line.split("|")[1].strip(): line for line in PAGE.splitlines() if line.startswith("| ")}
+    worlds = [name.strip(" `") for name in lines[""].split("|")[2:-1]]
+    assert worlds == list(result["exploring"])
+
+    def told(start):
+        (line,) = [line for name, line in lines.items() if name.startswith(start)]
+        return [cell.strip() for cell in line.split("|")[2:-1]]
+
+    for start, who in (("episodes", SEVEN), ("three", UNIFORM), ("prior", GUIDED)):
+        shares = [result["exploring"][world][who]["value"] for world in worlds]
+        assert told(start) == [f"{100 * share:.1f} %" for share in shares]
+    learning = [result["learning"][world] for world in worlds[:2]]
+    for start, who in (("goals", "DQN"), ("with prior", "DQN with prior")):
+        assert told(start) == [*(f"{np.mean(one['goals'][who]):.0f}" for one in learning), ""]
+    ratios = [
+        (one["gain"]["threshold_ratio"]["value"], *one["gain"]["threshold_ratio"]["ci95"]) for one in learning
+    ]
+    assert told("steps until") == [*("{:.2f} ({:.2f}–{:.2f})".format(*ratio) for ratio in ratios), ""]
+    assert told("runs of 12") == [
+        *(f"{one['gain']['baseline_never']}, {one['gain']['never']}" for one in learning),
+        "",
+    ]
+    assert {len(one["goals"]["DQN"]) for one in learning} == {12}
+    speeds = [100 * (goal["measured"] - 1) for goal in result["goals"] if goal["name"].startswith("a step of")]
+    assert [float(x) for x in re.findall(r"([\d.]+) %", PAGE.split("A step of DQN")[1])][:3] == [
+        round(speed, 1) for speed in speeds
+    ]
+
+
+def test_its_picture_is_small_enough():
+    assert (ROOT / "results" / "bench_deep.png").stat().st_size <= 300_000

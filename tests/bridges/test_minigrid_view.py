@@ -4,7 +4,7 @@ import gymnasium
 import numpy as np
 import pytest
 from gymnasium.spaces import Discrete
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from lifelore.bridges.minigrid_view import (
@@ -44,7 +44,9 @@ def poses_by_search(env):
         return (int(inner.agent_pos[0]), int(inner.agent_pos[1]), int(inner.agent_dir))
 
     start = (int(inner.agent_pos[0]), int(inner.agent_pos[1]), int(inner.agent_dir))
-    following, open_poses = {}, [start]
+    # Not from the start alone: a cell can lie behind the goal.
+    free = np.argwhere(inner.grid.encode()[..., 0] == 1).tolist()
+    following, open_poses = {}, [(x, y, d) for x, y in free for d in range(4)]
     while open_poses:
         pose = open_poses.pop()
         if pose in following or pose[:2] == goal:
@@ -109,13 +111,14 @@ def test_an_empty_room_solved_by_hand():
 
 @settings(deadline=None, max_examples=4)
 @given(st.integers(0, 10_000))
+@example(75)
 def test_poses_are_solved_as_by_walking(seed):
     env = SymbolicView(gymnasium.make(CROSSING))
     env.reset(seed=seed)
     layout = solved_layout(env)
     inner = env.unwrapped
     start, following, steps = poses_by_search(env)
-    poses = sorted(following)
+    poses = sorted(pose for pose in following if pose in steps)
     assert layout.steps.tolist() == [steps[pose] for pose in poses]
     best = [[steps[after] + 1 == steps[pose] for after in following[pose]] for pose in poses]
     assert layout.best.tolist() == best

@@ -26,8 +26,8 @@ _ONE_HOT = np.eye(4, dtype=np.float32)
 _BESIDE = np.ravel_multi_index(([2, 3, 4], [6, 5, 6]), (SIDE, SIDE))
 """Left of, before and right of the robot, which stands at (3, 6) of its view and looks to (3, 5)."""
 _WORTH = np.array([1, 2, 4])
-_OPEN = np.concatenate((4 * _BESIDE + FREE, 4 * _BESIDE + GOAL))
-_OPEN_WORTH = np.concatenate((_WORTH, _WORTH)).astype(np.float32)
+_WAYS = np.zeros(SIDE * SIDE * 4 + 4, np.float32)
+_WAYS[4 * _BESIDE + FREE] = _WAYS[4 * _BESIDE + GOAL] = _WORTH
 _DIRECTIONS = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
 
@@ -51,7 +51,7 @@ class SymbolicView(gymnasium.ObservationWrapper):
 
 def open_ways(observations: NDArray[np.float32]) -> NDArray[np.int64]:
     """Which of left, front and right are free or the goal, (n,) codes 0 to 7 of `SymbolicView`'s (n, 200)."""
-    return (observations[:, _OPEN] @ _OPEN_WORTH).astype(np.int64)
+    return observations.dot(_WAYS).astype(np.int64)
 
 
 class Layout(NamedTuple):

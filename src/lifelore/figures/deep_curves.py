@@ -35,6 +35,7 @@ def draw_deep_curves(exploring: Mapping, learning: Mapping, names: Mapping[str, 
                     axes, curve["steps"], curve["mean"], tuple(np.transpose(curve["ci95"])), names[who], who
                 )
             axes.set(title=f"Learning one {world}", xlabel="steps", ylim=(-0.02, 1.02))
+            axes.locator_params(axis="x", nbins=4)
         panels[1].set_ylabel("greedy walk, 1 is the shortest way")
         panels[1].legend(loc="lower right")
         runs = len(next(iter(next(iter(learning.values()))["goals"].values())))

@@ -20,13 +20,13 @@ from lifelore.core.learning_metrics import LearningGain, learning_gain
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench import deep_learning, deep_speed, deep_worlds
-from lifelore.experiments.bench.deep_worlds import GUIDED, UNIFORM, crossing_prior, excluded_best, exploring
+from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM, crossing_prior, excluded_best, exploring
 from lifelore.experiments.bench.rounds import at_least, at_most, paired_ratio, row
 from lifelore.experiments.cell_store import CellStore
 from lifelore.experiments.source_key import source_key
 
 EXPLORED = ("SimpleCrossingS9N1", "SimpleCrossingS11N5", "FourRooms")
-LEARNT = ("SimpleCrossingS9N1",)
+LEARNT = ("SimpleCrossingS9N1", "SimpleCrossingS11N5")
 EPISODES = 200
 MOST_OVERHEAD, LEAST_RUNS = 1.05, 10
 THRESHOLD = 0.8
@@ -95,7 +95,7 @@ def _explored(name: str, prior: ActionPrior, after: Callable[[str], None], out: 
     store = _store(out, deep_worlds.__name__)
     steps = _kept(store, {"world": name, "episodes": EPISODES}, lambda: exploring(name, prior, EPISODES))
     after(f"exploring {name}")
-    return {who: mean_estimate(np.asarray(each) > 0).to_dict() for who, each in steps.items()}
+    return {who: mean_estimate(np.asarray(steps[who]) > 0).to_dict() for who in (SEVEN, UNIFORM, GUIDED)}
 
 
 def _exploring_rows(explored: Mapping[str, Mapping[str, Mapping]], prior: ActionPrior) -> list[dict]:
