@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from lifelore.core.q_learner import QLearning as QLearning
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.worlds import make_world as make_world
+    from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
+    from lifelore.interaction.beat import Beat as Beat
+    from lifelore.interaction.policy_library import PolicyLibrary as PolicyLibrary
+    from lifelore.interaction.user_beliefs import UserBeliefs as UserBeliefs
     from lifelore.memory import Memory as Memory
     from lifelore.memory import open_memory as open_memory
     from lifelore.perception.cloud_file import read_cloud as read_cloud
@@ -41,6 +45,8 @@ __version__ = "0.1.0"
 
 _HOME = {
     "ActionPrior": "lifelore.action.action_prior",
+    "BayesianPolicyReuse": "lifelore.interaction.bayesian_policy_reuse",
+    "Beat": "lifelore.interaction.beat",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
@@ -50,6 +56,7 @@ _HOME = {
     "PairLabel": "lifelore.core.relations",
     "PerceiveSettings": "lifelore.agent.perceive",
     "Policy": "lifelore.core.protocols",
+    "PolicyLibrary": "lifelore.interaction.policy_library",
     "QLearning": "lifelore.core.q_learner",
     "Record": "lifelore.core.protocols",
     "RelationClassifier": "lifelore.perception.relation_classifier",
@@ -57,6 +64,7 @@ _HOME = {
     "SignalModel": "lifelore.core.protocols",
     "Tables": "lifelore.core.mdp",
     "Task": "lifelore.core.mdp",
+    "UserBeliefs": "lifelore.interaction.user_beliefs",
     "World": "lifelore.core.protocols",
     "live": "lifelore.agent.life",
     "live_in": "lifelore.agent.foreign_life",

@@ -306,7 +306,7 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
 
 def test_studies_that_are_not_there_newer_or_damaged(memory):
     study_of("one").keep(memory)
-    with pytest.raises(NotFoundError, match=r"no study 'two' in .*; known: one\. Begin with"):
+    with pytest.raises(NotFoundError, match=r"no study 'two' in .*; known: one\. Begin with .* --name"):
         open_study(memory, "two")
     memory.contribute("x", [Record("reuse_study", "two", 2, "newest", [0], [0], {})], process="p", seq=0, task={})
     with pytest.raises(StoreError, match="study 'two' was kept by a newer Lifelore"):

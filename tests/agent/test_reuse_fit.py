@@ -147,7 +147,7 @@ def test_nothing_in_use_is_refused_and_memory_stays(fitted, memory):
     [
         ({"model": "magic"}, "model must be one of auto, gaussian, student-t, categorical, got 'magic'"),
         ({"types": 0}, "types must be at least 1, got 0"),
-        ({"types": 3}, "n_types must lie between 1 and the 2 users, got 3"),
+        ({"types": 3}, "types must be at most 2, the users of the log, got 3"),
         ({"name": "a/b"}, "name must be at most 60 characters"),
         ({"incumbent": "none"}, "incumbent must be a policy in use, got 'none'; there are x"),
         ({"rule": "none"}, "rule must be one of"),

@@ -44,6 +44,30 @@ def test_a_byte_order_mark_is_no_letter(written):
 
 
 @pytest.mark.parametrize(
+    "text",
+    [
+        ' User ,"POLICY",Outcome,Type\na,p,1,k\n',
+        "user;policy;outcome;type\r\na;p;1;k\r\n",
+        '"user"\t"policy"\t"outcome"\t"type"\na\tp\t1\tk\n',
+    ],
+)
+def test_capitals_and_separators_as_other_programs_write_them(text, written):
+    log = read_log([written(text)])
+    assert (log.users, log.policies, log.outcomes.tolist(), log.types) == (["a"], ["p"], [1.0], ["k"])
+
+
+def test_a_separator_of_another_log_is_a_letter(written):
+    log = read_log([written("user,policy,outcome\na;b,p,1\n"), written("user;policy;outcome\na,b;q;2\n", "b.csv")])
+    assert log.users == ["a;b", "a,b"]
+
+
+def test_a_log_given_twice_is_refused(written, tmp_path):
+    path = written(HEAD + "a,p,1\n")
+    with pytest.raises(InputError, match="is given twice; its lines would count twice"):
+        read_log([path, tmp_path / "." / "log.csv"])
+
+
+@pytest.mark.parametrize(
     ("text", "said"),
     [
         ("", "must begin with a header that names user, policy, outcome, it is empty"),
@@ -51,7 +75,10 @@ def test_a_byte_order_mark_is_no_letter(written):
         (HEAD, "must hold at least one line with an outcome, got none"),
         (HEAD + "a,p,\n", "must hold at least one line with an outcome"),
         ("user,outcome\na,1\n", "it has no policy, its header is 'user,outcome'"),
-        ("user;policy;outcome\na;p;1\n", "separated by commas; it has no user and no policy and no outcome"),
+        ("user:policy:outcome\na:p:1\n", "separated by commas; it has no user and no policy and no outcome"),
+        ("user;policy;outcome\na;p;1,5\n", "got '1,5'; write decimals with a point"),
+        ("user;policy;outcome\na,p,1\n", "line 2: must have 3 fields like the header, got 1"),
+        ("User,policy,outcome,USER\na,p,1,b\n", "must have one column 'user', its header names 2"),
         ("user,user,policy,outcome\na,b,p,1\n", "must have one column 'user', its header names 2"),
         (HEAD + "a,p,1\nb,q,nan\n", "line 3: outcome must be a finite number, got 'nan'"),
         (HEAD + "a,p,inf\n", "line 2: outcome must be a finite number, got 'inf'"),
@@ -73,6 +100,8 @@ def test_bad_logs(text, said, written):
 def test_no_file_and_no_text(tmp_path, written):
     with pytest.raises(NotFoundError, match="does not exist; give a CSV file"):
         read_log([tmp_path / "none.csv"])
+    with pytest.raises(NotFoundError, match="is no file; give a CSV file"):
+        read_log([tmp_path])
     with pytest.raises(InputError, match="must be CSV in UTF-8"):
         read_log([written(HEAD + "Zoë,p,1\n", encoding="latin-1")])
 

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 from scipy import stats
 
+from lifelore.agent import reuse_report
 from lifelore.agent.reuse import choose, update
 from lifelore.agent.reuse_report import COLUMNS, report
 from lifelore.agent.reuse_study import Study
 from lifelore.core.errors import StoreError
+from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
 
@@ -62,6 +64,20 @@ def test_numbers_by_hand(memory, study):
     assert document["policies"][0]["outcome"]["value"] == pytest.approx(expected)
 
 
+def test_the_interval_of_many_users_is_the_normal_one(memory, study, monkeypatch):
+    said = lived(memory, study, 20)
+    resampled = report(memory, study)["personal"]
+    monkeypatch.setattr(reuse_report, "MANY", 4)
+    document = report(memory, study)
+    means = [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if not held]
+    half = 1.96 * stats.sem(means)
+    assert document["personal"] == {
+        "value": pytest.approx(np.mean(means)), "median": pytest.approx(np.median(means)),
+        "ci95": pytest.approx([np.mean(means) - half, np.mean(means) + half]), "n": len(means),
+    }  # fmt: skip
+    assert set(document["personal"]) == set(resampled)
+
+
 def test_regret_is_what_the_last_belief_says(memory, study):
     """One user, surely of the first type in the end: x brings 8, y 2."""
     user = next(f"u{i}" for i in range(99) if study.holds_out(f"u{i}"))
@@ -86,6 +102,24 @@ def test_the_folder_and_the_log(memory, study, tmp_path):
     fields = dict(zip(COLUMNS, lines[2].split(","), strict=True))
     assert (fields["user"], fields["outcome"], fields["number"], fields["outcome_time"]) == ("u0", "", "2", "")
     assert fields["probability"] == ("0.5" if fields["group"] == "control" else "1.0")
+
+
+def test_a_decision_is_a_whole_number_on_the_axis(memory, study):
+    lived(memory, study)
+    ticks = draw_reuse_report(report(memory, study)).axes[0].get_xticks()
+    assert ticks.tolist() == [round(tick) for tick in ticks]
+
+
+def test_names_are_drawn_as_they_are(memory, tmp_path):
+    """Neither a formula, which may be a wrong one, nor a warning about letters that the font has not."""
+    names = ["$\\nothing$", "用户"]
+    library = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=names)
+    odd = Study("a $\\study$", library, dict.fromkeys(names, "active"), control=0.5)
+    lived(memory, odd)
+    document = report(memory, odd, tmp_path)
+    assert (tmp_path / "report.png").exists()
+    labels = [label.get_text() for label in draw_reuse_report(document).axes[1].get_yticklabels()]
+    assert set(names) < set(labels)
 
 
 def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):

@@ -54,7 +54,9 @@ def test_from_a_log_to_a_report(reuse, log, tmp_path):
         document["personal"]["value"] - document["control"]["value"]
     )
     assert (tmp_path / "out" / "report.png").exists()
-    assert "uplift: " in reuse("report").out
+    words = reuse("report", "--out", tmp_path / "out", "--log", tmp_path / "d.csv").out
+    assert "uplift: " in words
+    assert f"report.json and report.png written to {tmp_path / 'out'}\n" in words
     assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 424 outcomes of 52 users")
 
 
@@ -74,6 +76,25 @@ def test_in_words(reuse, log):
     assert "given to the held-out users" in reuse("add", "round").out
     assert reuse("forget", "ann").out == "2 contributions of ann forgotten\n"
     assert "no outcome yet" in reuse("report").out
+
+
+def test_a_new_fit_says_what_it_sets_anew(reuse, log):
+    assert reuse("fit", log, "--control", "0.4", "--json").document["changed"] == {}
+    again = reuse("fit", log, "--incumbent", "big", "--json").document
+    assert again["changed"] == {"control": 0.4, "incumbent": None}
+    words = reuse("fit", log, "--rule", "greedy").out
+    assert "  incumbent is None, was big until now (--incumbent big keeps it)\n" in words
+    assert "  rule is greedy, was information-directed until now (--rule information-directed keeps it)\n" in words
+    assert "control" not in words
+
+
+def test_a_context_that_no_log_has_is_said(reuse, tmp_path):
+    rows = [f"u{user},{policy},{user},{('web', 'app')[user % 2]}" for user in range(6) for policy in "xy"]
+    (tmp_path / "log.csv").write_text("\n".join(["user,policy,outcome,context", *rows]) + "\n")
+    reuse("fit", tmp_path / "log.csv")
+    assert "context wbe is not in the logs" in reuse("choose", "--user", "ann", "--context", "wbe").out
+    assert "context" not in reuse("choose", "--user", "bo", "--context", "web").out
+    assert reuse("choose", "--user", "ann", "--context", "app", "--json").document["context"] == "app"
 
 
 def test_a_belief_outlives_its_process(reuse, log, start, answer, tmp_path):
@@ -122,7 +143,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["fit", "{log}", "--incumbent", "none"], "incumbent must be a policy in use, got 'none'"),
         (["fit", "{log}", "--control", "1"], "control must lie between 0 and 1"),
         (["fit", "{log}", "--rule", "none"], "rule must be one of"),
-        (["fit", "{log}", "--types", "41"], "n_types must lie between 1 and the 40 users"),
+        (["fit", "{log}", "--types", "41"], "types must be at most 40, the users of the log, got 41"),
         (["fit"], "Missing argument"),
         (["choose"], "Missing option '--user'"),
         (["choose", "--user", ""], "user must be 1 to 200 printable characters"),

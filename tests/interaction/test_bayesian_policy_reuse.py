@@ -220,6 +220,7 @@ def test_an_own_likelihood_serves_as_a_signal():
         ({"prior": [0.5, 0.6]}, "prior must sum to 1"),
         ({"prior": [1.0]}, r"prior must be \(2,\)"),
         ({"horizon": 0}, "horizon must be at least 1"),
+        ({"horizon": math.nan}, "horizon must be at least 1"),
         ({"dynamics": TypeDynamics.hazard(0.1, [0.2, 0.3, 0.5])}, "dynamics are for 3 types"),
     ],
 )
@@ -254,3 +255,17 @@ def test_hundreds_of_hostile_signals_leave_a_belief(seed, name):
         assert not np.isnan(belief).any()
         assert belief.sum() == pytest.approx(1)
     assert math.isfinite(agent.surprise)
+
+
+def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
+    answer = np.empty(2)
+
+    class Same:
+        def log_likelihood(self, policy, signal):
+            answer[:] = [0.0, -signal]
+            return answer
+
+    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0], [2.0]], 1.0, signal=Same()))
+    agent.update(0, 1.0)
+    agent.update(0, 3.0)
+    assert agent.explain().evidence["type 1"] == [-1.0, -3.0]

@@ -159,6 +159,33 @@ def test_bad_input():
     with pytest.raises(NotFoundError):
         beat.update("none such", [(0, 0, 1)])
     assert beat.step == 0
+    for told in (np.full((1, N_SETS, 2), 0.5), np.full((N_TYPES, 1, 2), 0.5)):
+        with pytest.raises(InputError, match="actions has n_"):
+            Beat(lib, actions=CategorySignal(told))
+
+
+def test_a_refused_move_changes_nothing():
+    lib, _, _ = library()
+    told = np.full((N_TYPES, N_SETS, 2), 0.5)
+    told[:, 0] = [[0.9, 0.1], [0.2, 0.8], [0.5, 0.5], [0.5, 0.5]]
+    spared, refused = (Beat(lib, actions=CategorySignal(told), lag=1) for _ in range(2))
+    for beat in (spared, refused):
+        beat.update(0, [(0, 0, 1)], 0)
+    for bad in ((1, [(0, 0, 99)], 0), (1, [(0, 0, 1)], 7)):
+        with pytest.raises(InputError):
+            refused.update(*bad)
+    # The first move under set 1 is the one that counts as adaptation, not those refused.
+    for beat in (spared, refused):
+        beat.update(1, [(0, 0, 1)], 0)
+    assert np.array_equal(refused.log_belief, spared.log_belief)
+    assert refused.step == 2
+
+
+def test_a_model_that_answers_for_many_at_once_is_named():
+    lib, _, _ = library()
+    lib.signal = type("Twice", (), {"log_likelihood": lambda self, policy, signal: np.zeros((2, N_TYPES))})()
+    with pytest.raises(InputError, match="signal model Twice must give"):
+        Beat(lib).update(0, [(0, 0, 1)])
 
 
 def tables(probs):
@@ -201,3 +228,24 @@ def test_tables_must_fit():
     _, probs, value = library()
     with pytest.raises(InputError, match="log_table must be"):
         BeatUsers(value, tables(probs)[:2], 1)
+    for change, rule in (
+        ({"prior": [1.0]}, "prior must be"),
+        ({"prior": np.full((2, N_TYPES), 0.25)}, "prior must be"),
+        ({"log_table": np.full((N_SETS, 2, N_TYPES), np.nan)}, "log_table must be below infinity"),
+        ({"value": value[0]}, "value must be"),
+        ({"value": value * np.nan}, "value must be"),
+    ):
+        with pytest.raises(InputError, match=rule):
+            BeatUsers(**({"value": value, "log_table": tables(probs), "n_users": 3} | change))
+
+
+def test_many_users_refuse_what_they_would_get_wrong():
+    _, probs, value = library()
+    users = BeatUsers(value, tables(probs), 3)
+    before, zeros = users.log_belief.copy(), np.zeros(2, int)
+    with pytest.raises(InputError, match="users must be distinct"):
+        users.update(np.array([1, 1]), zeros, zeros)
+    for bad in (np.nan, np.inf):
+        with pytest.raises(InputError, match="extra must be"):
+            users.update(np.array([0, 1]), zeros, zeros, np.array([[0.0] * 4, [bad] * 4]))
+    assert np.array_equal(users.log_belief, before)

@@ -131,6 +131,7 @@ def test_a_million_hostile_updates_leave_beliefs():
             revived += (beliefs == -INF).sum()
             beliefs = changing.step(beliefs)
             assert np.isfinite(beliefs).all()
+            assert (beliefs <= 0).all()
     assert kept > 1000
     assert revived > 1000
 

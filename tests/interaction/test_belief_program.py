@@ -99,3 +99,7 @@ def test_horizons_below_one_and_trees_too_large_are_refused():
         best_plan(library, 0)
     with pytest.raises(InputError, match="too large"):
         best_plan(library, 12)
+    for belief in ([2.0, -1.0], [1.0], [np.nan, 1.0], [0.5, 0.6]):
+        for plan in (best_plan, lambda *given, **k: value_of_rule(given[0], Greedy(), given[1], **k)):
+            with pytest.raises(InputError, match="prior must be"):
+                plan(library, 2, belief=np.array(belief))

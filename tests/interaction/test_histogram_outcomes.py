@@ -87,3 +87,9 @@ def test_other_bad_input_is_refused():
     np.testing.assert_allclose(learning.probs, [[[0.6, 0.4]]])
     with pytest.raises(InputError, match="outside the model's edges"):
         learning.observe(0, 0, 3.5)
+
+
+def test_a_number_of_bins_may_be_numpys():
+    samples = [[[0.0, 1.0]]]
+    one, other = (HistogramOutcomes.from_samples(samples, edges=n) for n in (5, np.int64(5)))
+    assert np.array_equal(one.edges, other.edges)

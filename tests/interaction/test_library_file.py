@@ -75,6 +75,13 @@ def test_every_signal_model_comes_back(kind):
     same(library, again, signal)
 
 
+def test_rows_that_sum_to_a_rounding_above_one_come_back():
+    steps = TransitionSignal([[[[1.0 + 5e-7, 0.0]], [[0.0, 1.0]]]] * 2)
+    library = PolicyLibrary.from_samples(SAMPLES, signal=steps)
+    again = library_from_bytes(library_bytes(library)).signal
+    assert np.array_equal(again.log_likelihood(0, [(0, 0)]), steps.log_likelihood(0, [(0, 0)]))
+
+
 def test_an_own_signal_model_is_given_again(tmp_path):
     own = LikelihoodSignal(lambda policy, signal: [signal, 0.0], 2)
     path = tmp_path / "library.npz"

@@ -34,3 +34,5 @@ def test_bad_input_is_refused():
         library_regret([[1.0, 2.0]], [0, 1, 1])
     with pytest.raises(InputError, match="at least one trial"):
         average_library_regret([1.0, 2.0], [])
+    with pytest.raises(InputError, match="utilities must be"):
+        average_library_regret(3.0, 0)

@@ -68,6 +68,14 @@ def test_settings_zeros_and_other_generators_survive(tmp_path):
         assert loaded.generator.random(5).tolist() == agent.generator.random(5).tolist()
 
 
+def test_a_type_certain_after_a_change_comes_back(tmp_path):
+    one = PolicyLibrary.from_means([[1.0, 2.0]], 1.0)
+    for rate in np.linspace(0.001, 0.02, 20):
+        agent = BayesianPolicyReuse(one, dynamics=TypeDynamics.hazard(rate, [1.0]))
+        agent.update(0, 1.0)
+        assert session_from_bytes(session_bytes(agent)).log_belief.tobytes() == agent.log_belief.tobytes()
+
+
 def test_an_own_signal_model_is_given_again(tmp_path):
     signal = LikelihoodSignal(lambda policy, x: [0.0, -abs(x), -1.0, -2.0, -3.0, -4.0], 6)
     agent = BayesianPolicyReuse(library(signal=signal), Greedy())

@@ -30,7 +30,7 @@ def test_rewards_may_be_gaussian():
 
 def test_bad_input_is_refused():
     signal = RewardSignal.from_sequences(EPISODES, 2, 1)
-    for bad in ([np.nan], [np.inf], [[1.0]], "ab", 3.0):
+    for bad in ([np.nan], [np.inf], [1e200], [[1.0]], "ab", 3.0):
         with pytest.raises(InputError, match="signal of rewards must be"):
             signal.log_likelihood(0, bad)
     with pytest.raises(NotFoundError, match="unknown policy"):

@@ -87,6 +87,15 @@ def test_counts_of_returns_by_hand():
     assert n_returns(2, 3, discounted=True) == 8
     assert n_returns(1, 100, discounted=False) == 1
     assert n_returns(10, 10_000, discounted=True) == np.inf
+    assert n_returns(1000, 1000, discounted=False) == np.inf
+    with pytest.raises(InputError, match="n_rewards must be a whole number"):
+        n_returns(0, 3, discounted=False)
+
+
+def test_numpys_whole_numbers_are_as_good_and_never_wrap_around():
+    sizes_ = [10**6, 10**6, 10**6, 10**6, 10**6]
+    assert storage_cost(StorageSizes(*map(np.int64, sizes_))) == storage_cost(StorageSizes(*sizes_))
+    assert storage_cost(StorageSizes(*map(np.int64, sizes_))).reward == 64 * 10**30
 
 
 @pytest.mark.parametrize("bad", [{"n_states": 0}, {"n_rewards": 2.5}, {"discount": 1.5}, {"bits": -1}])

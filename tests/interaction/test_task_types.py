@@ -158,6 +158,38 @@ def test_samples_of_a_types_tasks_are_pooled():
         pooled_samples(samples[:2], every_task([[1.0]] * 3))
 
 
+def test_a_task_counts_in_every_type_it_could_belong_to_where_types_overlap():
+    types = epsilon_types([[0.0], [1.0], [2.0]], 1.0)
+    assert types.n_types == 2
+    assert types.membership.sum(axis=0).tolist() == [1, 2, 1]
+    samples = np.array([[[0.0]], [[1.0]], [[2.0]]])
+    apart, shared = pooled_samples(samples, types), pooled_samples(samples, types, overlapping=True)
+    assert sorted(np.isnan(apart).sum(axis=(1, 2))) == [0, 1]
+    assert sorted(np.nanmean(shared, axis=(1, 2))) == [0.5, 1.5]
+    assert PolicyLibrary.from_samples(shared).n_types == 2
+
+
+@settings(deadline=None, max_examples=100)
+@given(TABLES, EPSILONS, FORMS)
+def test_the_bound_holds_for_every_type_a_task_could_belong_to(utilities, epsilon, form):
+    types = epsilon_types(utilities, epsilon, form)
+    for landmark, members in zip(types.landmarks, types.membership, strict=True):
+        best = np.flatnonzero(utilities[landmark] == utilities[landmark].max())
+        for task in np.flatnonzero(members):
+            regret = utilities[task].max() - min(utilities[task, policy] for policy in best)
+            assert regret <= landmark_regret_bound(epsilon)
+
+
+def test_tasks_must_be_those_of_the_types():
+    types = epsilon_types([[0.0], [1.0], [9.0]], 1.0)
+    for regret in (landmark_regret, member_regret):
+        with pytest.raises(InputError, match="of the 3 tasks"):
+            regret([[0.0], [1.0]], types)
+    for prior in ([0.5, 0.5], [2.0, -1.0, 0.0], [np.nan, 0.5, 0.5]):
+        with pytest.raises(InputError, match="prior must be"):
+            types.type_prior(prior)
+
+
 @pytest.mark.parametrize(
     ("utilities", "epsilon", "form", "message"),
     [

@@ -71,3 +71,28 @@ def test_bad_dynamics_are_refused():
         TypeDynamics.transitions([[0.5, 0.5]])
     with pytest.raises(InputError, match="rows of probabilities"):
         TypeDynamics.transitions([[0.5, 0.5], [0.9, 0.9]])
+    half = np.array([0.5, 0.5])
+    for made in (
+        ("sometimes", 0.1, half),
+        ("static", 0.0, half),
+        ("hazard", 0.1, None),
+        ("hazard", np.nan, half),
+        ("transitions", 0.0, half),
+        ("transitions", 0.0, np.eye(3)[:2]),
+    ):
+        with pytest.raises(InputError, match="no dynamics of kind"):
+            TypeDynamics(*made)
+    with pytest.raises(InputError, match="law must be probabilities"):
+        TypeDynamics("hazard", 0.1, np.array([0.5, np.nan]))
+
+
+def test_a_certain_type_is_never_more_than_certain():
+    rates = np.linspace(0, 1, 101)
+    sure = log_prior([1.0])
+    # What the step is made of rounds to more than 0 for some of them.
+    with np.errstate(divide="ignore"):
+        assert (np.logaddexp(np.log1p(-rates), np.log(rates)) > 0).any()
+    assert all(TypeDynamics.hazard(rate, [1.0]).step(sure)[0] <= 0 for rate in rates)
+    absorbing = TypeDynamics.transitions(np.eye(3)[[0, 0, 0]])
+    beliefs = log_prior(np.random.default_rng(0).dirichlet(np.ones(3), 300))
+    assert (absorbing.step(beliefs) <= 0).all()

@@ -351,3 +351,29 @@ def test_the_kernel_reports_what_no_type_explains():
     absorb_f4(logs, np.array([0]), said, linear, evidence)
     assert evidence.tolist() == [-np.inf]
     assert linear == pytest.approx(np.array([[0.5, 0.5]]))
+
+
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_probabilities_are_those_by_which_is_selected_where_policies_are_nearly_equal(dtype):
+    """What a log says of the chance of a choice must hold however small the difference: it is divided by later."""
+    near = [[1.0, 1.0 + 1e-8], [1.0, 1.0]]
+    users = UserBeliefs(PolicyLibrary.from_means(near, 1.0), 4000, dtype, prior=[1.0, 0.0])
+    every = np.arange(4000)
+    for rule, equal in (("greedy", dtype == "f4"), ("sampling", False)):
+        stated = users.probabilities([0], rule)[0]
+        assert stated.tolist() == ([0.5, 0.5] if equal else [0.0, 1.0])
+        # Four deviations of a share of 4000.
+        assert np.bincount(users.select(every, rule), minlength=2) / 4000 == pytest.approx(stated, abs=0.032)
+
+
+def test_evidence_below_the_range_of_numbers_is_not_that_of_the_impossible():
+    said = {0: [-1.7e308, 0.0], 1: [-1.7e308, -np.inf]}
+    signal = LikelihoodSignal(lambda policy, x: said[int(x)], 2)
+    model = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=signal)
+    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model)
+    for x in (0, 1):
+        evidence = users.update([0], [0], [x])
+        agent.update(0, x)
+    assert np.isfinite(evidence).all()
+    assert agent.unexplained == 0
+    assert users.log_belief[0].tolist() == agent.log_belief.tolist() == [0.0, -np.inf]

@@ -169,6 +169,13 @@ def test_forget_names_the_robots_there_are(memory):
         memory.forget("rosy")
 
 
+def test_a_refusal_names_a_few_robots_and_counts_the_others(memory):
+    for number in range(12):
+        give(memory, f"r{number:02}", 0)
+    with pytest.raises(NotFoundError, match=r"known robots: r00, .*, r09 and 2 more$"):
+        memory.forget("rosy")
+
+
 def test_rebuild_changes_nothing_in_a_sound_memory(memory):
     for seq in range(5):
         give(memory, "a", seq, record({seq: 1, 9: 2}), record({1: seq}, "newest", key="n"))

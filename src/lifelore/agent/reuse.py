@@ -56,8 +56,8 @@ def choose(
     -------
     dict
         ``user``, ``policy``, ``decision`` (to give the outcome by), ``number`` (from 0), ``probability`` of the
-        policy at this moment, ``control``, ``belief`` by type, ``expected`` outcome by active policy,
-        ``surprise`` of the outcomes so far in nats.
+        policy at this moment, ``control``, ``context`` whose prior counts (None: everybody's), ``belief`` by type,
+        ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats.
 
     Raises
     ------
@@ -100,6 +100,7 @@ def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[D
         "number": number,
         "probability": probability,
         "control": control,
+        "context": history.context if history.context in study.contexts else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
         "surprise": surprise,

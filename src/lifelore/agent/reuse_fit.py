@@ -1,7 +1,7 @@
 """The verb `reuse fit`: a log becomes a policy library, its types named in the log or found from outcomes."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -19,6 +19,8 @@ from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical")
+KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change")
+"""Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
 CONTEXT_USERS = 5.0
 """Users of everybody's prior that are mixed into each context's."""
 
@@ -77,7 +79,9 @@ def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | Non
         not name: their outcomes told it, or did not), ``pending``; ``users``; ``model``; ``types_found``,
         ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy); ``policies``
         (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs without an outcome,
-        which got the policy's outcomes on all types); ``contexts``; ``control``, ``incumbent``, ``rule``.
+        which got the policy's outcomes on all types); ``contexts``; ``control``, ``incumbent``, ``rule``,
+        ``explore``, ``change``;
+        ``changed``: settings that are not what they were in an earlier fit, by name what they were.
 
     Raises
     ------
@@ -89,9 +93,10 @@ def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | Non
     generator = stream(settings.seed, "reuse types", settings.name)
     typed = typed_rows(log, settings.model, settings.types, generator)
     library, counts = library_of(log, typed, settings.model)
-    study = _study(log, library, typed, settings, _earlier_states(memory, settings.name))
+    earlier = _earlier(memory, settings.name)
+    study = _study(log, library, typed, settings, dict(earlier.get("states", {})))
     study.keep(memory)
-    return _document(study, log, typed, counts)
+    return _document(study, log, typed, counts) | {"changed": _changed(study, earlier)}
 
 
 def _study(
@@ -120,10 +125,16 @@ def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> di
     return {context: count / count.sum() for context, count in sorted(counts.items())}
 
 
-def _earlier_states(memory: Memory, name: str) -> dict[str, str]:
-    """What the policies of the study were until now; its library need not be readable."""
+def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
+    """What the study was until now, empty where it is new; its library need not be readable."""
     record = memory.recall(KIND, name, VERSION)
-    return dict(record.about["states"]) if record else {}
+    return record.about if record else {}
+
+
+def _changed(study: Study, earlier: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings that are another than before, and what they were."""
+    names = [name for name in KEPT_SETTINGS if name in earlier]
+    return {name: earlier[name] for name in names if earlier[name] != getattr(study, name)}
 
 
 def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.float64]) -> dict[str, Any]:
@@ -161,6 +172,8 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "control": study.control,
         "incumbent": study.incumbent,
         "rule": study.rule,
+        "explore": study.explore,
+        "change": study.change,
     }
 
 

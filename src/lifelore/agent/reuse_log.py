@@ -6,13 +6,15 @@
     type      optional: what kind of user it is, if known; may be empty on some lines
     context   optional: what is known of a user before the first choice (device, country, shop)
 
+Commas, semicolons or tabs lie between columns, as the header has them; capitals in column names do not matter.
 Other columns are passed over. Several logs are read as one.
 """
 
 import csv
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +24,7 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context")
+SEPARATORS = (",", ";", "\t")
 LONGEST = 200
 
 
@@ -67,10 +70,15 @@ def read_log(paths: Sequence[str | Path]) -> ReuseLog:
     NotFoundError
         There is no such file.
     InputError
-        A column is missing, a line breaks its rule (the message says which), or no outcome is known.
+        A column is missing, a line breaks its rule (the message says which), no outcome is known, or a log is
+        given twice.
     StoreError
         The disk refuses.
     """
+    places = [Path(path).resolve() for path in paths]
+    for number, path in enumerate(paths):
+        if places[number] in places[:number]:
+            raise InputError(f"log '{path}' is given twice; its lines would count twice, leave one out")
     rows = [row for path in paths for row in _rows(Path(path))]
     known = [row for row in rows if row[2] is not None]
     if not known:
@@ -84,7 +92,8 @@ _Row = tuple[str, str, float | None, str, str]
 
 def _rows(path: Path) -> Iterator[_Row]:
     if not path.is_file():
-        raise NotFoundError(f"log '{path}' does not exist; give a CSV file")
+        what = "is no file" if path.exists() else "does not exist"
+        raise NotFoundError(f"log '{path}' {what}; give a CSV file")
     try:
         # Some programs begin their UTF-8 with a mark.
         with path.open(encoding="utf-8-sig", newline="") as file:
@@ -95,16 +104,25 @@ def _rows(path: Path) -> Iterator[_Row]:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
 
 
-def _read(lines: Iterable[str], name: str) -> Iterator[_Row]:
-    reader = csv.reader(lines, strict=True)
+def _read(lines: Iterator[str], name: str) -> Iterator[_Row]:
+    first = next(lines, "")
+    reader = csv.reader(chain([first], lines), strict=True, delimiter=_separator(first))
     try:
-        header = [column.strip() for column in next(reader, [])]
+        header = [column.strip().lower() for column in next(reader, [])]
         places = _places(header, name)
         for fields in reader:
             if any(field.strip() for field in fields):
                 yield _row(fields, header, places, f"{name} line {reader.line_num}")
     except csv.Error as error:
         raise InputError(f"{name} line {reader.line_num}: not CSV ({error})") from None
+
+
+def _separator(header: str) -> str:
+    """What the columns needed are separated by, a comma where none fits."""
+    for separator in SEPARATORS:
+        if {word.strip().strip('"').strip().lower() for word in header.split(separator)}.issuperset(NEEDED):
+            return separator
+    return SEPARATORS[0]
 
 
 def _places(header: list[str], name: str) -> dict[str, int]:
@@ -150,5 +168,6 @@ def read_outcome(text: str, where: str = "", hint: str = "") -> float:
     except ValueError:
         outcome = math.nan
     if not math.isfinite(outcome):
+        hint = "; write decimals with a point" if "," in text else hint
         raise InputError(f"{where}outcome must be a finite number, got {text[:60]!r}{hint}")
     return outcome

@@ -192,8 +192,11 @@ def _refuse_unknown(memory: Memory, name: str) -> NoReturn:
     newer = [version for key, version, _ in memory.keys(KIND) if key == name and version > VERSION]
     if newer:
         raise StoreError(f"study '{name}' was kept by a newer Lifelore (version {newer[-1]}); update this one")
-    known = ", ".join(study_names(memory)) or "none"
-    raise NotFoundError(f"no study '{name}' in {memory.location}; known: {known}. Begin with 'lifelore reuse fit'")
+    known = ", ".join(study_names(memory))
+    other = ", or say which with --name" if known else ""
+    raise NotFoundError(
+        f"no study '{name}' in {memory.location}; known: {known or 'none'}. Begin with 'lifelore reuse fit'{other}"
+    )
 
 
 def _check_share(name: str, share: float, below_one: bool = False) -> None:

@@ -67,6 +67,8 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
 def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
     """Types found among users by their outcomes."""
     users, of_user = np.unique(log.users, return_inverse=True)
+    if n_types is not None and n_types > len(users):
+        raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
     policies, of_policy = np.unique(log.policies, return_inverse=True)
     rows = UserRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
     family = "categorical" if model_of(log, model) == "categorical" else "gaussian"

@@ -3,20 +3,26 @@
 from rich.console import Console
 from rich.table import Table
 
+from lifelore.memory.overview import grouped_lore, grouped_robots
+
 
 def print_memory(overview: dict) -> None:
-    """Robots with their tasks, then each kind and key of lore with its size."""
+    """Robots with their tasks, then each kind and key of lore with its size; many of one sort are one line."""
     console = Console()
     console.print(f"memory {overview['location']} (schema {overview['schema']})", highlight=False)
     robots = Table("robot", "tasks", "first", "last", title="who lived")
-    for entry in overview["robots"]:
-        robots.add_row(entry["robot"], str(entry["tasks"]), entry["first"][:19], entry["last"][:19])
+    for entry in grouped_robots(overview["robots"]):
+        name = entry["robot"] + _of(entry["of"])
+        robots.add_row(name, f"{entry['tasks']:,}", entry["first"][:19], entry["last"][:19])
     lore = Table("kind", "key", "version", "merges by", "slots", title="what is known")
-    for entry in overview["lore"]:
-        lore.add_row(
-            entry["kind"], entry["key"][:12], str(entry["version"]), entry["merge"], f"{entry['slots']:,}"
-        )
+    for entry in grouped_lore(overview["lore"]):
+        key = entry["key"][:12] if entry["of"] == 1 else entry["key"] + _of(entry["of"])
+        lore.add_row(entry["kind"], key, str(entry["version"]), entry["merge"], f"{entry['slots']:,}")
     console.print(robots)
     console.print(lore)
     if overview["forgotten"]:
         console.print(f"{overview['forgotten']} contributions were forgotten and will not come back")
+
+
+def _of(number: int) -> str:
+    return "" if number == 1 else f"… ({number:,})"

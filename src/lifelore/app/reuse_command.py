@@ -35,7 +35,9 @@ def fit(
     incumbent: Annotated[
         str | None, Option(metavar="POLICY", help="What the held out get; default: each policy alike.")
     ] = None,
-    rule: Annotated[str, Option(help="Selection rule.")] = "information-directed",
+    rule: Annotated[
+        str, Option(help="Selection rule, such as sampling or expected-improvement.")
+    ] = "information-directed",
     explore: Annotated[float, Option(help="Share of the other choices that are any policy.")] = 0.0,
     change: Annotated[float, Option(help="Probability that a user's type is another next time.")] = 0.0,
     where: Where = None,
@@ -57,7 +59,9 @@ def fit(
 @reuse.command()
 def choose(
     user: Annotated[str, Option(help="Whom to choose for.")],
-    context: Annotated[str | None, Option(help="What is known of the user beforehand.")] = None,
+    context: Annotated[
+        str | None, Option(help="What is known of the user beforehand: a context of the log.")
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Seed = 0,
@@ -69,9 +73,11 @@ def choose(
     with _opened(name, where) as (memory, study):
         document = chosen(memory, study, user, context=context, seed=seed)
     held = ", held out" if document["control"] else ""
+    new = f"\ncontext {context} is not in the logs: everybody's prior counts"
     _say(
         document,
-        f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})",
+        f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
+        + (new if context not in (None, document["context"]) else ""),
         as_json,
     )
 
@@ -117,7 +123,13 @@ def report(
 
     with _opened(name, where) as (memory, study):
         document = reported(memory, study, out, log)
-    print_json(document) if as_json else _print_report(document)
+    if as_json:
+        print_json(document)
+        return
+    _print_report(document)
+    for what, place in (("report.json and report.png", out), ("every decision", log)):
+        if place is not None:
+            print(f"  {what} written to {place}")
 
 
 @reuse.command()
@@ -184,23 +196,32 @@ def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
 
 def _print_fit(document: dict[str, Any]) -> None:
     found = "found" if document["types_found"] else "named in the log"
+    policies = _count(document["policies"], "policy", "policies")
     print(
         f"study {document['study']}: {document['rows']} outcomes of {document['users']} users, "
-        f"{len(document['policies'])} policies, {len(document['types'])} types {found}, "
+        f"{policies}, {_count(document['types'], 'type', 'types')} {found}, "
         f"{document['model']} outcomes"
     )
     for one in document["types"]:
         print(f"  {one['name']}: {one['users']} users, best served by {one['best']}")
     for what, count in (
-        ("without an outcome yet", document["pending"]),
-        ("of unknown type", document["left_out"]),
+        ("of users of no named type taken in: their outcomes tell it", document["guessed"]),
+        ("without an outcome yet left out", document["pending"]),
+        ("of unknown type left out", document["left_out"]),
     ):
         if count:
-            print(f"  {count} lines {what} left out")
+            print(f"  {count} lines {what}")
     if document["borrowed"]:
         print(
             f"  {document['borrowed']} pairs of type and policy have no outcome; expected is what everybody gets"
         )
+    for name, before in document["changed"].items():
+        keep = "" if before is None else f" (--{name} {before} keeps it)"
+        print(f"  {name} is {document[name]}, was {before} until now{keep}")
+
+
+def _count(things: list[Any], one: str, many: str) -> str:
+    return f"{len(things)} {one if len(things) == 1 else many}"
 
 
 def _print_report(document: dict[str, Any]) -> None:
@@ -219,6 +240,6 @@ def _print_report(document: dict[str, Any]) -> None:
 def _estimate(one: dict[str, Any] | None) -> str:
     if one is None:
         return "no outcome yet"
-    users = "+".join(map(str, one["n"])) if isinstance(one["n"], list) else one["n"]
+    users = " and ".join(map(str, one["n"])) if isinstance(one["n"], list) else one["n"]
     interval = f" ({one['ci95'][0]:.4g} to {one['ci95'][1]:.4g})" if one["ci95"] else ""
     return f"{one['value']:.4g}{interval}, {users} users"

@@ -89,7 +89,8 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
     draws = stream(n, "bootstrap").integers(0, n, size=(RESAMPLES, n))
     resampled = statistic(rows[draws])
     resampled = resampled[np.isfinite(resampled)]
-    left_out = statistic(np.stack([np.delete(rows, i, axis=0) for i in range(n)]))
+    # Statistics of means need the mean of what is left alone, not what is left.
+    left_out = statistic(((rows.sum(axis=0) - rows) / (n - 1))[:, None])
     value = statistic(rows[None])[0]
     if not resampled.size or not np.isfinite(value) or not np.isfinite(left_out).all():
         return None

@@ -26,7 +26,7 @@ def draw_reuse_report(document: Mapping) -> "Figure":
         figure.supxlabel(
             f"Study {document['study']}: {document['decisions']} decisions, {document['pending']} open; "
             f"held out: {document['control_gets']}. Each user counts once; bars, bands: 95 % intervals.",
-            fontsize=8, color=GREY,
+            fontsize=8, color=GREY, parse_math=False,
         )  # fmt: skip
     return figure
 
@@ -42,6 +42,8 @@ def _headline(document: Mapping) -> str:
 
 
 def _draw_curves(axes: "Axes", points: list) -> None:
+    from matplotlib.ticker import MaxNLocator
+
     for name, (label, colour) in GROUPS.items():
         known = [(point["decision"], point[name]) for point in points if point[name]]
         if not known:
@@ -53,6 +55,7 @@ def _draw_curves(axes: "Axes", points: list) -> None:
             places, low, high = zip(*banded, strict=True)
             axes.fill_between(places, low, high, color=colour, alpha=0.18, linewidth=0)
     axes.set(title="Mean outcome", xlabel="decision for a user")
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
     axes.grid(axis="y", color=LIGHT)
     if axes.get_legend_handles_labels()[0]:
         axes.legend()
@@ -68,7 +71,7 @@ def _draw_policies(axes: "Axes", document: Mapping) -> None:
         if outcome["ci95"]:
             axes.plot(outcome["ci95"], [place, place], color=colour, linewidth=1.4, zorder=2)
         axes.plot([outcome["value"]], [place], "o", color=colour, ms=5, zorder=3)
-    axes.set_yticks(range(len(rows)), [_short(row[0]) for row in rows], fontsize=7.5)
+    axes.set_yticks(range(len(rows)), [_short(row[0]) for row in rows], fontsize=7.5, parse_math=False)
     axes.set(title="Each policy, held-out users", xlabel="mean outcome of a user")
     axes.invert_yaxis()
     axes.grid(axis="x", color=LIGHT)

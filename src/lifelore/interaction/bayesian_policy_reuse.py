@@ -88,7 +88,7 @@ class BayesianPolicyReuse:
         self._evidence: deque[Evidence] = deque(maxlen=KEPT)
         if self._log_belief.shape != (library.n_types,):
             raise InputError(f"prior must be ({library.n_types},), got {self._log_belief.shape}")
-        if horizon is not None and horizon < 1:
+        if horizon is not None and not horizon >= 1:
             raise InputError(f"horizon must be at least 1, got {horizon}")
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
@@ -131,7 +131,8 @@ class BayesianPolicyReuse:
         self._remember(Evidence(index, said, log_evidence))
 
     def _said(self, index: int, signal: Any) -> Array:
-        said = np.asarray(self.library.signal.log_likelihood(index, signal), np.float64)
+        # A copy, for it is kept as evidence, and a model may write its next answer into the same array.
+        said = np.array(self.library.signal.log_likelihood(index, signal), np.float64)
         if said.shape != self._log_belief.shape:
             raise InputError(
                 f"signal model {type(self.library.signal).__name__} must give {self._log_belief.shape} "

@@ -10,6 +10,7 @@ by trying others, and the default is 0.
 """
 
 from collections.abc import Callable
+from copy import copy
 from typing import Any
 
 import numpy as np
@@ -19,7 +20,8 @@ from lifelore.core.errors import InputError
 from lifelore.core.protocols import SignalModel
 from lifelore.core.streams import stream
 from lifelore.interaction.belief import log_prior, update
-from lifelore.interaction.policy_library import PolicyLibrary, checked_prior
+from lifelore.interaction.library_names import checked_prior
+from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.selection.rule import choose
 
@@ -79,6 +81,11 @@ class Beat:
         Moves taken in, and episodes finished.
     surprises : int
         Moves that no type explains; they leave the belief as it is.
+
+    Raises
+    ------
+    InputError
+        ε or the prior is none, the lag negative, or `actions` is over other types or action sets.
     """
 
     def __init__(
@@ -93,6 +100,9 @@ class Beat:
     ) -> None:
         if lag < 0:
             raise InputError(f"lag must be at least 0, got {lag}")
+        for axis in ("n_types", "n_policies"):
+            if (size := getattr(actions, axis, None)) not in (None, getattr(library, axis)):
+                raise InputError(f"actions has {axis} {size}, the library has {getattr(library, axis)}")
         self.library, self.actions = library, actions
         start = library.prior if prior is None else checked_prior(prior, library.n_types)
         self.log_belief: Array = log_prior(start)
@@ -128,18 +138,29 @@ class Beat:
         NotFoundError
             No such action set.
         InputError
-            An action without a model of actions, or a signal that its model refuses.
+            An action without a model of actions, or a signal that its model refuses. Nothing has changed then.
         """
         policy = self.library.index_of_policy(policy)
-        likelihood = self.library.signal.log_likelihood(policy, signal)
-        adapted = self.adaptation.after_step(policy)
+        adaptation = copy(self.adaptation)
+        adapted = adaptation.after_step(policy)
+        likelihood = self._said(self.library.signal, policy, signal)
         if action is not None:
             if self.actions is None:
                 raise InputError("action was given, but no model of actions; give Beat(..., actions=...)")
-            likelihood = likelihood + self.actions.log_likelihood(adapted, action)
+            likelihood = likelihood + self._said(self.actions, adapted, action)
         self.log_belief, evidence = update(self.log_belief, likelihood)
+        self.adaptation = adaptation
         self.surprises += bool(np.isneginf(evidence))
         self.step += 1
+
+    def _said(self, model: SignalModel, policy: int, signal: Any) -> Array:
+        said = np.asarray(model.log_likelihood(policy, signal), np.float64)
+        if said.shape != self.log_belief.shape:
+            raise InputError(
+                f"signal model {type(model).__name__} must give {self.log_belief.shape} log likelihoods, gave "
+                f"{said.shape}"
+            )
+        return said
 
     def end_episode(self) -> None:
         """The user has reached the end; she plays on, and what is believed of her stays."""

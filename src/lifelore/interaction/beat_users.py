@@ -20,7 +20,7 @@ class BeatUsers:
     log_table : (n_policies, n_signals, n_types) float
         Log likelihood of each signal under each action set.
     n_users : int
-    prior : (n_types,) float, optional
+    prior : (n_types,) or (n_users, n_types) float, optional
         Uniform unless given.
     seed : int or numpy generator
 
@@ -28,6 +28,13 @@ class BeatUsers:
     ----------
     log_belief : (n_users, n_types) float64
         Normalised logs.
+
+    Raises
+    ------
+    InputError
+        The table does not fit the values or holds NaN or infinity, a value is not finite, or the prior is none.
+
+    Thesis: §4.8.4, Alg. 9.
     """
 
     def __init__(
@@ -41,13 +48,19 @@ class BeatUsers:
     ) -> None:
         self.value = np.asarray(value, np.float64)
         self.log_table = np.asarray(log_table, np.float64)
+        if self.value.ndim != 2 or not self.value.size or not np.isfinite(self.value).all():
+            raise InputError(f"value must be (n_types, n_policies) finite numbers, got {self.value.shape}")
         n_types, n_policies = self.value.shape
         if self.log_table.ndim != 3 or self.log_table.shape[::2] != (n_policies, n_types):
             raise InputError(
                 f"log_table must be ({n_policies}, n_signals, {n_types}) to fit value, got {self.log_table.shape}"
             )
-        start = np.full(n_types, 1 / n_types) if prior is None else np.asarray(prior, np.float64)
-        self.log_belief: Array = np.array(np.broadcast_to(log_prior(start), (n_users, n_types)))
+        if not (self.log_table < np.inf).all():
+            raise InputError("log_table must be below infinity and no NaN; minus infinity is allowed")
+        start = log_prior(np.full(n_types, 1 / n_types) if prior is None else prior)
+        if start.shape not in ((n_types,), (n_users, n_types)):
+            raise InputError(f"prior must be ({n_types},) or ({n_users}, {n_types}), got {start.shape}")
+        self.log_belief: Array = np.array(np.broadcast_to(start, (n_users, n_types)))
         self._generator = np.random.default_rng(seed)
 
     def select(self, users: NDArray[np.int64], epsilon: ArrayLike = 0.0) -> NDArray[np.int64]:
@@ -68,12 +81,27 @@ class BeatUsers:
     ) -> None:
         """Take in one signal of each of `users`, seen under `policies`.
 
-        `extra` (n, n_types) is the log of a second factor of the likelihood.
+        Parameters
+        ----------
+        users : (n,) int
+            Distinct.
+        policies, signals : (n,) int
+        extra : (n, n_types) float, optional
+            Log of a second factor of the likelihood.
+
+        Raises
+        ------
+        InputError
+            A user comes twice, or `extra` holds NaN or infinity; no belief has changed then.
         """
+        if len(np.unique(users)) < len(users):
+            raise InputError("users must be distinct; update one who comes twice in turn")
         likelihood = self.log_table[policies, signals]
         if extra is not None:
             likelihood = likelihood + extra
         beliefs = np.ascontiguousarray(self.log_belief[users])
         evidence = np.empty(len(users))
         bayes_rows(beliefs, np.ascontiguousarray(likelihood), evidence)
+        if np.isnan(evidence).any():
+            raise InputError("extra must be below infinity and no NaN; minus infinity is allowed")
         self.log_belief[users] = beliefs

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.library_names import checked_prior
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import SelectionRule
 from lifelore.interaction.signal_table import SignalTable
@@ -48,10 +49,10 @@ def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None,
     Raises
     ------
     InputError
-        The horizon is below 1, or the tree would be too large.
+        The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, library.prior if belief is None else belief, horizon)
+    layers = _layers(table, _start(library, belief), horizon)
     worth = layers[-1] @ mean
     for weights in reversed(layers[:-1]):
         worth = weights @ mean + _after_signals(worth.max(axis=1), table)
@@ -66,10 +67,10 @@ def value_of_rule(
     Raises
     ------
     InputError
-        The horizon is below 1, or the tree would be too large.
+        The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
     """
     table, mean = library.table(n_bins), library.performance.mean
-    layers = _layers(table, library.prior if belief is None else belief, horizon)
+    layers = _layers(table, _start(library, belief), horizon)
     value = np.zeros(0)
     for left, weights in enumerate(reversed(layers)):
         worth = weights @ mean
@@ -77,6 +78,10 @@ def value_of_rule(
             worth = worth + _after_signals(value, table)
         value = (_shares(library, rule, weights, left) * worth).sum(axis=1)
     return float(value[0])
+
+
+def _start(library: PolicyLibrary, belief: Array | None) -> Array:
+    return library.prior if belief is None else checked_prior(belief, library.n_types)
 
 
 def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
@@ -89,7 +94,7 @@ def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
             f"a tree of {branches} branches and horizon {horizon} is too large; take fewer bins or episodes"
         )
     law = table.probs.astype(np.float64).transpose(0, 2, 1).reshape(branches, table.n_types)
-    layers = [np.asarray(belief, np.float64)[None]]
+    layers = [belief[None]]
     for _ in range(horizon - 1):
         layers.append((layers[-1][:, None, :] * law).reshape(-1, table.n_types))
     return layers

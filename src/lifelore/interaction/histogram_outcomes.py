@@ -70,7 +70,9 @@ class HistogramOutcomes(CountedOutcomes):
     @classmethod
     def from_rows(cls, rows: OutcomeRows, edges: ArrayLike | int = 20, pseudo_count: float = 0.5) -> Self:
         """Fitted to outcomes one a row; see `from_samples`."""
-        edges = _edges_over(rows.values, edges) if isinstance(edges, int) else np.array(edges, np.float64)
+        edges = (
+            _edges_over(rows.values, edges) if isinstance(edges, int | np.integer) else np.array(edges, np.float64)
+        )
         return cls._fitted(edges, edges.size - 1, rows, pseudo_count)
 
     def bounds(self) -> tuple[float, float]:
@@ -120,9 +122,9 @@ class HistogramOutcomes(CountedOutcomes):
         return np.where(threshold <= self.edges[:-1], self._means() - threshold, 0.5 * over**2 / self._sizes())
 
 
-def _edges_over(values: Array, n_bins: int) -> Array:
+def _edges_over(values: Array, n_bins: int | np.integer) -> Array:
     if n_bins < 1:
         raise InputError(f"edges must be bin edges or at least 1 bin, got {n_bins}")
     low, high = float(values.min()), float(values.max())
     margin = 0.05 * (high - low) or max(1.0, abs(low)) * 1e-3
-    return np.linspace(low - margin, high + margin, n_bins + 1)
+    return np.linspace(low - margin, high + margin, int(n_bins) + 1)

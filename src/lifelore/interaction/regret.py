@@ -64,6 +64,6 @@ def cumulative_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
 
 
 def _of_trials(utilities: ArrayLike, chosen: ArrayLike) -> Array:
-    if np.ndim(chosen) != np.ndim(utilities) or not np.shape(chosen)[-1]:
+    if np.ndim(chosen) != np.ndim(utilities) or not np.size(chosen):
         raise InputError(f"chosen must be (..., K) with at least one trial, got {np.shape(chosen)}")
     return library_regret(utilities, chosen)

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcome_kinds import outcome_kind
-from lifelore.interaction.outcome_model import OutcomeModel, OutcomeRows, check_policy, checked_rows
+from lifelore.interaction.outcome_model import LARGEST, OutcomeModel, OutcomeRows, check_policy, checked_rows
 
 Array = NDArray[np.float64]
 
@@ -116,8 +116,9 @@ def _numbers(rewards: ArrayLike) -> Array:
         found = np.asarray(rewards, np.float64)
     except (TypeError, ValueError):
         raise InputError("a signal of rewards must be numbers (n,)") from None
-    if found.ndim != 1 or not np.isfinite(found).all():
+    if found.ndim != 1 or not (np.abs(found) <= LARGEST).all():
         raise InputError(
-            f"a signal of rewards must be finite numbers (n,), got shape {found.shape}: {rewards!r:.80}"
+            f"a signal of rewards must be finite numbers (n,) of at most {LARGEST:g}, got shape {found.shape}: "
+            f"{rewards!r:.80}"
         )
     return found

@@ -19,6 +19,8 @@ from lifelore.interaction.outcome_moments import chosen_of
 Array = NDArray[np.float64]
 
 _AXES = ("n_types", "n_policies or 1", "n_states", "n_actions", "n_outcomes")
+_ABOVE = 2e-6
+"""How far above 0 a logarithm may lie: rows are taken as they come when they sum to 1 to 1e-6."""
 
 
 class StepModel:
@@ -101,7 +103,7 @@ class StepModel:
     def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
         """Take what `to_arrays` gave, bit for bit."""
         log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
-        if log.ndim != 5 or not log.size or not (log <= 0).all() or (shared and len(log) != 1):
+        if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
         self._log, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
         return self

@@ -9,6 +9,7 @@ reward: sums of rewards take more values (`n_returns`). Thesis: §4.7.6.
 
 from dataclasses import dataclass
 from math import comb, inf
+from numbers import Integral
 from typing import Literal
 
 from lifelore.core.errors import InputError
@@ -23,7 +24,12 @@ class StorageSizes:
     discount : float
         In [0, 1].
     bits : int
-        Of one probability.
+        Of one probability, at least 1.
+
+    Raises
+    ------
+    InputError
+        A size is no whole number of at least 1, or the discount lies outside [0, 1].
     """
 
     n_policies: int
@@ -36,9 +42,11 @@ class StorageSizes:
     bits: int = 64
 
     def __post_init__(self) -> None:
-        for name, value in vars(self).items():
-            if name != "discount" and not (isinstance(value, int) and value >= 1):
-                raise InputError(f"{name} must be a whole number of at least 1, got {value!r}")
+        for name, value in list(vars(self).items()):
+            if name != "discount":
+                _check_whole(name, value)
+                # Products of NumPy's whole numbers would wrap around.
+                object.__setattr__(self, name, int(value))
         if not 0 <= self.discount <= 1:
             raise InputError(f"discount must lie in [0, 1], got {self.discount}")
 
@@ -70,6 +78,11 @@ def storage_cost(sizes: StorageSizes, variant: Literal["standard", "thesis"] = "
     variant : {"standard", "thesis"}
         ``thesis`` swaps the two formulas of (s, a, s') and of rewards, as printed.
 
+    Raises
+    ------
+    InputError
+        There is no such variant.
+
     Examples
     --------
     >>> storage_cost(StorageSizes(2, 3, n_states=10, n_actions=4, n_rewards=5, bits=1)).order()
@@ -94,11 +107,22 @@ def effective_horizon(horizon: int, discount: float) -> float:
 def n_returns(n_rewards: int, horizon: int, discounted: bool) -> float:
     """The most values that the return of `horizon` rewards can take, each one of `n_rewards`.
 
-    Undiscounted, only how often each reward came counts; discounted, the order too.
+    Undiscounted, only how often each reward came counts; discounted, the order too. Infinite where no float is
+    as large.
+
+    Raises
+    ------
+    InputError
+        `n_rewards` or `horizon` is no whole number of at least 1.
     """
-    if not discounted:
-        return float(comb(horizon + n_rewards - 1, horizon))
+    _check_whole("n_rewards", n_rewards)
+    _check_whole("horizon", horizon)
     try:
-        return float(n_rewards) ** horizon
+        return float(n_rewards) ** horizon if discounted else float(comb(horizon + n_rewards - 1, horizon))
     except OverflowError:
         return inf
+
+
+def _check_whole(name: str, value: int) -> None:
+    if not (isinstance(value, Integral) and value >= 1):
+        raise InputError(f"{name} must be a whole number of at least 1, got {value!r}")

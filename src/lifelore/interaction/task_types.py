@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.spatial.distance import cdist
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.library_names import checked_prior
 from lifelore.interaction.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
@@ -46,9 +47,14 @@ class TaskTypes:
         return len(self.landmarks)
 
     def type_prior(self, task_prior: ArrayLike | None = None) -> Array:
-        """Each type's prior, (n_types,): that of its tasks together, tasks equally likely unless given."""
-        n = len(self.labels)
-        weights = np.full(n, 1 / n) if task_prior is None else np.asarray(task_prior, np.float64)
+        """Each type's prior, (n_types,): that of its tasks together, tasks equally likely unless given.
+
+        Raises
+        ------
+        InputError
+            `task_prior` (n_tasks,) is no distribution.
+        """
+        weights = checked_prior(task_prior, len(self.labels))
         return np.bincount(self.labels, weights, minlength=self.n_types).astype(np.float64)
 
 
@@ -107,8 +113,13 @@ def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
     """Regret of playing, on each task, the policy that is best on its type's landmark, (n_tasks,).
 
     Where several policies are equally good on the landmark, the one that costs most counts.
+
+    Raises
+    ------
+    InputError
+        Utilities are not finite, or of another number of tasks than the types.
     """
-    utilities = _checked(utilities)
+    utilities = _checked(utilities, types)
     of_landmark = utilities[types.landmarks[types.labels]]
     best = of_landmark == of_landmark.max(axis=1, keepdims=True)
     return utilities.max(axis=1) - np.where(best, utilities, np.inf).min(axis=1)
@@ -116,7 +127,7 @@ def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
 
 def member_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
     """As `landmark_regret`, with whichever member of the type as its landmark costs the task most, (n_tasks,)."""
-    utilities = _checked(utilities)
+    utilities = _checked(utilities, types)
     regret = np.zeros(len(utilities))
     for type_ in range(types.n_types):
         members = np.flatnonzero(types.labels == type_)
@@ -140,34 +151,43 @@ def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
     return library.take(types=types.landmarks.tolist(), prior=types.type_prior(library.prior))
 
 
-def pooled_samples(samples: ArrayLike, types: TaskTypes) -> Array:
+def pooled_samples(samples: ArrayLike, types: TaskTypes, overlapping: bool = False) -> Array:
     """Outcomes of all tasks of a type together (Def. 4.3.4).
 
     Parameters
     ----------
     samples : (n_tasks, n_policies, n) float
         NaN where missing.
+    overlapping : bool
+        Whether a task counts in every type that it could belong to (`membership`), or in its own alone (`labels`).
 
     Returns
     -------
     (n_types, n_policies, m) float
         m is n times the tasks of the largest type; NaN fills up the others.
+
+    Raises
+    ------
+    InputError
+        Samples are of another number of tasks than the types.
     """
     samples = np.asarray(samples, np.float64)
     if samples.ndim != 3 or len(samples) != len(types.labels):
         raise InputError(f"samples must be ({len(types.labels)}, n_policies, n), got {samples.shape}")
-    sizes = np.bincount(types.labels, minlength=types.n_types)
-    pooled = np.full((types.n_types, samples.shape[1], int(sizes.max()) * samples.shape[2]), np.nan)
-    for type_, size in enumerate(sizes):
-        own = samples[types.labels == type_].transpose(1, 0, 2).reshape(samples.shape[1], -1)
-        pooled[type_, :, : size * samples.shape[2]] = own
+    members = types.membership if overlapping else types.labels == np.arange(types.n_types)[:, None]
+    pooled = np.full((types.n_types, samples.shape[1], int(members.sum(axis=1).max()) * samples.shape[2]), np.nan)
+    for type_, of_type in enumerate(members):
+        own = samples[of_type].transpose(1, 0, 2).reshape(samples.shape[1], -1)
+        pooled[type_, :, : own.shape[1]] = own
     return pooled
 
 
-def _checked(utilities: ArrayLike) -> Array:
+def _checked(utilities: ArrayLike, types: TaskTypes | None = None) -> Array:
     utilities = np.asarray(utilities, np.float64)
     if utilities.ndim != 2 or not utilities.size or not np.isfinite(utilities).all():
         raise InputError(f"utilities must be (n_tasks, n_policies) finite numbers, got {utilities.shape}")
+    if types is not None and len(utilities) != len(types.labels):
+        raise InputError(f"utilities must be of the {len(types.labels)} tasks of the types, got {len(utilities)}")
     return utilities
 
 

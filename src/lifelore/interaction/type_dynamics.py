@@ -31,11 +31,24 @@ class TypeDynamics:
     law : array, optional
         For a hazard: the prior (n_types,) that new types are drawn from. For transitions: the matrix
         (n_types, n_types), P(next type | type) in rows.
+
+    Raises
+    ------
+    InputError
+        There is no such kind, or rate and law are not what it needs.
     """
 
     kind: Literal["static", "hazard", "transitions"] = "static"
     rate: float = 0.0
     law: Array | None = None
+
+    def __post_init__(self) -> None:
+        shape = () if self.law is None else np.shape(self.law)
+        axes = {"static": 0, "hazard": 1, "transitions": 2}.get(self.kind)
+        if axes != len(shape) or len(set(shape)) > 1 or 0 in shape or not 0 <= self.rate <= 1:
+            raise InputError(f"no dynamics of kind {self.kind!r}, rate {self.rate} and law of shape {shape}")
+        if self.law is not None and not (np.abs(np.sum(self.law, axis=-1) - 1) <= SUM_TOLERANCE).all():
+            raise InputError("law must be probabilities that sum to 1")
 
     @classmethod
     def static(cls) -> "TypeDynamics":
@@ -88,7 +101,9 @@ class TypeDynamics:
         """The belief before the next episode, (..., n_types) to the same, normalised."""
         if self.kind == "static":
             return log_belief
-        return self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
+        stepped = self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
+        # Rounding may leave a certain type a last bit above 1, which is no probability.
+        return np.minimum(stepped, 0.0)
 
     def _hazarded(self, log_belief: Array) -> Array:
         assert self.law is not None

@@ -99,8 +99,9 @@ class UserBeliefs:
         self._said, self._checked_signals = said_by(self.library)
         mean = self.library.performance.mean
         self._mean = np.ascontiguousarray(mean, self.dtype)
-        shares = tied_shares(mean)
-        self._best = shares.argmax(axis=1) if (shares.max(axis=1) == 1).all() else None
+        # Best responses to each type, equals included; and their numbers where no type has two.
+        self._responses = tied_shares(mean) > 0
+        self._best = self._responses.argmax(axis=1) if (self._responses.sum(axis=1) == 1).all() else None
 
     @property
     def n_users(self) -> int:
@@ -169,7 +170,11 @@ class UserBeliefs:
         self, users: ArrayLike, rule: SelectionRule | str = "sampling", *, episodes_left: float | None = None
     ) -> Array:
         """How likely `select` is to take each policy, (k, n_policies); to be logged beside what was selected."""
-        return _rule(rule).probabilities(self.library, self.belief(users), episodes_left=episodes_left)
+        users, rule = self._checked_users(users), _rule(rule)
+        if type(rule) is Greedy:
+            # As `select` has them: what float32 cannot tell apart is equal, and may be selected.
+            return tied_shares(self._read(users) @ self._mean, TOLERANCES[self.dtype])
+        return rule.probabilities(self.library, self.belief(users), episodes_left=episodes_left)
 
     def reset(self, users: ArrayLike) -> None:
         """Forget all that is believed of `users`: they start from the prior."""
@@ -230,7 +235,9 @@ class UserBeliefs:
     def _sampled(self, linear: NDArray[Any]) -> Numbers:
         drawn = np.empty(len(linear), np.int64)
         draw_types(linear, self.generator.random(len(linear)), drawn)
-        return self._best_of(self._mean[drawn]) if self._best is None else self._best[drawn]
+        if self._best is not None:
+            return self._best[drawn]
+        return self._best_of(self._responses[drawn].astype(self.dtype))
 
     def _best_of(self, scores: NDArray[Any]) -> Numbers:
         chosen = np.empty(len(scores), np.int64)

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from lifelore.core.jit import inlined, kernel
+from lifelore.interaction.belief_kernels import LOWEST
 
 LEAST_LOG = -87.0
 """Logs of float32 beliefs below this count as 0 when beliefs are read; the logs themselves are kept."""
@@ -161,7 +162,7 @@ def absorb_f8(log_beliefs, users, said, linear, log_evidence):
         for i in range(n):
             row[i] = min((new[i] - top) - shift, 0.0)
             out[i] /= total
-        log_evidence[k] = top + shift + best
+        log_evidence[k] = max(top + shift + best, LOWEST)
 
 
 @kernel

@@ -16,6 +16,9 @@ from lifelore.memory.folding import fold
 from lifelore.memory.location import locate
 from lifelore.memory.store import Store, open_file, open_postgresql, open_source
 
+NAMED = 10
+"""Robots that a refusal names."""
+
 
 def open_memory(where: str | Path | None = None, *, durable: bool = False, read_only: bool = False) -> "Memory":
     """Open a memory, creating it if there is none.
@@ -196,8 +199,10 @@ class Memory:
         with self._store.writing() as conn:
             gone = ledger.entries(conn, robot)
             if not gone:
-                known = ", ".join(entry["robot"] for entry in overview.robots(conn)) or "none"
-                raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {known}")
+                known = [entry["robot"] for entry in overview.robots(conn)]
+                named = ", ".join(known[:NAMED]) or "none"
+                more = f" and {len(known) - NAMED:,} more" if len(known) > NAMED else ""
+                raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {named}{more}")
             ledger.bury(conn, [entry.identity for entry in gone])
             merging.remove(conn, gone)
         return len(gone)

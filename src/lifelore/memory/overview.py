@@ -1,11 +1,15 @@
 """What a memory holds, as plain data."""
 
+from collections.abc import Callable, Hashable, Iterable
 from datetime import UTC, datetime
 from typing import Any
 
 from sqlalchemy import Connection, text
 
 from lifelore.memory import schema
+
+FEW = 8
+"""So many entries of one sort are listed one by one; more are one entry."""
 
 _ROBOTS = text("SELECT robot, COUNT(*), MIN(stamp), MAX(stamp) FROM lifelore_contributions GROUP BY robot")
 # Sums of halves: a sum of 64-bit numbers may need more than 64 bits, and SQLite would stop there.
@@ -35,6 +39,56 @@ def robots(conn: Connection) -> list[dict[str, Any]]:
         {"robot": row[0], "tasks": int(row[1]), "first": _iso(row[2]), "last": _iso(row[3])}
         for row in sorted(tuple(row) for row in conn.execute(_ROBOTS))
     ]
+
+
+def grouped_robots(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Entries of `robots`, but those named ``SORT: NAME`` as one where more than `FEW` are of a sort.
+
+    Each entry has ``of`` too, how many it stands for; its ``robot`` is ``SORT: `` then.
+    """
+    groups = _grouped(robots, lambda one: _stem(one["robot"], ": "))
+    return [
+        {
+            "robot": _stem(group[0]["robot"], ": "), "tasks": sum(one["tasks"] for one in group),
+            "first": min(one["first"] for one in group), "last": max(one["last"] for one in group),
+            "of": len(group),
+        } if len(group) > 1 else group[0] | {"of": 1}
+        for group in groups
+    ]  # fmt: skip
+
+
+def grouped_lore(lore: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Entries of `overview`'s lore, but keys ``SORT/NAME`` of a kind as one if more than `FEW` are of a sort.
+
+    Each entry has ``of`` too, how many it stands for; its ``key`` is ``SORT/`` then, ``slots`` and ``sum`` are
+    sums.
+    """
+    groups = _grouped(lore, lambda one: (one["kind"], _stem(one["key"], "/"), one["version"], one["merge"]))
+    return [
+        group[0] | {
+            "key": _stem(group[0]["key"], "/") if len(group) > 1 else group[0]["key"],
+            "slots": sum(one["slots"] for one in group), "sum": sum(one["sum"] for one in group),
+            "of": len(group),
+        }
+        for group in groups
+    ]  # fmt: skip
+
+
+def _grouped(
+    entries: Iterable[dict[str, Any]], sort: Callable[[dict[str, Any]], Hashable]
+) -> list[list[dict[str, Any]]]:
+    """Entries of the same sort together if there are more than `FEW`, else each alone; the order stays."""
+    groups: dict[Hashable, list[dict[str, Any]]] = {}
+    for entry in entries:
+        groups.setdefault(sort(entry), []).append(entry)
+    parted = ([group] if len(group) > FEW else [[one] for one in group] for group in groups.values())
+    return [group for part in parted for group in part]
+
+
+def _stem(name: str, separator: str) -> str:
+    """Up to and with the separator; the whole name where there is none."""
+    head, found, _ = name.partition(separator)
+    return head + found if found else name
 
 
 def _lore(conn: Connection) -> list[dict[str, Any]]:

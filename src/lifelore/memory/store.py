@@ -93,6 +93,8 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
     def creator():
         conn = connect(path, "rwc")
         conn.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
+        # What is forgotten is overwritten, not only unlinked; some builds of SQLite leave it otherwise.
+        conn.execute("PRAGMA secure_delete = ON")
         return conn
 
     store = Store(create_engine("sqlite://", creator=creator, poolclass=QueuePool), str(path))

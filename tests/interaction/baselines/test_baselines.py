@@ -77,6 +77,7 @@ def test_bad_input_is_refused_and_nothing_is_learnt_from_it(name, library):
         ([0, -1], [0.0, 0.0], NotFoundError),
         ([0, 1], [0.0, np.nan], InputError),
         ([0, 1], [0.0, np.inf], InputError),
+        ([0, 1], [0.0, -1e200], InputError),
         ([0, 1], [0.0], InputError),
         ([0.0, 1.0], [0.0, 0.0], InputError),
         ([0, 1, 2], [0.0, 0.0, 0.0], InputError),

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.outcome_model import LARGEST
 from lifelore.interaction.selection.rule import choose
 
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class Baseline(ABC):
         ----------
         policy : int, or (n_tasks,) int
         reward : float, or (n_tasks,) float
-            Finite; larger is better.
+            Finite, of at most 1e100; larger is better.
 
         Raises
         ------
@@ -99,8 +100,8 @@ class Baseline(ABC):
     def _checked_rewards(self, reward: ArrayLike) -> NDArray[np.float64]:
         rewards = np.atleast_1d(np.asarray(reward, np.float64))
         self._check_shape("reward", rewards)
-        if not np.isfinite(rewards).all():
-            raise InputError(f"reward must be finite, got {reward!r}")
+        if not (np.abs(rewards) <= LARGEST).all():
+            raise InputError(f"reward must be finite and of at most {LARGEST:g}, got {reward!r:.80}")
         return rewards
 
     def _check_shape(self, what: str, values: NDArray) -> None:

@@ -65,8 +65,9 @@ def best_after_signals(worth, kept, classes, number, probs, best):
 
     worth : (k, n_candidates), the belief times the mean of each candidate on each type kept
     kept : (k,) int64
-    classes, number : (n_policies, n_types) int32 and (n_policies,) int64, types whose laws are equal; see
-    `TypeClasses` probs : (n_policies, n_types, n_signals), of the dtype of `worth`
+    classes, number : (n_policies, n_types) int32 and (n_policies,) int64, types whose laws are equal, as
+        in `TypeClasses`
+    probs : (n_policies, n_types, n_signals), of the dtype of `worth`
     best : (n_policies,) float64, written
     """
     n_types, n_signals, n_candidates = probs.shape[1], probs.shape[2], worth.shape[1]
