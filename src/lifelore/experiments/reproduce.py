@@ -108,6 +108,8 @@ def _silent(done: int, total: int, label: str) -> None:
 
 def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: int, progress) -> list[dict]:
     """All cells in order, stored ones read, the others run."""
+    from threadpoolctl import threadpool_limits
+
     cells = claim.cells(settings)
     kept = [store.get(cell) for cell in cells]
     missing = [i for i, found in enumerate(kept) if found is None]
@@ -119,7 +121,8 @@ def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: 
         result = claim.run_cell(settings, cells[i], seed)
         return store.put(cells[i], result, perf_counter() - began)
 
-    with ThreadPoolExecutor(max_workers=jobs) as pool:
+    # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
+    with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
         place: dict[Future, int] = {pool.submit(run, i): i for i in missing}
         try:
             for future in as_completed(place):
