@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from lifelore.action.action_prior import ActionPrior
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import PackedFormat
+from lifelore.core.whole_file import whole_file
 
 FORMAT = PackedFormat("lifelore action prior", 1, "action prior", "save_prior", 2**32)
 
@@ -33,7 +34,8 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
     """
     content = prior_bytes(prior, about)
     try:
-        Path(path).write_bytes(content)
+        with whole_file(path) as file:
+            file.write(content)
     except OSError as error:
         raise StoreError(f"the prior cannot be written to {path}: {error.strerror}") from None
 

@@ -8,10 +8,8 @@ one from more than `MANY` users on).
 import csv
 import io
 import json
-import os
 import warnings
 from collections.abc import Iterable, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +19,7 @@ from lifelore.agent.reuse_history import Decision, History, histories, log_belie
 from lifelore.agent.reuse_study import Study
 from lifelore.core.errors import StoreError
 from lifelore.core.metrics import mean_estimate
+from lifelore.core.whole_file import whole_file
 from lifelore.memory import Memory
 
 COLUMNS = (
@@ -193,11 +192,8 @@ def _write_folder(folder: Path, document: dict[str, Any]) -> None:
 
 def _write(path: Path, text: str) -> None:
     """The whole file or none."""
-    partial = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
-        partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
+        with whole_file(path) as file:
+            file.write(text.encode())
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

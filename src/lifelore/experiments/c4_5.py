@@ -11,7 +11,7 @@ tasks, and fails to where the median of a task's mean regret over the last ten e
 Thesis: §4.6.4, Figures 4.9 and 4.10.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -58,16 +58,23 @@ def check(settings: Mapping) -> None:
 
 def cells(settings: Mapping) -> list[dict]:
     """Every rule in every case of the default reserve, and with exact models on targets in every other."""
+    return reserve_cells(settings, CASES, RULES, RULES)
+
+
+def reserve_cells(
+    settings: Mapping, cases: Iterable[str], methods: Iterable[str], in_grid: Iterable[str]
+) -> list[dict]:
+    """`methods` in all `cases` of the default reserve; `in_grid`, with exact models on targets, in every other."""
     default = [
         {"method": name, "case": case, **DEFAULT_WORLD, "groups": settings["groups"]}
-        for case in CASES
-        for name in RULES
+        for case in cases
+        for name in methods
     ]
     grid = [
         {"method": name, "case": "exact", **world, "groups": settings["grid_groups"]}
         for world in worlds(settings)
         if world != DEFAULT_WORLD
-        for name in RULES
+        for name in in_grid
     ]
     return default + grid
 

@@ -17,7 +17,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.surveillance import LAYOUTS, METRICS, NOISES
 from lifelore.experiments.c4_1 import known
-from lifelore.experiments.c4_5 import check, worlds
+from lifelore.experiments.c4_5 import check, reserve_cells, worlds
 from lifelore.experiments.claim import Claim
 from lifelore.experiments.grid_shares import is_above, share_of
 from lifelore.experiments.predicate import Predicate
@@ -49,18 +49,7 @@ REUSE_GIVEN = "models of every type and policy; the pay of each deployment"
 
 def cells(settings: Mapping) -> list[dict]:
     """Every method in the default reserve, learnt and exact; in the other reserves the ones the thesis names."""
-    default = [
-        {"method": name, "case": case, **DEFAULT_WORLD, "groups": settings["groups"]}
-        for case in CASES_SHOWN
-        for name in (*REUSE, *PEERS)
-    ]
-    grid = [
-        {"method": name, "case": "exact", **world, "groups": settings["grid_groups"]}
-        for world in worlds(settings)
-        if world != DEFAULT_WORLD
-        for name in IN_GRID
-    ]
-    return default + grid
+    return reserve_cells(settings, CASES_SHOWN, (*REUSE, *PEERS), IN_GRID)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -5,13 +5,12 @@ One file a cell, written beside its place and moved there in one step, so that a
 
 import hashlib
 import json
-import os
 from collections.abc import Mapping
-from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
 from lifelore.core.errors import StoreError
+from lifelore.core.whole_file import whole_file
 
 VERSION = 1
 
@@ -64,12 +63,9 @@ class CellStore:
 
 def write_atomically(path: Path, text: str) -> None:
     """Write a text file in one step; StoreError where the disk refuses."""
-    partial = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_text(text, encoding="utf-8")
-        os.replace(partial, path)
+        with whole_file(path) as file:
+            file.write(text.encode())
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -9,13 +9,13 @@ Figures are made without pyplot, so nothing global is left behind and any thread
     save_figure(figure, "figure.png")
 """
 
-import os
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lifelore.core.errors import NotFoundError, StoreError
+from lifelore.core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -133,14 +133,11 @@ def save_figure(figure: "Figure", path: str | Path) -> Path:
     """
     path = Path(path)
     image = _small_enough(figure, path)
-    partial = path.with_name(f"{path.name}.{os.getpid()}.part")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_bytes(image)
-        os.replace(partial, path)
+        with whole_file(path) as file:
+            file.write(image)
     except OSError as error:
-        with suppress(OSError):
-            partial.unlink(missing_ok=True)
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
     return path
 

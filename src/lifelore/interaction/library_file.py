@@ -15,6 +15,7 @@ from typing import Any
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
+from lifelore.core.whole_file import whole_file
 from lifelore.interaction.outcome_kinds import KINDS as OUTCOMES
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.signal_kinds import KINDS as SIGNALS
@@ -36,7 +37,8 @@ def save_library(library: PolicyLibrary, path: str | Path) -> None:
     """
     content = library_bytes(library)
     try:
-        Path(path).write_bytes(content)
+        with whole_file(path) as file:
+            file.write(content)
     except OSError as error:
         raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None
 

@@ -17,6 +17,7 @@ import numpy as np
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
+from lifelore.core.whole_file import whole_file
 from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.evidence import Evidence
 from lifelore.interaction.generator_state import generator_from_state, generator_state
@@ -39,7 +40,8 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
     """
     content = session_bytes(agent)
     try:
-        Path(path).write_bytes(content)
+        with whole_file(path) as file:
+            file.write(content)
     except OSError as error:
         raise StoreError(f"the session cannot be written to {path}: {error.strerror}") from None
 

@@ -14,6 +14,7 @@ import numpy as np
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
+from lifelore.core.whole_file import whole_file
 from lifelore.interaction.generator_state import generator_from_state, generator_state
 from lifelore.interaction.library_file import library_bytes, library_from_bytes
 from lifelore.interaction.type_dynamics import TypeDynamics
@@ -38,8 +39,7 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
     if users.dynamics.law is not None:
         arrays["law"] = users.dynamics.law
     try:
-        # Opened here, for NumPy would add its own ending to the name.
-        with Path(path).open("wb") as file:
+        with whole_file(path) as file:
             FORMAT.write(file, header, arrays, compress=False)
     except OSError as error:
         raise StoreError(f"the users cannot be written to {path}: {error.strerror}") from None

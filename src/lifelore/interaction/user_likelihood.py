@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.category_signal import CategorySignal
 from lifelore.interaction.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.log_probability import log_of
 from lifelore.interaction.outcome_model import LARGEST
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.return_signal import ReturnSignal
@@ -55,8 +56,7 @@ def _gaussian(mean: NDArray[np.float64], precision: NDArray[np.float64], height:
 
 
 def _category(signal: CategorySignal) -> Said:
-    by_policy = np.ascontiguousarray(signal.probs.transpose(1, 2, 0))
-    logs = np.log(by_policy, out=np.full_like(by_policy, -np.inf), where=by_policy > 0)
+    logs = log_of(np.ascontiguousarray(signal.probs.transpose(1, 2, 0)))
 
     def said(policies: NDArray[np.int64], signals: Any, out: NDArray[np.float64]) -> None:
         table_said(policies, signals, logs, out)
