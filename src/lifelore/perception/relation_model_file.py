@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.whole_file import whole_file
 from lifelore.perception.contact_settings import ContactSettings
 from lifelore.perception.displacement_relations import DisplacementRelations, NeighbourSettings
 from lifelore.perception.relation_classifier import RelationClassifier
@@ -49,7 +50,8 @@ def save_model(model: RelationClassifier, path: str | Path, about: Mapping[str, 
     """
     content = model_bytes(model, about)
     try:
-        Path(path).write_bytes(content)
+        with whole_file(path) as file:
+            file.write(content)
     except OSError as error:
         raise StoreError(f"the model cannot be written to {path}: {error.strerror}") from None
 
