@@ -4,13 +4,15 @@ import os
 import shutil
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 import lifelore
-from lifelore.core import jit
+from lifelore.core.kernel_cache import STALE_DAYS, kernel_cache_dir, kernel_sources, remove_stale
+from lifelore.core.numba_internals import internals
 
 KERNELS_RUN = Path(__file__).with_name("kernels_run.py")
 PACKAGE = Path(lifelore.__file__).parent
@@ -97,21 +99,125 @@ def test_the_cache_is_named_after_all_that_kernels_read(tmp_path):
     (package / "room").mkdir(parents=True)
     files = {
         "room/a.py": "from lifelore.room.b import ONE\nimport numpy\n@kernel\ndef f(): return ONE\n",
-        "room/b.py": "import lifelore.room.c\nONE = 1\n",
-        "room/c.py": "from lifelore.room import d\n",
+        "room/b.py": "import numpy, lifelore.room.c\nONE = 1\n",
+        "room/c.py": "def g():\n    from lifelore.room import (\n        x,\n        d,\n    )\n",
         "room/d.py": "",
         "room/stranger.py": "from lifelore.room import a\n",
     }
     for name, source in files.items():
         (package / name).write_text(source)
-    found = {path.relative_to(package).as_posix() for path in jit._sources(package)}
+    found = {path.relative_to(package).as_posix() for path in kernel_sources(package)}
     assert found == {"room/a.py", "room/b.py", "room/c.py", "room/d.py"}
     # The bits of an event are constants that kernels of other files read.
-    assert PACKAGE / "core" / "mdp.py" in jit._sources(PACKAGE)
+    assert PACKAGE / "core" / "mdp.py" in kernel_sources(PACKAGE)
 
 
 def test_every_kernel_lies_in_the_cache_folder():
     from lifelore.core import model_learning, planning, q_learning
 
     for function in (q_learning.learn, model_learning.explore, planning._sweep):
-        assert Path(function.stats.cache_path).is_relative_to(jit.kernel_cache_dir())  # type: ignore[attr-defined]
+        assert Path(function.stats.cache_path).is_relative_to(kernel_cache_dir())  # type: ignore[attr-defined]
+
+
+def test_numba_still_has_what_makes_kernels_quick():
+    """A failure here means that a Numba release changed its insides: kernels still run, but slower."""
+    found = internals()
+    assert found is not None
+    assert found.no_counting == {"_nrt": False}
+
+
+NO_INTERNALS = """
+import sys
+import numba.core.caching
+del numba.core.caching.CompileResultCacheImpl
+from lifelore.core.numba_internals import internals
+assert internals() is None
+"""
+
+
+def test_without_the_insides_of_numba_everything_works_the_same(copied):
+    package, draw = copied
+    plain = draw(NUMBA_DISABLE_JIT="1")
+    (package.parent / "fallback.py").write_text(NO_INTERNALS)
+    source = f"exec(open({str(package.parent / 'fallback.py')!r}).read()){DRAW}"
+    paths = {"PYTHONPATH": str(package.parent), "NUMBA_CACHE_DIR": str(package.parent / "slow")}
+    slow = [run("-c", source, str(package), NUMBA_DISABLE_JIT="0", **paths) for _ in range(2)]
+    assert slow == [plain, plain]
+    assert list((package.parent / "slow").rglob("*.nbc"))
+
+
+ALLOCATING = """
+import numpy as np
+from lifelore.core.jit import kernel
+
+@kernel(allocates=False)
+def make(n):
+    return np.zeros(n)
+make(3)
+"""
+
+
+def test_a_kernel_that_makes_an_array_is_refused_where_it_must_not(tmp_path):
+    """The compiler holds a kernel to ``allocates=False``."""
+    (tmp_path / "allocating.py").write_text(ALLOCATING)
+    command = [sys.executable, str(tmp_path / "allocating.py")]
+    done = subprocess.run(
+        command, env=os.environ | {"NUMBA_DISABLE_JIT": "0"}, capture_output=True, text=True, check=False
+    )
+    assert done.returncode != 0
+    assert "Only accept returning of array passed into the function as argument" in done.stderr
+
+
+def test_compiled_kernels_travel_with_their_folder(copied, tmp_path):
+    """Another place, newer files, a folder that cannot be written: the machine code is loaded, not made again."""
+    package, draw = copied
+    first = draw()
+    cache, other = package.parent / "cache", tmp_path / "other"
+    shutil.copytree(package, other / "lifelore", ignore=shutil.ignore_patterns("__pycache__"))
+    for path in (other / "lifelore").rglob("*.py"):
+        os.utime(path)
+    kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb*")}
+    said = run(
+        "-c",
+        DRAW + "print(sum(learn.stats.cache_misses.values()))",
+        str(other),
+        PYTHONPATH=str(other),
+        NUMBA_CACHE_DIR=str(cache),
+        NUMBA_DISABLE_JIT="0",
+    )
+    assert said.split() == [*first.split(), "0"]
+    assert {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb*")} == kept
+
+
+def test_kernels_run_where_nothing_can_be_kept(copied):
+    package, draw = copied
+    blocked = package.parent / "blocked"
+    blocked.write_text("a file where the folder should be")
+    assert draw(NUMBA_CACHE_DIR=str(blocked)) == draw(NUMBA_DISABLE_JIT="1")
+
+
+def test_folders_of_other_versions_go_after_a_month_without_use(tmp_path):
+    month = 24 * 3600 * (STALE_DAYS + 1)
+    ages = {"kernels-" + "a" * 16: month, "kernels-" + "b" * 16: 3600, "kernels-mine": month, "other": month}
+    for name, age in ages.items():
+        (tmp_path / name).mkdir()
+        (tmp_path / name / "index.nbi").write_text("")
+        then = time.time() - age
+        os.utime(tmp_path / name, (then, then))
+    keep = tmp_path / ("kernels-" + "c" * 16)
+    keep.mkdir()
+    os.utime(keep, (0, 0))
+    remove_stale(tmp_path, keep)
+    assert {path.name for path in tmp_path.iterdir()} == {*ages, keep.name} - {"kernels-" + "a" * 16}
+
+
+def test_a_use_is_noted_and_clears_up(tmp_path, monkeypatch):
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path))
+    used = kernel_cache_dir.__wrapped__()
+    stale = tmp_path / ("kernels-" + "0" * 16)
+    stale.mkdir()
+    for folder in (used, stale):
+        os.utime(folder, (0, 0))
+    assert kernel_cache_dir.__wrapped__() == used
+    assert list(tmp_path.iterdir()) == [used]
+    assert time.time() - used.stat().st_mtime < 24 * 3600

@@ -50,6 +50,7 @@ def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0
         start,
         target,
         place,
+        bool((place == GOAL).any()),
         cost_row,
         try_cost,
         exhaustive,
@@ -59,6 +60,7 @@ def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0
         desk.parent_action,
         own,
     )
+    assert (desk.parent == UNKNOWN).all()  # as it was, whatever the search reached
     return [int(a) for a in desk.plan[:length][::-1]]
 
 

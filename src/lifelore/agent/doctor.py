@@ -12,7 +12,7 @@ import numpy as np
 
 from lifelore.core.curve import TOTAL
 from lifelore.core.errors import LifeloreError
-from lifelore.core.jit import kernel_cache_dir
+from lifelore.core.kernel_cache import kernel_cache_dir
 from lifelore.core.q_learner import QLearning
 from lifelore.core.streams import stream
 from lifelore.domains.worlds import make_world

@@ -6,10 +6,14 @@ import numpy as np
 
 from lifelore.agent.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
 from lifelore.core.curve import EPISODE, STEP, first_episodes, new_curve
+from lifelore.core.known_value import KnownValue
 from lifelore.core.known_world import Model, best_known_actions, known_policy
 from lifelore.core.mdp import Tables
 from lifelore.core.model_learning import Explorer, Manner, Perceived, check_deterministic, explore
-from lifelore.core.planning import mean_start_value, policy_values
+
+NEAR = 1e-9
+"""Share of the optimal return within which the exact value decides about the threshold; far more than rounding
+can move the value that is kept up to date."""
 
 
 def live_model_task(
@@ -27,7 +31,7 @@ def live_model_task(
     """Explore until the greedy policy is worth 80 % of `optimal` or the cap is met; `model` learns in place."""
     check_deterministic(tables)
     curve = new_curve(episodes)
-    policy = np.full(tables.n_states, -1, np.int32)
+    known = KnownValue(tables, model, explorer, discount)
     value, total, trace = 0.0, 0, []
     while value < THRESHOLD * optimal:
         if stop.is_set():
@@ -36,8 +40,9 @@ def live_model_task(
         if steps == 0:
             break
         total += steps
-        policy = known_policy(model, explorer.place)
-        value = mean_start_value(tables, policy_values(tables, policy, discount))
+        value = known.update()
+        if abs(value - THRESHOLD * optimal) < NEAR * optimal:
+            value = known.exact()
         trace.append((total, value / optimal))
     reached = value >= THRESHOLD * optimal
     episode, begun, running = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP]), explorer.running[0]
@@ -49,8 +54,8 @@ def live_model_task(
         steps_to_80=total if reached else episodes * max_steps,
         episodes_to_80=episode + int(begun > 0) if reached else episodes,
         reached=bool(reached),
-        final_return=value,
-        policy=policy,
+        final_return=known.exact(),
+        policy=known_policy(model, explorer.place),
         best=best_known_actions(model, explorer.place),
         trace=np.array(trace, float).reshape(-1, 2),
         curve=first_episodes(curve, episode + int(begun > 0)),

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 EPISODE, STEP, TOTAL = 0, 1, 4
 """Places in the cursors of `Learner` and `Explorer`: episode and step under way, steps in all."""
+GOALS, NEWS = 5, 6
+"""Places in the cursor of `Explorer` alone: places known as goals, moves learnt since the last look."""
 
 
 class Curve(NamedTuple):

@@ -1,82 +1,61 @@
 """`@kernel`: compile with Numba, cached on disk, and never a stale result.
 
-Numba's own cache looks at the file of the decorated function alone: when a *called* function in another
-file changes, or a constant that it reads, the old machine code answers silently. Here the cache folder's
-name carries a hash of every source file that holds kernels and of all that those files import from this
-package, so any edit or upgrade that can matter starts a fresh folder. Every kernel also runs as plain Python
-under ``NUMBA_DISABLE_JIT=1``.
+The cache folder is that of `core.kernel_cache`. Every kernel also runs as plain Python under
+``NUMBA_DISABLE_JIT=1``.
 """
 
-import ast
-import hashlib
-import os
-from collections.abc import Callable, Iterator
-from functools import cache
+from collections.abc import Callable
 from pathlib import Path
-from typing import TypeVar
+from typing import Any, TypeVar, overload
 
 import numba
-from platformdirs import user_cache_dir
+
+from lifelore.core.kernel_cache import PACKAGE, kernel_cache_dir
+from lifelore.core.numba_internals import internals
 
 F = TypeVar("F", bound=Callable)
+_config: Any = numba.config  # type: ignore[attr-defined]
+_njit: Any = numba.njit
 
 
-@cache
-def kernel_cache_dir() -> Path:
-    """Folder of the compiled kernels: ``NUMBA_CACHE_DIR`` or the user's cache, then a hash of the sources."""
-    package = Path(__file__).parents[1]
-    digest = hashlib.sha256(numba.__version__.encode())
-    for path in sorted(_sources(package)):
-        digest.update(path.relative_to(package).as_posix().encode())
-        digest.update(path.read_bytes())
-    base = os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("lifelore")
-    return Path(base) / f"kernels-{digest.hexdigest()[:16]}"
+@overload
+def kernel(function: F) -> F: ...
+@overload
+def kernel(*, allocates: bool) -> Callable[[F], F]: ...
+def kernel(function=None, *, allocates: bool = True):
+    """Compile a function on its first call (nogil, no fastmath) and keep the machine code between processes.
 
-
-def _sources(package: Path) -> set[Path]:
-    """The files that hold kernels and every file of the package that they import, directly or not."""
-    found: set[Path] = set()
-    waiting = [path for path in package.rglob("*.py") if _holds_kernels(path.read_bytes())]
-    while waiting:
-        path = waiting.pop()
-        if path not in found:
-            found.add(path)
-            waiting += _imported(path, package)
-    return found
-
-
-def _holds_kernels(source: bytes) -> bool:
-    return b"@kernel" in source or b"@inlined" in source
-
-
-def _imported(path: Path, package: Path) -> Iterator[Path]:
-    names: list[str] = []
-    for node in ast.walk(ast.parse(path.read_bytes())):
-        if isinstance(node, ast.ImportFrom) and node.module:
-            names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
-        elif isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-    for name in names:
-        root, *parts = name.split(".")
-        file = package.joinpath(*parts).with_suffix(".py")
-        if root == package.name and parts and file.is_file():
-            yield file
-
-
-def kernel(function: F) -> F:
-    """Compile `function` on first call (nogil, no fastmath), keep the machine code between processes."""
-    return _compiled(function)
+    Parameters
+    ----------
+    function : callable
+    allocates : bool
+        False: the kernel makes no array, nor does any function that it calls. Numba then counts no references,
+        whose atomic instructions cost up to two thirds of a learner's step. A kernel that makes one all the same
+        does not compile.
+    """
+    found = internals()
+    options = found.no_counting if found and not allocates else {}
+    if function is None:
+        return lambda decorated: _compiled(decorated, options)
+    return _compiled(function, options)
 
 
 def inlined(function: F) -> F:
     """As `kernel`, for the small pieces that kernels call at every step: always inlined into them."""
-    return _compiled(function, inline="always")
+    return _compiled(function, {"inline": "always"})
 
 
-def _compiled(function: F, **options) -> F:
-    previous = numba.config.CACHE_DIR  # type: ignore[attr-defined]
-    numba.config.CACHE_DIR = str(kernel_cache_dir())  # type: ignore[attr-defined]
+def _compiled(function: F, options: dict[str, Any]) -> F:
+    found, settings = internals(), dict(nogil=True, no_cfunc_wrapper=True, **options)
+    # The hash in the folder's name covers this package alone; elsewhere Numba's own cache looks at the file.
+    if found and PACKAGE in Path(function.__code__.co_filename).parents:
+        dispatcher: Any = _njit(**settings)(function)
+        if not _config.DISABLE_JIT:
+            dispatcher._cache = found.quick_cache(function)
+        return dispatcher
+    previous = _config.CACHE_DIR
+    _config.CACHE_DIR = str(kernel_cache_dir())
     try:
-        return numba.njit(cache=True, nogil=True, no_cfunc_wrapper=True, **options)(function)  # type: ignore[return-value]
+        return _njit(cache=True, **settings)(function)
     finally:
-        numba.config.CACHE_DIR = previous  # type: ignore[attr-defined]
+        _config.CACHE_DIR = previous

@@ -32,40 +32,113 @@ def blank_model(n_states: int, n_actions: int) -> Model:
     return Model(np.full((n_states, n_actions), UNKNOWN, np.int32), np.full(n_states, UNKNOWN, np.int64))
 
 
-@kernel
-def goal_distances(target, place):
+class WaysIn(NamedTuple):
+    """The known moves into each state as linked lists, and steps to the goal over them; changed in place.
+
+    distance : (n_states,) int32, steps to the goal; 0 at the goal, -1 where no way is known
+    last_into : (n_states,) int32, the first move of the list into each state, END where there is none
+    before : (n_states · n_actions,) int32, the move that follows a move in its list, END, or NOT_LISTED
+    queue : (n_states,) int32, work space
+    starts : (n_states,) int32, how often each state is among the starts that are counted
+    starts_at : (n_states + 1,) int64, starts at each distance to the goal
+    farthest : (1,) int64, no start was ever farther from the goal than this
+
+    A move is numbered state · n_actions + action. Moves that stay where they are, are in no list.
+    """
+
+    distance: NDArray[np.int32]
+    last_into: NDArray[np.int32]
+    before: NDArray[np.int32]
+    queue: NDArray[np.int32]
+    starts: NDArray[np.int32]
+    starts_at: NDArray[np.int64]
+    farthest: NDArray[np.int64]
+
+
+END, NOT_LISTED = -1, -2
+_NONE = np.empty(0, np.int64)
+
+
+def blank_ways(n_states: int, n_actions: int, starts: NDArray[np.int32] | None = None) -> WaysIn:
+    """Lists without a move. `starts`: (n_starts,) states whose distances are counted."""
+    counted = np.zeros(n_states, np.int32)
+    if starts is not None:
+        np.add.at(counted, starts, 1)
+    return WaysIn(
+        np.full(n_states, -1, np.int32),
+        np.full(n_states, END, np.int32),
+        np.full(n_states * n_actions, NOT_LISTED, np.int32),
+        np.empty(n_states, np.int32),
+        counted,
+        np.zeros(n_states + 1, np.int64),
+        np.zeros(1, np.int64),
+    )
+
+
+def find_ways(target: NDArray[np.int32], place: NDArray[np.int8], ways: WaysIn) -> None:
+    """List every known move anew and find all distances."""
+    ways.distance[:], ways.last_into[:], ways.before[:] = -1, END, NOT_LISTED
+    ways.starts_at[:], ways.farthest[:] = 0, 0
+    goals = np.flatnonzero(place == GOAL)
+    ways.distance[goals] = 0
+    _list_and_spread(target, place, np.arange(target.size), goals, ways)
+
+
+def add_moves(target: NDArray[np.int32], place: NDArray[np.int8], moves: NDArray[np.int64], ways: WaysIn) -> None:
+    """List these moves too and shorten the distances that they shorten."""
+    _list_and_spread(target, place, moves, _NONE, ways)
+
+
+@kernel(allocates=False)
+def _list_and_spread(target, place, moves, goals, ways):
+    """List moves; then breadth first from all `goals` together or, without goals, from where each move leads.
+
+    One kernel, because each costs a quarter of a second to compile.
+    """
+    distance, last_into, before, queue, starts, starts_at, farthest = ways
+    n_actions = target.shape[1]
+    for i in range(moves.size):
+        move = moves[i]
+        t = target[move // n_actions, move % n_actions]
+        if t >= 0 and t != move // n_actions and before[move] == NOT_LISTED:
+            before[move] = last_into[t]
+            last_into[t] = move
+    rounds = moves.size if goals.size == 0 else 1
+    for i in range(rounds):
+        tail = goals.size
+        for k in range(goals.size):
+            queue[k] = goals[k]
+        if goals.size == 0:
+            t = target[moves[i] // n_actions, moves[i] % n_actions]
+            if t >= 0 and distance[t] >= 0:
+                queue[0] = t
+                tail = 1
+        head = 0
+        while head < tail:
+            s = queue[head]
+            steps = distance[s] + 1
+            head += 1
+            move = last_into[s]
+            while move != END:
+                origin = move // n_actions
+                move = before[move]
+                # All moves cost one step, so the first time a state is reached is the nearest.
+                if place[origin] != DEAD_END and (distance[origin] < 0 or distance[origin] > steps):
+                    if distance[origin] >= 0:
+                        starts_at[distance[origin]] -= starts[origin]
+                    distance[origin] = steps
+                    starts_at[steps] += starts[origin]
+                    if steps > farthest[0]:
+                        farthest[0] = steps
+                    queue[tail] = origin
+                    tail += 1
+
+
+def goal_distances(target: NDArray[np.int32], place: NDArray[np.int8]) -> NDArray[np.int32]:
     """Steps to the goal over known moves, (n_states,) int32; 0 at the goal, -1 where no way is known."""
-    n_states, n_actions = target.shape
-    # Who leads where: the moves into each state, as a linked list.
-    last_into = np.full(n_states, -1, np.int32)
-    before = np.empty(n_states * n_actions, np.int32)
-    for s in range(n_states):
-        for a in range(n_actions):
-            t = target[s, a]
-            if t >= 0:
-                before[s * n_actions + a] = last_into[t]
-                last_into[t] = s * n_actions + a
-    distance = np.full(n_states, -1, np.int32)
-    queue = np.empty(n_states, np.int32)
-    tail = 0
-    for s in range(n_states):
-        if place[s] == GOAL:
-            distance[s] = 0
-            queue[tail] = s
-            tail += 1
-    head = 0
-    while head < tail:
-        s = queue[head]
-        head += 1
-        move = last_into[s]
-        while move >= 0:
-            origin = move // n_actions
-            if distance[origin] < 0 and place[origin] != DEAD_END:
-                distance[origin] = distance[s] + 1
-                queue[tail] = origin
-                tail += 1
-            move = before[move]
-    return distance
+    ways = blank_ways(*target.shape)
+    find_ways(target, place, ways)
+    return ways.distance
 
 
 def best_known_actions(model: Model, place: NDArray[np.int8]) -> NDArray[np.bool_]:

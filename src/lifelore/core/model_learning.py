@@ -27,6 +27,9 @@ from lifelore.core.search_plan import plan_search
 
 MOST_ACTIONS = np.iinfo(np.int8).max
 """Plans are kept as int8."""
+MOST_NEWS = 1024
+"""Learnt moves that an explorer lists between two looks; after more of them whoever looks must look at all."""
+ALL_NEW = -1
 
 
 class Manner(NamedTuple):
@@ -61,9 +64,12 @@ class Explorer(NamedTuple):
     place : (n_states,) int8, NOT_LOOKED | LOOKED | DEAD_END | GOAL
     tried : (n_states, n_actions) int64, how often each move was made in this task
     plan : (n_states + 1,) int8, actions still to do, the next one last
-    queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`
+    queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`, where
+        `parent` is UNKNOWN between calls
+    news : (MOST_NEWS,) int64, moves learnt since whoever follows the model last looked: state · n_actions + action
     world_random, own_random : (2,) uint64
-    cursor : (5,) int64, episode, step in it, state, length of plan, total steps
+    cursor : (7,) int64, episode, step in it, state, length of plan, total steps, places known as goals, and how
+        many `news` there are; ALL_NEW where something that was known has changed or they are too many
     running : (2,) float64, return so far and the discount it has reached
     """
 
@@ -73,6 +79,7 @@ class Explorer(NamedTuple):
     queue: NDArray[np.int32]
     parent: NDArray[np.int32]
     parent_action: NDArray[np.int8]
+    news: NDArray[np.int64]
     world_random: NDArray[np.uint64]
     own_random: NDArray[np.uint64]
     cursor: NDArray[np.int64]
@@ -89,16 +96,17 @@ def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
         np.zeros((n_states, n_actions), np.int64),
         np.zeros(n_states + 1, np.int8),
         np.zeros(n_states, np.int32),
-        np.zeros(n_states, np.int32),
+        np.full(n_states, UNKNOWN, np.int32),
         np.zeros(n_states, np.int8),
+        np.zeros(MOST_NEWS, np.int64),
         random_state(world),
         random_state(own),
-        np.zeros(5, np.int64),
+        np.array([0, 0, 0, 0, 0, 0, ALL_NEW]),
         np.zeros(2),
     )
 
 
-@kernel
+@kernel(allocates=False)
 def explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
@@ -108,31 +116,46 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     target, seen = model
     percept, cost_row, try_cost = perceived
     planned, exhaustive, senses = manner
-    place, tried, plan, queue, parent, parent_action, world, own, cursor, running = explorer
+    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = explorer
     returns, rewards, steps, collisions, reached = curve
-    episode, step, state, left = cursor[0], cursor[1], cursor[2], cursor[3]
+    n_actions = target.shape[1]
+    episode, step = cursor[0], cursor[1]
+    state, left = cursor[2], cursor[3]
+    goals, n_news = cursor[5], cursor[6]
     ret, reach = running[0], running[1]
     done_steps = 0
     while done_steps < budget and episode < returns.size:
         if step == 0:
             state = np.int64(starts[one_of(world, starts.size)])
-            left, ret, reach = np.int64(0), 0.0, 1.0
+            left, ret, reach = 0, 0.0, 1.0
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
-            _arrive(state, target, seen, percept, tried)
+            if _arrive(state, target, seen, percept, tried):
+                n_news = ALL_NEW
             if senses:
-                for move in range(target.shape[1]):
+                for move in range(n_actions):
                     target[state, move] = next_state[state, move, 0]
-                left = np.int64(0)
+                left, n_news = 0, ALL_NEW
         if planned:
             if left == 0:
                 left = plan_search(
-                    state, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, own
+                    state,
+                    target,
+                    place,
+                    goals > 0,
+                    cost_row,
+                    try_cost,
+                    exhaustive,
+                    plan,
+                    queue,
+                    parent,
+                    parent_action,
+                    own,
                 )
             if left == 0:
                 _doubt(target, tried)
-                plan[0] = one_of(own, target.shape[1])
-                left = np.int64(1)
+                plan[0] = one_of(own, n_actions)
+                left = 1
             left -= 1
             a = np.int64(plan[left])
         else:
@@ -142,15 +165,26 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
         event = event_of[state, a, 0]
         tried[state, a] += 1
         if target[state, a] != following:
+            if target[state, a] != UNKNOWN or n_news == news.size:
+                n_news = ALL_NEW
+            elif n_news != ALL_NEW:
+                news[n_news] = state * n_actions + a
+                n_news += 1
             target[state, a] = following
-            left = np.int64(0)
+            left = 0
         ret += reach * reward
         reach *= discount
         rewards[episode] += reward
         if event & COLLISION:
             collisions[episode] += 1
         if event & TERMINAL:
-            place[following] = GOAL if reward > 0 else DEAD_END
+            found = GOAL if reward > 0 else DEAD_END
+            if place[following] != found:
+                if found == GOAL:
+                    goals += 1
+                elif place[following] == GOAL:
+                    goals -= 1
+                place[following], n_news = found, ALL_NEW
         state = following
         step += 1
         done_steps += 1
@@ -160,21 +194,26 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
             reached[episode] = event & TERMINAL > 0 and reward > 0
             episode += 1
             step = 0
-            left = np.int64(0)
-    cursor[0], cursor[1], cursor[2], cursor[3] = episode, step, state, left
+            left = 0
+    cursor[0], cursor[1] = episode, step
+    cursor[2], cursor[3] = state, left
     cursor[4] += done_steps
+    cursor[5], cursor[6] = goals, n_news
     running[0], running[1] = ret, reach
     return done_steps
 
 
 @inlined
 def _arrive(state, target, seen, percept, tried):
-    """The percept changed since it was remembered: forget what was remembered of this place."""
+    """Forget what was remembered of a place whose percept has changed; whether that was anything."""
+    forgot = False
     if seen[state] != percept[state]:
         for a in range(target.shape[1]):
             if tried[state, a] == 0:
+                forgot |= target[state, a] != UNKNOWN
                 target[state, a] = UNKNOWN
         seen[state] = percept[state]
+    return forgot
 
 
 @inlined
@@ -190,7 +229,7 @@ def _least_tried(tried, state, random):
     return np.int64(best)
 
 
-@kernel
+@kernel(allocates=False)
 def _doubt(target, tried):
     """Nothing is left to look at: remembered refusals that this task has not met may be out of date."""
     for s in range(target.shape[0]):

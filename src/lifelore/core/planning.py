@@ -19,15 +19,14 @@ def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDAr
     reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
     shortest path.
     """
-    q = np.zeros((tables.n_states, tables.n_actions))
-    _sweep(tables, q, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
+    q, value = np.zeros((tables.n_states, tables.n_actions)), np.zeros(tables.n_states)
+    _sweep(tables, q, value, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
     return q
 
 
-@kernel
-def _sweep(tables, q, discount, tolerance):
+@kernel(allocates=False)
+def _sweep(tables, q, value, discount, tolerance):
     n_states, n_actions = q.shape
-    value = np.zeros(n_states)
     moved = tolerance + 1.0
     forwards = True
     while moved > tolerance:
@@ -101,19 +100,21 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
         γ in [0, 1).
     """
     policy = np.ascontiguousarray(policy, dtype=np.int32)
-    if tables.outcome_cum.size == 1:
-        return _follow(tables.next_state, tables.reward, tables.event, policy, float(discount))
-    return _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())))
-
-
-@kernel
-def _follow(next_state, reward, event, policy, discount):
-    """Deterministic world: walk each path once; a cycle's value has a closed form."""
-    n_states = policy.size
+    n_states = tables.n_states
     value = np.zeros(n_states)
-    mark = np.zeros(n_states, np.int64)  # 0 new, -1 done, else 1 + place on the path under way
-    path = np.empty(n_states, np.int64)
-    for start in range(n_states):
+    if tables.outcome_cum.size == 1:
+        # 0 new, -1 done, else 1 + place on the path under way
+        mark, path = np.zeros(n_states, np.int64), np.empty(n_states, np.int64)
+        _follow(tables.next_state, tables.reward, tables.event, policy, float(discount), value, mark, path)
+    else:
+        _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())), value)
+    return value
+
+
+@kernel(allocates=False)
+def _follow(next_state, reward, event, policy, discount, value, mark, path):
+    """Deterministic world: walk each path once; a cycle's value has a closed form."""
+    for start in range(policy.size):
         length, s = 0, start
         ended = False
         while not ended and mark[s] == 0:
@@ -137,12 +138,10 @@ def _follow(next_state, reward, event, policy, discount):
             after = reward[path[i], policy[path[i]], 0] + discount * after
             value[path[i]] = after
             mark[path[i]] = -1
-    return value
 
 
-@kernel
-def _iterate(tables, policy, discount, tolerance):
-    value = np.zeros(policy.size)
+@kernel(allocates=False)
+def _iterate(tables, policy, discount, tolerance, value):
     moved = tolerance + 1.0
     while moved > tolerance:
         moved = 0.0
@@ -153,7 +152,6 @@ def _iterate(tables, policy, discount, tolerance):
             if abs(total - value[s]) > moved:
                 moved = abs(total - value[s])
             value[s] = total
-    return value
 
 
 def mean_start_value(tables: Tables, values: NDArray[np.float64]) -> float:

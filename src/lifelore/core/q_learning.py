@@ -176,7 +176,7 @@ def _break_tie(q, row, tie_weight, context, first, random):
     return chosen
 
 
-@kernel
+@kernel(allocates=False)
 def learn(tables, rows, schedule, learner, curve, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
     # Unpacked once: reading a tuple's array inside the loop would count references at every step.
@@ -191,7 +191,7 @@ def learn(tables, rows, schedule, learner, curve, budget):
     done_steps = 0
     while done_steps < budget and episode < epsilons.size:
         if step == 0:
-            state = np.uint64(starts[int(next_uniform(world) * starts.size)])
+            state = np.uint64(starts[np.int64(next_uniform(world) * starts.size)])
             reward_class, ret, discount = np.uint64(0), 0.0, 1.0
         row = np.uint64(q_row[state])
         context = np.uint64(context_row[state, reward_class])

@@ -13,15 +13,21 @@ least any searcher can need that must enter a place to see whether the goal is t
 that a nearer place always comes first: with more than four moves a crumb weighs less."""
 
 
-@kernel
-def plan_search(start, target, place, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random):
-    """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0."""
-    goal_known = False
-    for s in range(place.size):
-        parent[s] = UNKNOWN
-        goal_known |= place[s] == GOAL
-    crumb = min(NO_CRUMBS, 1.0 / (target.shape[1] + 1))
-    best_cost, best_state, best_action, ties = np.inf, -1, 0, 0
+@kernel(allocates=False)
+def plan_search(
+    start, target, place, goal_known, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random
+):
+    """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0.
+
+    All of `parent` must be UNKNOWN, and is again afterwards: only the states that the search reached are reset,
+    so a search near its start costs the same in a world of any size.
+    """
+    n_actions = target.shape[1]
+    crumb = 1.0 / (n_actions + 1)
+    if crumb > NO_CRUMBS:
+        crumb = NO_CRUMBS
+    best_cost, ties = np.inf, 0
+    best_state, best_action = -1, 0
     goal_state, goal_action = -1, 0
     head, tail = 0, 1
     queue[0] = start
@@ -30,7 +36,7 @@ def plan_search(start, target, place, cost_row, try_cost, exhaustive, plan, queu
     while head < tail and depth <= best_cost:
         s = queue[head]
         head += 1
-        for a in range(target.shape[1]):
+        for a in range(n_actions):
             t = target[s, a]
             cost = np.inf
             if t == UNKNOWN:
@@ -49,7 +55,8 @@ def plan_search(start, target, place, cost_row, try_cost, exhaustive, plan, queu
                 queue[tail] = t
                 tail += 1
             if cost < best_cost:
-                best_cost, best_state, best_action, ties = cost, s, a, 1
+                best_cost, ties = cost, 1
+                best_state, best_action = s, a
             elif cost == best_cost and cost < np.inf:
                 ties += 1
                 if one_of(random, ties) == 0:
@@ -59,14 +66,16 @@ def plan_search(start, target, place, cost_row, try_cost, exhaustive, plan, queu
             depth += 1.0
     if best_state < 0:
         best_state, best_action = goal_state, goal_action
-    if best_state < 0:
-        return np.int64(0)
-    plan[0] = best_action
-    length, s = 1, best_state
-    while s != start:
-        plan[length] = parent_action[s]
-        length += 1
-        s = parent[s]
+    length, s = 0, best_state
+    if best_state >= 0:
+        plan[0] = best_action
+        length = 1
+        while s != start:
+            plan[length] = parent_action[s]
+            length += 1
+            s = parent[s]
+    for i in range(tail):
+        parent[queue[i]] = UNKNOWN
     return np.int64(length)
 
 
