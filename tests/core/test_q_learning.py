@@ -7,10 +7,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.core.curve import new_curve
+from lifelore.core.curve import TOTAL, new_curve
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
 from lifelore.core.planning import optimal_q, policy_values
+from lifelore.core.q_learner import QLearning
 from lifelore.core.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
 from lifelore.core.streams import stream
 
@@ -252,3 +253,58 @@ def test_default_rows_read_the_state_or_row_0(draw_world):
     each = uniform_rows(tables, np.full((8, 3), 1 / 3))
     assert each.context_row.ravel().tolist() == list(range(8))
     assert (each.explore_cum[:, -1] == 1.0).all()
+
+
+# ---- many learners at once -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("chunk", "threads"), [(7, 1), (7, 3), (10**6, 2)])
+def test_many_learn_what_each_learns_alone(draw_world, chunk, threads):
+    tables, n = draw_world(4, n_states=9, n_outcomes=2), 11
+    method = QLearning(episodes=12, max_steps=25)
+    rows = uniform_rows(tables, ties=np.random.default_rng(0).uniform(0.5, 2, (1, 3)))
+    learners, curves = method.learn_many(
+        tables,
+        0.9,
+        worlds=[stream(i, "world") for i in range(n)],
+        owns=[stream(i, "own") for i in range(n)],
+        rows=rows,
+        threads=threads,
+        chunk=chunk,
+    )
+    for i in range(n):
+        alone = method.learn(tables, 0.9, world=stream(i, "world"), own=stream(i, "own"), rows=rows)
+        for stacked, one in zip((*learners, *curves), (*alone[0], *alone[1]), strict=True):
+            assert stacked[i].dtype == one.dtype
+            assert np.array_equal(stacked[i], one)
+    assert not np.array_equal(learners.q[0], learners.q[1])
+
+
+def test_many_are_watched_between_chunks(draw_world):
+    seen = []
+
+    def watch(learners, curves):
+        seen.append(learners.cursor[:, TOTAL].tolist())
+        assert curves.returns.shape == (3, 50)
+        return len(seen) == 4
+
+    streams = [stream(i) for i in range(3)]
+    QLearning(episodes=50, max_steps=100).learn_many(
+        draw_world(1), 0.9, worlds=streams, owns=streams, chunk=5, watch=watch
+    )
+    assert seen == [[5] * 3, [10] * 3, [15] * 3, [20] * 3]
+
+
+@pytest.mark.parametrize(
+    ("worlds", "options", "message"),
+    [
+        (0, {}, "worlds and owns must hold one generator a learner, got 0 and 2"),
+        (3, {}, "worlds and owns must hold one generator a learner, got 3 and 2"),
+        (2, {"threads": 0}, "threads must be at least 1, got 0"),
+        (2, {"chunk": 0}, "chunk must be at least 1, got 0"),
+    ],
+)
+def test_many_refuse_what_breaks_a_rule(draw_world, worlds, options, message):
+    owns = [stream(i) for i in range(2)]
+    with pytest.raises(InputError, match=message):
+        QLearning().learn_many(draw_world(1), 0.9, worlds=[stream(i) for i in range(worlds)], owns=owns, **options)

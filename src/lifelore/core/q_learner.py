@@ -1,14 +1,26 @@
-"""`QLearning`: the settings of ε-greedy Q-learning, and a run of it on tables in bounded chunks."""
+"""`QLearning`: the settings of ε-greedy Q-learning, and runs of one or many learners on tables in bounded chunks."""
 
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.core.curve import Curve, new_curve
+from lifelore.core.curve import EPISODE, Curve, new_curve
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import Tables
-from lifelore.core.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import (
+    Learner,
+    Rows,
+    Schedule,
+    learn,
+    learn_each,
+    new_curves,
+    new_learner,
+    new_learners,
+    uniform_rows,
+)
 
 CHUNK = 1_000_000
 """Steps between two looks at the outside world: well under 0.2 s, so Ctrl-C is heard."""
@@ -99,3 +111,70 @@ class QLearning:
             if watch and watch(learner, curve):
                 break
         return learner, curve
+
+    def learn_many(
+        self,
+        tables: Tables,
+        discount: float,
+        *,
+        worlds: Sequence[np.random.Generator],
+        owns: Sequence[np.random.Generator],
+        rows: Rows | None = None,
+        threads: int | None = None,
+        chunk: int = CHUNK,
+        watch: Callable[[Learner, Curve], bool] | None = None,
+    ) -> tuple[Learner, Curve]:
+        """Learn one task by many learners at once; each learns to the bit what it would learn alone.
+
+        Parameters
+        ----------
+        tables, discount, rows
+            As for `learn`; the same for all.
+        worlds, owns : sequences of numpy generators
+            One of each a learner.
+        threads : int, optional
+            Default one a core; results do not depend on it.
+        chunk : int
+            Steps of each learner between two calls of `watch`, ≥ 1. Many learners do not fit into the processor's
+            caches: without a `watch`, a large chunk is quickest.
+        watch : callable, optional
+            Called between chunks with all learners and curves; a true answer ends learning early.
+
+        Returns
+        -------
+        learners, curves : Learner, Curve
+            Every array has the learners as its first axis: ``q`` is (n_learners, n_rows, n_actions), ``returns``
+            (n_learners, n_episodes).
+
+        Raises
+        ------
+        InputError
+            There is no learner, `worlds` and `owns` differ in number, `threads` or `chunk` is below 1.
+        """
+        n = len(worlds)
+        if not n or n != len(owns):
+            raise InputError(f"worlds and owns must hold one generator a learner, got {n} and {len(owns)}")
+        if threads is not None and threads < 1:
+            raise InputError(f"threads must be at least 1, got {threads}")
+        if chunk < 1:
+            raise InputError(f"chunk must be at least 1, got {chunk}")
+        threads = threads or os.cpu_count() or 1
+        rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
+        learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
+        curves = new_curves(n, self.episodes)
+        # No thread is left alone with the rest, and none runs long without a look at the outside world.
+        batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episodes * self.max_steps)))
+        pool = ThreadPoolExecutor(threads)
+        try:
+            while (learners.cursor[:, EPISODE] < self.episodes).any():
+                futures = [
+                    pool.submit(learn_each, tables, rows, schedule, learners, curves, chunk, i, min(i + batch, n))
+                    for i in range(0, n, batch)
+                ]
+                for future in futures:
+                    future.result()
+                if watch and watch(learners, curves):
+                    break
+        finally:
+            pool.shutdown(cancel_futures=True)
+        return learners, curves

@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.curve import Curve, new_curve
 from lifelore.core.errors import InputError
 from lifelore.core.jit import inlined, kernel
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
@@ -134,6 +135,24 @@ def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:
     )
 
 
+def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
+    """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
+    n = len(worlds)
+    return Learner(
+        np.zeros((n, n_q_rows, n_actions)),
+        np.zeros((n, n_q_rows, n_actions), np.int64),
+        np.stack([random_state(world) for world in worlds]),
+        np.stack([random_state(own) for own in owns]),
+        np.zeros((n, 5), np.int64),
+        np.zeros((n, 2)),
+    )
+
+
+def new_curves(n_learners: int, n_episodes: int) -> Curve:
+    """Empty learning curves, stacked along a first axis."""
+    return Curve(*(np.zeros((n_learners, n_episodes), column.dtype) for column in new_curve(0)))
+
+
 @inlined
 def choose(q, row, explore_cum, tie_weight, context, epsilon, random):
     """ε-greedy action (Alg. 2 line 5): explore by the prior, else the best, ties by weight."""
@@ -237,3 +256,26 @@ def _best_value(q, row):
         if q[row, a] > best:
             best = q[row, a]
     return best
+
+
+@kernel(allocates=False)
+def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
+    """`learn` for the learners `first` … `last` - 1 of a stack, one after the other; returns the steps of all.
+
+    Every array of `learners` and `curves` has the learners as its first axis.
+    """
+    done_steps = 0
+    for i in range(first, last):
+        learner = Learner(
+            learners.q[i],
+            learners.visits[i],
+            learners.world_random[i],
+            learners.own_random[i],
+            learners.cursor[i],
+            learners.running[i],
+        )
+        curve = Curve(
+            curves.returns[i], curves.rewards[i], curves.steps[i], curves.collisions[i], curves.reached[i]
+        )
+        done_steps += learn(tables, rows, schedule, learner, curve, budget)
+    return done_steps
