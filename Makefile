@@ -25,6 +25,7 @@ setup-test: $(BIN)/.test ## The same with everything tests and checks need
 $(BIN)/.core: pyproject.toml constraints.txt
 	test -x $(BIN)/python || $(PYTHON) -m venv $(VENV)
 	$(PIP) --editable .
+	$(BIN)/lifelore doctor --warm
 	touch $@
 
 $(BIN)/.test: $(BIN)/.core

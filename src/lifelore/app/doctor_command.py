@@ -1,4 +1,4 @@
-"""`lifelore doctor`: what is installed, what is missing, what is fast."""
+"""`lifelore doctor`: what is installed, what is missing, what is fast; and the kernels compiled ahead."""
 
 from typing import Annotated
 
@@ -7,14 +7,33 @@ import typer
 
 def doctor(
     memory: Annotated[str | None, typer.Option(metavar="FILE|URL", help="Which memory to look at.")] = None,
+    warm: Annotated[
+        bool, typer.Option("--warm", help="Compile all kernels now instead of at their first use; nothing else.")
+    ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Say what is installed, what is missing and what brings it, whether memory opens, how fast this is."""
-    from lifelore.agent.doctor import examine
     from lifelore.app.console import print_json
+
+    if warm:
+        _warm(as_json)
+        return
+    from lifelore.agent.doctor import examine
 
     report = examine(memory)
     print_json(report) if as_json else _print(report)
+
+
+def _warm(as_json: bool) -> None:
+    from lifelore.agent.warm import warm
+    from lifelore.app.console import print_json, progress_bar
+
+    with progress_bar("compiling kernels") as progress:
+        done = warm(progress)
+    if as_json:
+        print_json(done)
+    else:
+        print(f"{done['compiled']} kernels compiled, {done['kernels']} ready in {done['folder']}")
 
 
 def _print(report: dict) -> None:

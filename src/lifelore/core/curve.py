@@ -32,12 +32,12 @@ def first_episodes(curve: Curve, n_episodes: int) -> Curve:
     )
 
 
-def new_curve(n_episodes: int) -> Curve:
-    """An empty learning curve."""
+def new_curve(shape: int | tuple[int, int]) -> Curve:
+    """An empty learning curve of so many episodes, or a stack of them, (n_learners, n_episodes)."""
     return Curve(
-        np.zeros(n_episodes),
-        np.zeros(n_episodes),
-        np.zeros(n_episodes, np.int64),
-        np.zeros(n_episodes, np.int64),
-        np.zeros(n_episodes, np.bool_),
+        np.zeros(shape),
+        np.zeros(shape),
+        np.zeros(shape, np.int64),
+        np.zeros(shape, np.int64),
+        np.zeros(shape, np.bool_),
     )

@@ -1,4 +1,4 @@
-"""`QLearning`: the settings of ε-greedy Q-learning, and runs of one or many learners on tables in bounded chunks."""
+"""`QLearning`: the settings of ε-greedy Q-learning, and runs of one learner or of many on tables in chunks."""
 
 import os
 from collections.abc import Callable, Sequence
@@ -16,7 +16,6 @@ from lifelore.core.q_learning import (
     Schedule,
     learn,
     learn_each,
-    new_curves,
     new_learner,
     new_learners,
     uniform_rows,
@@ -161,7 +160,7 @@ class QLearning:
         threads = threads or os.cpu_count() or 1
         rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
         learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
-        curves = new_curves(n, self.episodes)
+        curves = new_curve((n, self.episodes))
         # No thread is left alone with the rest, and none runs long without a look at the outside world.
         batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episodes * self.max_steps)))
         pool = ThreadPoolExecutor(threads)

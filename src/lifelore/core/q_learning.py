@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.curve import Curve, new_curve
+from lifelore.core.curve import Curve
 from lifelore.core.errors import InputError
 from lifelore.core.jit import inlined, kernel
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
@@ -146,11 +146,6 @@ def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
         np.zeros((n, 5), np.int64),
         np.zeros((n, 2)),
     )
-
-
-def new_curves(n_learners: int, n_episodes: int) -> Curve:
-    """Empty learning curves, stacked along a first axis."""
-    return Curve(*(np.zeros((n_learners, n_episodes), column.dtype) for column in new_curve(0)))
 
 
 @inlined

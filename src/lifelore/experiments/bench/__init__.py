@@ -19,6 +19,8 @@ BENCHES = (
     "factory",
     "deep",
     "reuse",
+    "start",
+    "buildings",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 

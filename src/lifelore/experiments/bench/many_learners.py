@@ -37,7 +37,13 @@ def many_rate(threads: int, chunk: int = CHUNK, learners: int = LEARNERS) -> flo
 
     streams = [[stream(seed, "bench", name) for seed in range(learners)] for name in ("world", "own")]
     method.learn_many(
-        lattice_task().tables(), DISCOUNT, worlds=streams[0], owns=streams[1], threads=threads, chunk=chunk, watch=watch
+        lattice_task().tables(),
+        DISCOUNT,
+        worlds=streams[0],
+        owns=streams[1],
+        threads=threads,
+        chunk=chunk,
+        watch=watch,
     )
     # From the first look on: making ten thousand random states is no learning.
     (first, before), (last, after) = began[0], began[-1]
