@@ -1,6 +1,6 @@
 """`lifelore memory …`: look into what was learnt, move it, merge it, forget it."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -72,7 +72,7 @@ def _merge(others: list[str], where: str | None, as_json: bool) -> None:
         each = opened.merge_many(others)
     totals = {name: sum(counts[name] for counts in each) for name in each[0]}
     said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
-    document = dict(totals)
+    document: dict[str, Any] = dict(totals)
     if len(others) > 1:
         said += f", from {len(others)} memories"
         named = zip(others, each, strict=True)
