@@ -304,6 +304,67 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
         assert getattr(found, name) == getattr(kept, name)
 
 
+def of_earlier_lifelore(study):
+    """The record that a Lifelore without signal tables stored."""
+    record = study.to_record()
+    n = -(-record.about["bytes"] // 8)
+    about = {name: value for name, value in record.about.items() if name != "table"}
+    return Record(record.kind, record.key, 1, "newest", record.slots[:n], record.values[:n], about)
+
+
+@pytest.mark.parametrize("rule", ["belief-entropy", "information-directed", "knowledge-gradient"])
+def test_the_signal_table_of_the_policies_in_use_comes_back_bit_for_bit(memory, rule):
+    study_of(rule=rule).keep(memory)
+    first = open_study(memory, "s")
+    assert list(first.tables) == [8]
+    assert first.choice_of.table(8) is first.tables[8]
+    retire(memory, first, "dark")
+    for study in (first, open_study(memory, "s")):
+        made = study.library.take(policies=[POLICIES.index(policy) for policy in study.active]).table(8)
+        assert study.tables[8].probs.tobytes() == made.probs.tobytes()
+        assert study.tables[8].conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+
+
+def test_a_rule_that_reads_no_table_stores_none_nor_is_a_large_one_stored(memory, monkeypatch):
+    study_of().keep(memory)
+    assert open_study(memory, "s").tables == {}
+    monkeypatch.setattr("lifelore.agent.reuse_study.LARGEST_TABLE", 2 * 3 * 8 - 1)
+    study_of(rule="belief-entropy").keep(memory)
+    assert open_study(memory, "s").tables == {}
+    assert choose(memory, open_study(memory, "s"), "ann")["number"] == 0
+
+
+@pytest.mark.parametrize("rule", ["sampling", "belief-entropy", "information-directed", "knowledge-gradient"])
+def test_a_study_of_an_earlier_lifelore_chooses_the_same(tmp_path, rule):
+    said = []
+    with open_memory(tmp_path / "new.db") as new, open_memory(tmp_path / "old.db") as old:
+        study_of(rule=rule).keep(new)
+        earlier = of_earlier_lifelore(study_of(rule=rule))
+        old.contribute("reuse s", [earlier], process="study", seq=0, task={})
+        for memory in (new, old):
+            study = open_study(memory, "s")
+            for number in range(6):
+                one = choose(memory, study, "ann")
+                said += [one, update(memory, study, one["decision"], 1.5 * number)]
+    assert said[: len(said) // 2] == said[len(said) // 2 :]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "said"),
+    [
+        (lambda values, n: values[: n + 1], "must have 48 numbers, got 1"),
+        (lambda values, n: np.append(values[:n], values[n:] * 0 + np.int64(2**62)), "sum to 1"),
+    ],
+)
+def test_a_damaged_signal_table_is_refused(memory, spoil, said):
+    record = study_of(rule="belief-entropy").to_record()
+    values = spoil(record.values, -(-record.about["bytes"] // 8))
+    broken = Record(record.kind, "s", 1, "newest", np.arange(len(values)), values, record.about)
+    memory.contribute("x", [broken], process="p", seq=0, task={})
+    with pytest.raises(StoreError, match=f"{said}.*; fit the study anew"):
+        open_study(memory, "s")
+
+
 def test_studies_that_are_not_there_newer_or_damaged(memory):
     study_of("one").keep(memory)
     with pytest.raises(NotFoundError, match=r"no study 'two' in .*; known: one\. Begin with .* --name"):

@@ -60,6 +60,32 @@ def test_what_is_exported_here_is_known_there(ask, tmp_path):
     assert robots(home) == robots(away) == {"rosie": 3, "wally": 2}
 
 
+def test_several_memories_come_in_at_once(ask, tmp_path):
+    for seed, robot in enumerate(("rosie", "wally")):
+        lived(ask, tmp_path / f"{robot}.db", robot, 2 + seed, seed)
+    both = ask("memory", "merge", "rosie.db", "wally.db", "--memory", "both.db", "--json").document
+    assert both == {
+        "added": 5, "already_there": 0, "forgotten": 0,
+        "sources": [
+            {"source": str(tmp_path / "rosie.db"), "added": 2, "already_there": 0, "forgotten": 0},
+            {"source": str(tmp_path / "wally.db"), "added": 3, "already_there": 0, "forgotten": 0},
+        ],
+    }  # fmt: skip
+    said = ask("memory", "import", "rosie.db", "wally.db", "rosie.db", "--memory", "other.db").out
+    assert said == "contributions: 5 added, 2 already there, 0 forgotten, from 3 memories\n"
+    assert recalls(tmp_path / "other.db") == recalls(tmp_path / "both.db")
+    ask("memory", "merge", "rosie.db", "--memory", "one.db")
+    ask("memory", "merge", "wally.db", "--memory", "one.db")
+    assert recalls(tmp_path / "one.db") == recalls(tmp_path / "both.db")
+
+
+def test_one_missing_memory_among_several_refuses_all(ask, tmp_path):
+    lived(ask, tmp_path / "rosie.db", "rosie", 2, 1)
+    refusal = ask("memory", "merge", "rosie.db", "nobody.db", "--memory", "both.db").refusal
+    assert "nobody.db does not exist" in refusal
+    assert robots(tmp_path / "both.db") == {}
+
+
 def test_a_life_begins_with_what_was_imported(ask, tmp_path):
     lived(ask, tmp_path / "home.db", "rosie", 4, 1)
     ask("memory", "export", "home.lore", "--memory", "home.db")

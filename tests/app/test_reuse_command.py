@@ -1,6 +1,8 @@
 """`lifelore reuse …`: what is printed, and one line for every mistake, with nothing lost."""
 
 import shutil
+import subprocess
+import sys
 
 import numpy as np
 import pytest
@@ -175,3 +177,24 @@ def test_mistakes_are_one_line_and_lose_nothing(arguments, said, reuse, log, liv
 
 def test_no_memory_is_made_into_a_study_by_asking(reuse):
     assert "no study 'default'" in reuse("choose", "--user", "ann").refusal
+
+
+TOLD_WHAT_IT_IMPORTED = """
+import sys
+from lifelore.app.command_line import run
+status = run(sys.argv[1:])
+print(status, *sorted(sys.modules), file=sys.stderr)
+"""
+
+
+@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+def test_choosing_and_updating_start_neither_compiler_nor_scipy(reuse, log, tmp_path, model):
+    reuse("fit", log, "--model", model)
+    made = reuse("choose", "--user", "ann", "--json").document
+    for arguments in (["update", "--decision", made["decision"], "--outcome", "1"], ["choose", "--user", "ann"]):
+        command = [sys.executable, "-c", TOLD_WHAT_IT_IMPORTED, "reuse", *arguments, "--memory", tmp_path / "m.db"]
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+        status, *imported = done.stderr.split()
+        assert status == "0"
+        assert {"numpy", "sqlalchemy"} < set(imported)
+        assert {"numba", "scipy", "sklearn", "matplotlib", "networkx"} & set(imported) == set()

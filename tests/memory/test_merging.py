@@ -1,5 +1,9 @@
 """Merging is exact in any order and grouping, with replays and forgetting; against a plain model."""
 
+import signal
+import sqlite3
+import subprocess
+import sys
 from dataclasses import dataclass, field
 from functools import reduce
 from pathlib import Path
@@ -115,15 +119,17 @@ def merging_is_exact(life, first, second, left_first, places) -> None:
         one, other = memories[3], memories[4]
         for index in first:  # ((0 + a) + b) + c
             one.merge_from(memories[index])
+        memories[5].merge_many([memories[index] for index in second])  # all in one transaction
         a, b, c = (memories[index] for index in second)
         (a if left_first else b).merge_from(b if left_first else c)  # (a + b) + c, or a + (b + c)
         for part in (c, a, b):
             other.merge_from(part)
-        assert content(one) == content(other)
+        assert content(one) == content(other) == content(memories[5])
+        assert memories[5].check() == []
         agrees(one, reduce(lambda total, model: total.merge(model) or total, models, Model()))
         before = content(other)
         counts = [other.merge_from(part)["added"] for part in memories]
-        assert (counts, content(other)) == ([0] * 5, before)
+        assert (counts, content(other)) == ([0] * 6, before)
     finally:
         for memory in memories:
             memory.close()
@@ -137,13 +143,13 @@ lives = st.lists(steps, min_size=3, max_size=14)
 @settings(max_examples=30, **quick)
 @given(life=lives, first=orders, second=orders, left_first=st.booleans())
 def test_merging_is_exact_in_any_order_and_grouping(life, first, second, left_first, new_place):
-    merging_is_exact(life, first, second, left_first, [new_place("sqlite") for _ in range(5)])
+    merging_is_exact(life, first, second, left_first, [new_place("sqlite") for _ in range(6)])
 
 
 @settings(max_examples=8, **quick)
 @given(life=lives, first=orders, second=orders, left_first=st.booleans())
 def test_merging_is_exact_between_back_ends(life, first, second, left_first, new_place):
-    back_ends = ["postgresql", "sqlite", "sqlite", "postgresql", "sqlite"]
+    back_ends = ["postgresql", "sqlite", "sqlite", "postgresql", "sqlite", "postgresql"]
     merging_is_exact(life, first, second, left_first, [new_place(back_end) for back_end in back_ends])
 
 
@@ -225,3 +231,97 @@ def test_another_place_is_merged_by_its_name(where, new_place):
     with filled(where, "ab") as other, open_memory(new_place("sqlite")) as memory:
         assert memory.merge_from(where)["added"] == 2
         assert content(memory) == content(other)
+
+
+def test_many_at_once_count_as_they_would_one_by_one(new_place, back_end):
+    """The same memory twice, the receiving one among the sources, one robot's task in two of them, a tombstone."""
+    sources = [new_place("sqlite") for _ in range(3)]
+    for source, robots in zip(sources, ("ab", "ba", "bb"), strict=True):
+        filled(source, robots).close()
+    with open_memory(sources[2]) as last:
+        last.forget("b")
+    here, there = new_place(back_end), new_place(back_end)
+    with filled(here, "ä") as one, filled(there, "ä") as many:
+        one.merge_from(many)  # The same task twice: both keep the one of the smaller stamp.
+        many.merge_from(one)
+        order = [sources[0], sources[0], None, sources[1], sources[2], sources[0]]
+        counts = many.merge_many([there if place is None else place for place in order])
+        assert counts == [one.merge_from(here if place is None else place) for place in order]
+        assert [sum(each.values()) for each in counts] == [2, 2, 3, 2, 2, 2]
+        assert counts[4] == {"added": 0, "already_there": 0, "forgotten": 2}
+        assert content(many) == content(one)
+        assert many.check() == []
+
+
+def test_no_source_at_all_changes_nothing(memory):
+    before = content(memory)
+    assert memory.merge_many([]) == []
+    assert content(memory) == before
+
+
+def damaged(place: str) -> None:
+    with sqlite3.connect(place) as conn:
+        conn.execute("UPDATE lifelore_contributions SET digest = 'no' WHERE seq = 1")
+    conn.close()
+
+
+def of_another_program(place: str) -> None:
+    Path(place).write_bytes(b"no memory at all" * 100)
+
+
+def merging_otherwise(place: str) -> None:
+    with open_memory(place) as memory:
+        memory.contribute("z", [Record("k", "own", 1, "union", [2], [5])], process="p", seq=0, task={})
+
+
+@pytest.mark.parametrize(
+    ("spoil", "message"),
+    [
+        (damaged, "SHA-256"),
+        (of_another_program, "not a Lifelore memory"),
+        (lambda place: Path(place).unlink(), "does not exist"),
+        (merging_otherwise, "is merged by add and by union"),
+    ],
+)
+def test_one_bad_source_among_many_refuses_all_by_its_name(memory, new_place, spoil, message):
+    places = [new_place("sqlite") for _ in range(4)]
+    for place in places:
+        with open_memory(place) as source:
+            for seq in range(3):
+                source.contribute("a", lore(("a", "p", seq)), process=place, seq=seq, task={})
+    spoil(places[2])
+    memory.contribute("own", [Record("k", "own", 1, "add", [2], [5])], process="p", seq=0, task={})
+    before = content(memory)
+    with pytest.raises(StoreError, match=message) as refused:
+        memory.merge_many(places)
+    assert [place in str(refused.value) for place in places] == [False, False, True, False]
+    assert "\n" not in str(refused.value)
+    assert content(memory) == before
+    assert memory.check() == []
+
+
+KILLED = """
+import os, signal, sys
+from lifelore.memory import cache, open_memory
+written = cache.write
+def killed(conn, folded):
+    written(conn, folded)
+    os.kill(os.getpid(), signal.SIGKILL)
+cache.write = killed
+with open_memory(sys.argv[1]) as memory:
+    memory.merge_many(sys.argv[2:])
+"""
+
+
+def test_a_kill_in_the_middle_leaves_the_memory_as_it_was(where, new_place):
+    """Killed after all contributions and the first key's cells were written, just before the rest."""
+    sources = [new_place("sqlite") for _ in range(2)]
+    for source, robots in zip(sources, ("ab", "bä"), strict=True):
+        filled(source, robots).close()
+    with filled(where, "a") as memory:
+        before = content(memory)
+        command = [sys.executable, "-c", KILLED, where, *sources]
+        assert subprocess.run(command, check=False, timeout=60).returncode == -signal.SIGKILL
+        assert content(memory) == before
+        assert memory.check() == []
+        assert [each["added"] for each in memory.merge_many(sources)] == [1, 2]

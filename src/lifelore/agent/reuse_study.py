@@ -1,7 +1,8 @@
 """A study: the policy library learnt from a log, how to choose from it, and who is held out; as memory keeps it.
 
-What the library is travels as the bytes of its file, packed into a record's integers, so it comes back bit for
-bit. The newest fit counts. Nothing of any single user is in here.
+The library travels as the bytes of its file, packed into a record's integers, so it comes back bit for bit. The
+signal table of the policies in use travels behind it, so that a choice does not make the table again. The newest
+fit counts. Nothing of any single user is in here.
 """
 
 from collections.abc import Mapping
@@ -19,6 +20,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.library_file import library_bytes, library_from_bytes
 from lifelore.interaction.policy_library import PolicyLibrary
 from lifelore.interaction.selection import SelectionRule, rule_named
+from lifelore.interaction.signal_table import SignalTable
 from lifelore.interaction.type_dynamics import TypeDynamics
 from lifelore.memory import Memory
 
@@ -26,6 +28,8 @@ KIND, VERSION = "reuse_study", 1
 ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
 """A policy is chosen from; or given to the control group alone, till a fit knows it; or given to nobody."""
 LONGEST_NAME = 60
+LARGEST_TABLE = 1 << 16
+"""Numbers of the largest signal table that is stored; reading a larger one costs more than making it."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,6 +57,8 @@ class Study:
         Probability that a user's type is another at the next choice, in [0, 1].
     fitted : dict
         What it was learnt from, plain data.
+    tables : dict of int to SignalTable
+        Signal tables of the active policies, by number of bins, as far as memory has them.
     """
 
     name: str
@@ -65,6 +71,7 @@ class Study:
     explore: float = 0.0
     change: float = 0.0
     fitted: dict[str, Any] = field(default_factory=dict)
+    tables: dict[int, SignalTable] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
@@ -95,7 +102,10 @@ class Study:
     @cached_property
     def choice_of(self) -> PolicyLibrary:
         """The library of the active policies."""
-        return self.library.take(policies=[self.library.index_of_policy(policy) for policy in self.active])
+        chosen = self.library.take(policies=[self.library.index_of_policy(policy) for policy in self.active])
+        for n_bins, table in self.tables.items():
+            chosen.keep_table(n_bins, table)
+        return chosen
 
     @cached_property
     def selection(self) -> SelectionRule:
@@ -120,15 +130,17 @@ class Study:
 
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
-        return replace(self, states={**self.states, policy: state})
+        return replace(self, states={**self.states, policy: state}, tables={})
 
     def to_record(self) -> Record:
         """What memory keeps."""
         packed = library_bytes(self.library)
         values = np.frombuffer(packed + bytes(-len(packed) % 8), "<i8").astype(np.int64)
+        table = self._stored_table()
         about = {
             "study": self.name,
             "bytes": len(packed),
+            "table": None if table is None else [self.selection.n_bins, *table.probs.shape],  # pyright: ignore
             "states": self.states,
             "contexts": {context: prior.tolist() for context, prior in self.contexts.items()},
             "control": self.control,
@@ -138,7 +150,16 @@ class Study:
             "change": self.change,
             "fitted": self.fitted,
         }
+        if table is not None:
+            values = np.concatenate([values, table.probs.astype(np.float64).ravel().view(np.int64)])
         return Record(KIND, self.name, VERSION, "newest", np.arange(len(values)), values, about)
+
+    def _stored_table(self) -> SignalTable | None:
+        """The signal table that the rule reads; None where it reads none, or one too large to store."""
+        n_bins = getattr(self.selection, "n_bins", None)
+        if n_bins is None or len(self.active) * self.library.n_types * n_bins > LARGEST_TABLE:
+            return None
+        return self.choice_of.table(n_bins)
 
     def keep(self, memory: Memory) -> None:
         """Make it the newest in memory."""
@@ -163,16 +184,28 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     if record is None:
         _refuse_unknown(memory, name)
     about: Mapping[str, Any] = record.about
-    # Cells beyond are an earlier, larger library's.
-    cells = record.values[: -(-about["bytes"] // 8)]
-    packed = cells.astype("<i8").tobytes()[: about["bytes"]]
+    # Cells beyond those of the library and its table are an earlier, larger study's.
+    length = -(-about["bytes"] // 8)
+    packed = record.values[:length].astype("<i8").tobytes()[: about["bytes"]]
     try:
         library = library_from_bytes(packed, f"study '{name}'")
+        tables = _tables(record.values[length:], about.get("table"))
     except InputError as error:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
     settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
-    return Study(name, library, dict(about["states"]), contexts, **settings)
+    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables)
+
+
+def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, SignalTable]:
+    """The signal tables behind the library; none in a study of an earlier Lifelore."""
+    if stored is None:
+        return {}
+    n_bins, *shape = stored
+    size = int(np.prod(shape))
+    if len(cells) < size:
+        raise InputError(f"the study's signal table must have {size} numbers, got {len(cells)}")
+    return {n_bins: SignalTable.restored(cells[:size].view(np.float64).reshape(shape))}
 
 
 def study_names(memory: Memory) -> list[str]:

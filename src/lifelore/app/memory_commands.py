@@ -1,6 +1,6 @@
 """`lifelore memory …`: look into what was learnt, move it, merge it, forget it."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -38,18 +38,20 @@ def export(
 
 @memory.command("import")
 def import_(
-    path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
+    paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Take in an exported file; what is there already, or was forgotten, stays as it is."""
-    _merge(path, where, as_json)
+    """Take in exported files, all or none; what is there already, or was forgotten, stays as it is."""
+    _merge(paths, where, as_json)
 
 
 @memory.command()
 def merge(
-    other: Annotated[str, typer.Argument(metavar="FILE|URL")], where: Where = None, as_json: AsJson = False
+    others: Annotated[list[str], typer.Argument(metavar="FILE|URL…")],
+    where: Where = None,
+    as_json: AsJson = False,
 ) -> None:
-    """Take in another memory, which stays as it is. Exact in any order and grouping."""
-    _merge(other, where, as_json)
+    """Take in other memories, all or none, which stay as they are. Exact in any order and grouping."""
+    _merge(others, where, as_json)
 
 
 @memory.command()
@@ -62,13 +64,20 @@ def forget(robot: Annotated[str, typer.Argument()], where: Where = None, as_json
     _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
 
 
-def _merge(other: str, where: str | None, as_json: bool) -> None:
+def _merge(others: list[str], where: str | None, as_json: bool) -> None:
     from lifelore.memory import open_memory
+    from lifelore.memory.location import describe, locate
 
     with open_memory(where) as opened:
-        counts = opened.merge_from(other)
-    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in counts.items())
-    _say(counts, f"contributions: {said}", as_json)
+        each = opened.merge_many(others)
+    totals = {name: sum(counts[name] for counts in each) for name in each[0]}
+    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
+    document: dict[str, Any] = dict(totals)
+    if len(others) > 1:
+        said += f", from {len(others)} memories"
+        named = zip(others, each, strict=True)
+        document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
+    _say(document, f"contributions: {said}", as_json)
 
 
 def _say(document: dict, line: str, as_json: bool) -> None:

@@ -27,7 +27,8 @@ from lifelore.interaction.evidence import (
 )
 from lifelore.interaction.outcome_model import LARGEST
 from lifelore.interaction.policy_library import PolicyLibrary
-from lifelore.interaction.selection import ExpectedImprovement, SelectionRule, choose
+from lifelore.interaction.selection import ExpectedImprovement, SelectionRule
+from lifelore.interaction.selection.choice import choose
 from lifelore.interaction.type_dynamics import TypeDynamics
 from lifelore.interaction.user_likelihood import rows_of_normals
 

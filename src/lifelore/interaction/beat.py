@@ -22,8 +22,8 @@ from lifelore.core.streams import stream
 from lifelore.interaction.belief import log_prior, update
 from lifelore.interaction.library_names import checked_prior
 from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.selection.choice import choose
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
-from lifelore.interaction.selection.rule import choose
 
 Array = NDArray[np.float64]
 

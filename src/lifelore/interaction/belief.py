@@ -6,16 +6,21 @@ A belief that reached 10⁻⁴⁰⁰ is still a number here and may rise again; 
 type explains leaves the belief as it is and says so by an evidence of minus infinity. Thesis: §4.4.3.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.belief_kernels import bayes_rows
+from lifelore.interaction.compiler_start import kernel_pays
 
 Array = NDArray[np.float64]
 
+LOWEST = -1.7e308
+"""Stands for a log evidence below the range of numbers, which is not the evidence of what is impossible."""
+ROW_COST = 10
+"""Time of `bayes_rule` for each type, in units of `kernel_pays`."""
 SUM_TOLERANCE = 1e-9
 """How far from 1 a belief given by a caller may sum."""
 
@@ -89,12 +94,39 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
     result = np.array(beliefs.reshape(-1, shape[-1]), order="C")
     rows = np.ascontiguousarray(likelihoods.reshape(result.shape))
     evidence = np.empty(len(result))
-    bayes_rows(result, rows, evidence)
+    if kernel_pays(ROW_COST * result.size):
+        from lifelore.interaction.belief_kernels import bayes_rows
+
+        bayes_rows(result, rows, evidence)
+    else:
+        for number, row in enumerate(rows):
+            result[number], evidence[number] = bayes_rule(result[number], row)
     if np.isnan(evidence).any():
         raise InputError(
             "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
         )
     return Updated(result.reshape(shape), evidence.reshape(shape[:-1]))
+
+
+def bayes_rule(log_belief: Array, log_likelihood: Array) -> tuple[Array, float]:
+    """One belief (n_types,) after a signal, and the log evidence: the NumPy twin of `belief_kernels.bayes_row`."""
+    if not (log_likelihood < np.inf).all():
+        return log_belief, np.nan
+    possible = log_belief > -np.inf
+    best = max(log_likelihood[possible].tolist(), default=-np.inf)
+    if best == -np.inf:
+        return log_belief, -np.inf
+    joint = np.full(log_belief.shape, -np.inf)
+    with np.errstate(over="ignore"):
+        joint[possible] = log_belief[possible] + (log_likelihood[possible] - best)
+    top = max(joint.tolist())
+    # The kernel's own functions and order of sums: NumPy's exponential and its sum may differ in the last bit.
+    total = 0.0
+    for value in (joint - top).tolist():
+        total += math.exp(value)
+    shift = math.log(total)
+    after = (joint - top) - shift
+    return np.where(after > 0, 0.0, after), max(top + shift + best, LOWEST)
 
 
 def entropy(belief: ArrayLike) -> Array:

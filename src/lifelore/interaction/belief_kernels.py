@@ -5,9 +5,7 @@ import math
 import numpy as np
 
 from lifelore.core.jit import inlined, kernel
-
-LOWEST = -1.7e308
-"""Stands for a log evidence below the range of numbers, which is not the evidence of what is impossible."""
+from lifelore.interaction.belief import LOWEST
 
 
 @inlined

@@ -7,11 +7,11 @@ from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtr
 
 from lifelore.interaction.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcome_moments import known_moments
+from lifelore.interaction.special_functions import ndtr
 
 Array = NDArray[np.float64]
 

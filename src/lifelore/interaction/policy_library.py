@@ -191,6 +191,21 @@ class PolicyLibrary:
             self._tables[n_bins] = make(n_bins)
         return self._tables[n_bins]
 
+    def keep_table(self, n_bins: int, table: SignalTable) -> None:
+        """Take a table that `table(n_bins)` of this library made earlier, so that it is not made again.
+
+        Raises
+        ------
+        InputError
+            The table is of another number of types or policies.
+        """
+        if (table.n_policies, table.n_types) != (self.n_policies, self.n_types):
+            raise InputError(
+                f"table must be of {self.n_policies} policies and {self.n_types} types, got one of "
+                f"{table.n_policies} and {table.n_types}"
+            )
+        self._tables[n_bins] = table
+
     def observe(self, type_: str | int, policy: str | int, value: float) -> None:
         """Learn from one more outcome of a known type, in place; tables are made anew when next asked for."""
         self.performance.observe(self.index_of_type(type_), self.index_of_policy(policy), value)

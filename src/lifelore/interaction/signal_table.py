@@ -4,7 +4,7 @@ The rules that look ahead (belief entropy, knowledge gradient, information-direc
 nothing else. Thesis: §4.4.1, Def. 4.4.2.
 """
 
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -58,6 +58,24 @@ class SignalTable:
         for policy, rows in enumerate(self.probs):
             _clean(rows, policy)
             self.conditional_entropy[policy] = 0 - _times_log(rows).sum(axis=1)
+
+    @classmethod
+    def restored(cls, probs: NDArray[Any]) -> Self:
+        """The table whose `probs` these are, bit for bit; they are kept and not copied.
+
+        Raises
+        ------
+        InputError
+            As for the constructor.
+        """
+        table = cls(probs)
+        # Dividing rows by their sums once more may move the last bit.
+        if not np.allclose(table.probs, probs, rtol=0, atol=LEAST):
+            raise InputError("probs must be those of a table, got rows that do not sum to 1")
+        table.probs = probs
+        for policy, rows in enumerate(probs):
+            table.conditional_entropy[policy] = 0 - _times_log(rows).sum(axis=1)
+        return table
 
     @property
     def n_policies(self) -> int:

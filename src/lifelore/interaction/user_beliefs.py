@@ -16,7 +16,8 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.belief import log_prior
 from lifelore.interaction.policy_library import PolicyLibrary
-from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule, choose, rule_named, tied_shares
+from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule, rule_named, tied_shares
+from lifelore.interaction.selection.choice import choose
 from lifelore.interaction.selection.tie_kernels import choose_rows
 from lifelore.interaction.type_dynamics import TypeDynamics
 from lifelore.interaction.user_kernels import absorb_f4, absorb_f8, draw_types, read_f4

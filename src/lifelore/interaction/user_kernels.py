@@ -10,7 +10,7 @@ import math
 import numpy as np
 
 from lifelore.core.jit import inlined, kernel
-from lifelore.interaction.belief_kernels import LOWEST
+from lifelore.interaction.belief import LOWEST
 
 LEAST_LOG = -87.0
 """Logs of float32 beliefs below this count as 0 when beliefs are read; the logs themselves are kept."""

@@ -2,6 +2,7 @@
 
 import json
 from collections.abc import Iterable
+from itertools import chain
 
 import numpy as np
 from sqlalchemy import Connection, text
@@ -69,8 +70,8 @@ def read(conn: Connection, name: LoreKey) -> Record | None:
     cells = conn.execute(
         text("SELECT slot, value FROM lifelore_cells WHERE lore = :lore ORDER BY slot"),
         {"lore": found.number},
-    ).all()
-    table = np.array([tuple(row) for row in cells], dtype=np.int64).reshape(-1, 2)
+    )
+    table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
     slots, values = np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
     return Record(*name, found.merge, slots, values, json.loads(found.about))
 

@@ -5,7 +5,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.memory.merging import merge
+from lifelore.memory.merging import Union
 from lifelore.memory.refusal import one_line_refusals
 from lifelore.memory.sqlite_file import lived_in, read_header, refuse_unless_ours
 from lifelore.memory.store import Store, open_file
@@ -34,7 +34,10 @@ def _write(store: Store, path: Path) -> int:
     copy = open_file(path, durable=True, journal="DELETE")
     try:
         with store.reading() as there, copy.writing() as here:
-            return merge(here, there, store.location)["added"]
+            union = Union(here)
+            added = union.take(there, store.location)["added"]
+            union.finish()
+            return added
     except StoreError as error:
         raise StoreError(f"the export was not written: {error}") from error
     finally:

@@ -23,10 +23,14 @@ _AT_A_TIME = 64
 
 @dataclass(frozen=True)
 class Stored:
-    """A contribution and the number of its row in one memory."""
+    """A contribution and the number of its row in one memory.
+
+    source : the memory that it is merged from, empty where it is not; refusals name it
+    """
 
     number: int
     contribution: Contribution
+    source: str = ""
 
 
 @dataclass(frozen=True)
@@ -69,14 +73,35 @@ def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[Lor
     """
     waiting: dict[LoreKey, list[Folded]] = {}
     for one in stored:
-        for record in one.contribution.records():
+        for record in _records(one):
             name = (record.kind, record.key, record.version)
             if only is None or name in only:
                 parts = waiting.setdefault(name, [])
+                if parts:
+                    _require_alike(one, name, {parts[0].merge, record.merge})
                 parts.append(_lift(one.number, record))
                 if len(parts) > _AT_A_TIME:
                     waiting[name] = [_join(name, parts)]
     return {name: _join(name, parts) for name, parts in sorted(waiting.items())}
+
+
+def _records(stored: Stored) -> list[Record]:
+    try:
+        return stored.contribution.records()
+    except StoreError as error:
+        raise _named(stored, error) from error
+
+
+def _require_alike(stored: Stored, name: LoreKey, merges: set[str]) -> None:
+    try:
+        require_one_merge(name, merges)
+    except StoreError as error:
+        raise _named(stored, error) from error
+
+
+def _named(stored: Stored, error: StoreError) -> StoreError:
+    """The refusal with the name of the memory that the contribution comes from."""
+    return StoreError(f"memory {stored.source}: {error}") if stored.source else error
 
 
 def _lift(number: int, record: Record) -> Folded:
@@ -86,7 +111,6 @@ def _lift(number: int, record: Record) -> Folded:
 
 def _join(name: LoreKey, parts: list[Folded]) -> Folded:
     merge = parts[0].merge
-    require_one_merge(name, {part.merge for part in parts})
     if len(parts) == 1:
         return parts[0]
     slots = np.concatenate([part.slots for part in parts])

@@ -2,11 +2,11 @@
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from itertools import islice
 from typing import TypeVar
 
-from sqlalchemy import Connection, bindparam, text
+from sqlalchemy import Connection, Row, bindparam, text
 
 from lifelore.core.errors import StoreError
 from lifelore.memory.contribution import Contribution, Identity, Order
@@ -18,10 +18,13 @@ Item = TypeVar("Item")
 BATCH = 100
 
 _IDENTITY = "robot = :robot AND process = :process AND seq = :seq"
-_INSERT = text(
+_INSERT = (
     "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
-    " VALUES (:robot, :process, :seq, :stamp, :task, :blob, :digest) RETURNING number"
+    " VALUES (:robot, :process, :seq, :stamp, :task, :blob, :digest)"
 )
+_INSERT_ONE, _INSERT_MANY = text(_INSERT + " RETURNING number"), text(_INSERT)
+_LAST = text("SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions")
+_SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions WHERE number > :last"
 _KNOWN = text(
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
@@ -72,7 +75,15 @@ def next_stamp(conn: Connection) -> int:
 
 def insert(conn: Connection, contribution: Contribution) -> Stored:
     """Write one contribution down."""
-    return Stored(int(conn.execute(_INSERT, asdict(contribution)).scalar_one()), contribution)
+    return Stored(int(conn.execute(_INSERT_ONE, vars(contribution)).scalar_one()), contribution)
+
+
+def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[Entry]:
+    """Write contributions down, a batch in memory at a time."""
+    last = conn.execute(_LAST).scalar_one()
+    for batch in in_batches(contributions):
+        conn.execute(_INSERT_MANY, [vars(contribution) for contribution in batch])
+    return _entries(conn.execute(text(_SINCE), {"last": last}))
 
 
 def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
@@ -82,8 +93,11 @@ def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
         rows = conn.execute(text(query))
     else:
         rows = conn.execute(text(query + " WHERE robot = :robot"), {"robot": robot})
-    found = [Entry(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
-    return sorted(found, key=lambda entry: entry.order)
+    return sorted(_entries(rows), key=lambda entry: entry.order)
+
+
+def _entries(rows: Iterable[Row]) -> list[Entry]:
+    return [Entry(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
 
 
 def load(conn: Connection, numbers: Iterable[int]) -> Iterator[Stored]:

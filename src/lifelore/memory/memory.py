@@ -1,11 +1,12 @@
 """Memory: lore kept between runs, in a file or on a PostgreSQL server."""
 
 from collections.abc import Mapping, Sequence
+from contextlib import closing
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from sqlalchemy import text
+from sqlalchemy import URL, Connection, text
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Record
@@ -14,7 +15,7 @@ from lifelore.memory.contribution import new_contribution
 from lifelore.memory.export import export
 from lifelore.memory.folding import fold
 from lifelore.memory.location import locate
-from lifelore.memory.store import Store, open_file, open_postgresql, open_source
+from lifelore.memory.store import Store, check_source, open_file, open_postgresql, open_source
 
 NAMED = 10
 """Robots that a refusal names."""
@@ -173,17 +174,41 @@ class Memory:
         StoreError
             The other file does not exist, is damaged or newer, or merges a key differently; nothing changed.
         """
-        if isinstance(other, Memory):
-            return self._merge(other._store)
-        source = open_source(locate(other))
-        try:
-            return self._merge(source)
-        finally:
-            source.close()
+        return self.merge_many([other])[0]
 
-    def _merge(self, source: Store) -> dict[str, int]:
-        with source.reading() as there, self._store.writing() as here:
-            return merging.merge(here, there, source.location)
+    def merge_many(self, others: Sequence["Memory | str | Path"]) -> list[dict[str, int]]:
+        """Bring in several memories and exports in one transaction: the same as one by one, only sooner.
+
+        Returns
+        -------
+        list of dict
+            For each of `others` in turn, what `merge_from` returns.
+
+        Raises
+        ------
+        StoreError
+            As for `merge_from`; the message names the source, and nothing of any source was taken.
+        """
+        places = [other if isinstance(other, Memory) else locate(other) for other in others]
+        for place in places:
+            if isinstance(place, Path):
+                check_source(place)
+        with self._store.writing() as here:
+            union = merging.Union(here)
+            counts = [self._take(union, here, place) for place in places]
+            union.finish()
+        return counts
+
+    def _take(self, union: merging.Union, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
+        if isinstance(place, Memory):
+            if place.location == self.location:
+                return union.take(here, self.location)
+            with place._store.reading() as there:
+                return union.take(there, place.location)
+        if self._store.lies_at(place):
+            return union.take(here, self.location)
+        with closing(open_source(place, checked=True)) as source, source.reading() as there:
+            return union.take(there, source.location)
 
     def forget(self, robot: str) -> int:
         """Remove all a robot has contributed, for good; the number of contributions removed.

@@ -62,13 +62,13 @@ def _records(header: list[dict[str, Any]], words: NDArray[np.int64]) -> list[Rec
     lengths = [entry["n"] for entry in header]
     if any(n < 0 for n in lengths) or 2 * sum(lengths) != words.size:
         raise ValueError(f"the header announces {2 * sum(lengths)} numbers, the block holds {words.size}")
-    columns = iter(np.split(words, np.cumsum(np.repeat(lengths, 2).astype(int))))
+    starts = 2 * np.cumsum([0, *lengths])[:-1]
     return [
         Record(
             entry["kind"], entry["key"], entry["version"], entry["merge"],
-            slots=next(columns), values=next(columns), about=entry["about"],
+            slots=words[start : start + n], values=words[start + n : start + 2 * n], about=entry["about"],
         )
-        for entry in header
+        for entry, start, n in zip(header, starts.tolist(), lengths, strict=True)
     ]  # fmt: skip
 
 

@@ -65,8 +65,9 @@ def checked_record(record: Record) -> Record:
     slots, values = _column(where, "slots", record.slots), _column(where, "values", record.values)
     if slots.shape != values.shape:
         raise InputError(f"{where}: slots and values must be equally long, got {slots.size} and {values.size}")
-    ascending = np.argsort(slots, kind="stable")
-    slots, values = slots[ascending], values[ascending]
+    if not np.all(slots[1:] > slots[:-1]):
+        ascending = np.argsort(slots, kind="stable")
+        slots, values = slots[ascending], values[ascending]
     if np.any(slots[1:] == slots[:-1]):
         raise InputError(f"{where}: slots must be unique within a record; add up repeated slots first")
     about = json.loads(canonical_json(f"{where}: about", record.about))

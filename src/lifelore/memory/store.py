@@ -62,6 +62,12 @@ class Store:
             yield conn
             conn.commit()
 
+    def lies_at(self, place: Path | URL) -> bool:
+        """Whether `place` names this very database."""
+        if isinstance(place, Path):
+            return self.is_sqlite and place.exists() and place.samefile(self.location)
+        return not self.is_sqlite and describe(place) == self.location
+
     def migrate(self) -> None:
         """Take the steps not yet taken, each in a transaction of its own."""
         with self.reading() as conn:
@@ -106,8 +112,10 @@ def open_postgresql(url: URL) -> Store:
     return _ready(_server(url), None)
 
 
-def open_source(place: Path | URL) -> Store:
-    """A memory to read only: never created, migrated or written to."""
+def open_source(place: Path | URL, *, checked: bool = False) -> Store:
+    """A memory to read only: never created, migrated or written to; `checked` where `check_source` passed."""
+    if isinstance(place, Path) and not checked:
+        check_source(place)
     store = _source_file(place) if isinstance(place, Path) else _server(place)
     try:
         store.require_current()
@@ -117,10 +125,14 @@ def open_source(place: Path | URL) -> Store:
     return store
 
 
-def _source_file(path: Path) -> Store:
+def check_source(path: Path) -> None:
+    """StoreError unless the file is there and a sound memory."""
     if not path.exists():
         raise StoreError(f"memory {path} does not exist; check the path")
     refuse_unless_ours(path)
+
+
+def _source_file(path: Path) -> Store:
     return Store(create_engine("sqlite://", creator=lambda: connect_source(path), poolclass=QueuePool), str(path))
 
 

@@ -21,6 +21,7 @@ BENCHES = (
     "reuse",
     "start",
     "buildings",
+    "merge",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 

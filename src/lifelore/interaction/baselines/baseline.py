@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.outcome_model import LARGEST
-from lifelore.interaction.selection.rule import choose
+from lifelore.interaction.selection.choice import choose
 
 if TYPE_CHECKING:
     from lifelore.interaction.policy_library import PolicyLibrary

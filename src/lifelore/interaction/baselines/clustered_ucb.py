@@ -10,7 +10,7 @@ from lifelore.interaction.baselines.arm_statistics import ArmStatistics
 from lifelore.interaction.baselines.baseline import Baseline
 from lifelore.interaction.baselines.library_moments import library_moments
 from lifelore.interaction.baselines.ucb1 import checked_exploration, checked_scale, to_unit, upper_bounds
-from lifelore.interaction.selection.rule import choose
+from lifelore.interaction.selection.choice import choose
 
 if TYPE_CHECKING:
     from lifelore.interaction.policy_library import PolicyLibrary

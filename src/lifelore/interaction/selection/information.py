@@ -6,12 +6,14 @@ S logarithms. Thesis: §4.5.2.2, whose own expression is another (see the errata
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.interaction.belief import Array, entropy
-from lifelore.interaction.selection.information_kernels import class_mixtures, mixtures
+from lifelore.interaction.compiler_start import kernel_pays
+from lifelore.interaction.selection.mixtures import class_mixtures, mixtures
 from lifelore.interaction.selection.rule import in_blocks
 from lifelore.interaction.selection.support import supported_types, truncated
-from lifelore.interaction.selection.type_classes import type_classes
+from lifelore.interaction.selection.type_classes import TypeClasses, type_classes
 from lifelore.interaction.signal_table import SignalTable
 
 _TINY = np.float32(1e-37)
@@ -48,12 +50,25 @@ def _of_one(belief: Array, table: SignalTable, mass: float) -> Array:
         whole[kept] = share
         mixed = np.matmul(whole.astype(law.dtype, copy=False), law)
         return _difference(mixed, table.conditional_entropy @ whole)
-    mixed, weights = np.empty((table.n_policies, table.n_signals), law.dtype), share.astype(law.dtype, copy=False)
-    if classes.few:
-        class_mixtures(weights, kept, classes.of_type, law, mixed)
+    weights = share.astype(law.dtype, copy=False)
+    if kernel_pays(len(kept) * table.n_policies * table.n_signals):
+        mixed = _compiled_mixtures(weights, kept, law, classes)
+    elif classes.few:
+        mixed = class_mixtures(weights, kept, classes.of_type, law)
     else:
-        mixtures(weights, kept, law, mixed)
+        mixed = mixtures(weights, kept, law)
     return _difference(mixed, table.conditional_entropy[:, kept] @ share)
+
+
+def _compiled_mixtures(weights: Array, kept: NDArray[np.int64], law: Array, classes: TypeClasses) -> Array:
+    from lifelore.interaction.selection import information_kernels
+
+    mixed = np.empty((law.shape[0], law.shape[2]), law.dtype)
+    if classes.few:
+        information_kernels.class_mixtures(weights, kept, classes.of_type, law, mixed)
+    else:
+        information_kernels.mixtures(weights, kept, law, mixed)
+    return mixed
 
 
 def _of_many(belief: Array, table: SignalTable, mass: float) -> Array:

@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.belief import expected_utility
 from lifelore.interaction.policy_library import PolicyLibrary
-from lifelore.interaction.selection.information_kernels import best_after_signals
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
 from lifelore.interaction.selection.support import MASS, check_mass, supported_types
 from lifelore.interaction.selection.type_classes import type_classes
@@ -105,8 +104,10 @@ def knowledge_gain(
         )
         return best - worth.sum(axis=0).max()
 
-    classes = type_classes(table)
+    # The kernel's products are those of SciPy's BLAS, so there is no NumPy twin with the same bits.
+    from lifelore.interaction.selection.information_kernels import best_after_signals
 
+    classes = type_classes(table)
     rows = np.asarray(belief, np.float64)
     if rows.ndim == 1:
         return one(rows)

@@ -1,24 +1,25 @@
-"""What a rule for selecting a policy is, and how the best of its scores is chosen.
+"""What a rule for selecting a policy is, and how likely it is to select each.
 
 A rule gives every policy a score under a belief; the largest is selected, equals at random. Under a flat
 belief many policies are worth exactly the same up to rounding, so all rules share one tolerance. Thesis: §4.5.
 """
 
 from collections.abc import Callable
-from typing import Any, ClassVar, Literal, Protocol
+from typing import ClassVar, Literal, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.policy_library import PolicyLibrary
-from lifelore.interaction.selection.tie_kernels import choose_row, choose_rows, tied_rows
 
 Array = NDArray[np.float64]
 Variant = Literal["standard", "thesis"]
 
 TOLERANCE = 1e-9
 """Scores this close to the best, relative to it, are equal: rounding moves sums of products by less."""
+ROUNDING = 1e-15
+"""Differences below this share of a row's largest score are rounding, however small the best score is."""
 NUMBERS_AT_ONCE = 1 << 22
 """Size of the largest temporary array when many beliefs are scored."""
 
@@ -63,57 +64,17 @@ class Deterministic:
         return tied_shares(self.scores(library, belief, episodes_left=episodes_left))  # pyright: ignore
 
 
-def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float = TOLERANCE) -> Any:
-    """The policy of the largest score, equals at random.
-
-    Parameters
-    ----------
-    scores : (..., n_policies) float
-        Infinities allowed.
-    generator : numpy generator
-        Asked for one number where policies tie; for many rows, for one each.
-    tolerance : float
-        Scores this close to the best, relative to it, are equal; ≥ 0.
-
-    Returns
-    -------
-    int or (...) int64
-
-    Raises
-    ------
-    InputError
-        A score is NaN, or there is none.
-
-    Examples
-    --------
-    >>> choose([1.0, 3.0, 2.0], np.random.default_rng(0))
-    1
-    """
-    scores = np.asarray(scores, np.float64)
-    if scores.ndim == 1:
-        chosen = choose_row(scores, -1.0, tolerance)
-        if chosen < -1:
-            chosen = choose_row(scores, generator.random(), tolerance)
-        if chosen == -1:
-            raise InputError("scores must be numbers, at least one, got NaN or nothing")
-        return int(chosen)
-    rows = np.ascontiguousarray(scores.reshape(-1, scores.shape[-1]))
-    policies = np.empty(len(rows), np.int64)
-    choose_rows(rows, generator.random(len(rows)), tolerance, policies)
-    if (policies < 0).any():
-        raise InputError("scores must be numbers, at least one a row, got NaN or nothing")
-    return policies.reshape(scores.shape[:-1])
-
-
 def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     """How likely `choose` is to take each policy, (..., n_policies)."""
     scores = np.asarray(scores, np.float64)
-    rows = np.ascontiguousarray(scores.reshape(-1, scores.shape[-1]))
-    shares = np.empty_like(rows)
-    tied_rows(rows, tolerance, shares)
-    if np.isnan(shares).any():
+    if np.isnan(scores).any():
         raise InputError("scores must be numbers, got NaN")
-    return shares.reshape(scores.shape)
+    best = scores.max(axis=-1, keepdims=True)
+    least = np.where(scores > -np.inf, scores, best).min(axis=-1, keepdims=True)
+    with np.errstate(invalid="ignore"):
+        bar = best - (tolerance * np.abs(best) + ROUNDING * np.maximum(np.abs(best), np.abs(least)))
+    tied = scores >= np.where(np.isinf(best), best, bar)
+    return tied / tied.sum(axis=-1, keepdims=True)
 
 
 def in_blocks(belief: Array, numbers: int, scored: Callable[[Array], Array]) -> Array:

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.jit import kernel
+from lifelore.interaction.compiler_start import kernel_pays
 
 Array = NDArray[np.float64]
 
@@ -41,17 +41,19 @@ def check_mass(mass: float) -> None:
         raise InputError(f"mass must lie in (0, 1], got {mass}")
 
 
-@kernel
-def least_kept(belief, mass):
+def least_kept(belief: Array, mass: float) -> float:
     """The belief of the last type taken, in the order of belief, before `mass` of the whole is held."""
+    if kernel_pays(belief.size):
+        from lifelore.interaction.selection import support_kernels
+
+        return support_kernels.least_kept(belief, mass)
+    return rising_least(belief, mass)
+
+
+def rising_least(belief: Array, mass: float) -> float:
+    """The NumPy twin of `support_kernels.least_kept`."""
     rising = np.sort(belief)
-    total = 0.0
-    for i in range(rising.shape[0]):
-        total += rising[i]
-    left_out = 0.0
+    held = np.add.accumulate(rising)
     # From below: what is left out may not exceed 1 - mass, and small numbers are summed first.
-    for i in range(rising.shape[0]):
-        left_out += rising[i]
-        if rising[i] > 0 and left_out > (1.0 - mass) * total:
-            return rising[i]
-    return rising[-1]
+    last = np.flatnonzero((rising > 0) & (held > (1.0 - mass) * held[-1]))
+    return float(rising[last[0]] if len(last) else rising[-1])

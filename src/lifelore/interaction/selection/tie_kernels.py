@@ -3,9 +3,8 @@
 import numpy as np
 
 from lifelore.core.jit import inlined, kernel
+from lifelore.interaction.selection.rule import ROUNDING
 
-ROUNDING = 1e-15
-"""Differences below this share of a row's largest score are rounding, however small the best score is."""
 TIED = -2
 """Answer of `choose_row` where policies tie and no uniform number was given."""
 
@@ -66,19 +65,3 @@ def choose_rows(scores, uniforms, tolerance, chosen):
     """`choose_row` of rows (n, n_policies), into `chosen` (n,)."""
     for k in range(scores.shape[0]):
         chosen[k] = _place(scores[k], _bar(scores[k], tolerance), uniforms[k])
-
-
-@kernel
-def tied_rows(scores, tolerance, shares):
-    """1 / n for each of the n best of a row (k, n_policies), 0 for the others; NaN where a score is."""
-    for k in range(scores.shape[0]):
-        bar = _bar(scores[k], tolerance)
-        tied = 0
-        for i in range(scores.shape[1]):
-            if scores[k, i] >= bar:
-                tied += 1
-        for i in range(scores.shape[1]):
-            if np.isnan(bar):
-                shares[k, i] = np.nan
-            else:
-                shares[k, i] = 1.0 / tied if scores[k, i] >= bar else 0.0

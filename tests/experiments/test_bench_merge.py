@@ -1,0 +1,56 @@
+"""The benchmarks of merging and of choosing from the shell: small, by their contract, on true work."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from lifelore.core.errors import LifeloreError
+from lifelore.experiments.bench import bench, merge, reuse_start
+from lifelore.memory import open_memory
+
+
+@pytest.fixture
+def small(monkeypatch):
+    for name, value in {"ROBOTS": 3, "TASKS": 4, "PRIOR_SLOTS": 5, "TRANSITIONS": 40, "FIRST_TASK": 30}.items():
+        monkeypatch.setattr(merge, name, value)
+
+
+def test_rows_and_goals(small):
+    told = []
+    result = bench("merge", repeats=2, progress=lambda *at: told.append(at))
+    assert json.loads(json.dumps(result, allow_nan=False)) == result
+    assert [(done, of) for done, of, _ in told] == [(i + 1, 9) for i in range(9)]
+    for line in result["rows"]:
+        assert list(line) == ["name", "value", "unit", "ratio_to", "ratio"]
+        assert line["value"] > 0
+        assert line["ratio_to"] in (None, result["rows"][0]["name"])
+    assert [goal["name"] for goal in result["goals"]] == [
+        "seconds, many in one call",
+        "one by one / many in one call",
+    ]
+    assert result["goals"][1]["measured"] == pytest.approx(result["rows"][1]["ratio"])
+
+
+def test_a_robot_meets_every_transition_once(small, tmp_path):
+    with open_memory(merge.robot_memory(tmp_path / "r.db", 0)) as memory:
+        assert memory.tasks("robot 0") == 4
+        assert memory.recall("transitions", "building", 1).slots.tolist() == list(range(40))
+        assert memory.check() == []
+
+
+def test_a_merge_that_brings_too_little_is_no_measurement(small, tmp_path):
+    source = merge.robot_memory(tmp_path / "r.db", 0)
+    with pytest.raises(LifeloreError, match="must bring 8 contributions, got 4"):
+        merge.merge_seconds([source, source], many=True)
+
+
+def test_seconds_of_processes_that_choose_and_update():
+    chosen, updated = reuse_start.reuse_start_seconds(repeats=1)
+    assert len(chosen) == len(updated) == 1
+    assert chosen[0] > 0 < updated[0]
+
+
+def test_a_process_that_fails_is_no_measurement(tmp_path: Path):
+    with pytest.raises(LifeloreError, match="no study 'default'"):
+        reuse_start._seconds("choose", "--user", "ann", "--memory", tmp_path / "m.db")
