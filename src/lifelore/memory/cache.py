@@ -3,6 +3,7 @@
 import json
 from collections.abc import Iterable
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from sqlalchemy import Connection, text
@@ -51,15 +52,25 @@ def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
         lore, merge, _ = conn.execute(_FIND, named).one()
         require_one_merge(name, {merge, part.merge})
         conn.execute(_MENTION, [{"contribution": number, "lore": lore} for number in part.mentions])
-        for rows in ledger.in_batches(_cells(lore, part), _ROWS_AT_ONCE):
-            conn.execute(_UPSERT[part.merge], rows)
+        _write_cells(conn, lore, part)
 
 
-def _cells(lore: int, part: Folded) -> Iterable[dict[str, int]]:
-    """Rows for the upsert. Only *newest* needs to know where a value came from; the others say 0."""
+def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
+    """Upsert a key's cells. Only *newest* needs to know where a value came from; the others say 0.
+
+    The rows go to the driver as they are: a building has a million cells, and SQLAlchemy would take longer to
+    prepare their parameters than the database takes to store them.
+    """
     origins = part.origins if part.merge == "newest" else np.zeros_like(part.origins)
-    columns = zip(part.slots.tolist(), part.values.tolist(), origins.tolist(), strict=True)
-    return ({"lore": lore, "slot": slot, "value": value, "origin": origin} for slot, value, origin in columns)
+    upsert: Any = _UPSERT[part.merge].compile(dialect=conn.dialect)
+    columns = {"slot": part.slots.tolist(), "value": part.values.tolist(), "origin": origins.tolist()}
+    columns["lore"] = [lore] * len(origins)
+    names = upsert.positiontup if upsert.positional else list(columns)
+    rows: Iterable = zip(*(columns[name] for name in names), strict=True)
+    if not upsert.positional:
+        rows = (dict(zip(names, row, strict=True)) for row in rows)
+    for batch in ledger.in_batches(rows, _ROWS_AT_ONCE):
+        conn.exec_driver_sql(str(upsert), batch)
 
 
 def read(conn: Connection, name: LoreKey) -> Record | None:
