@@ -1,8 +1,8 @@
 """Biconnected parts of a graph: the largest sets of edges in which any two edges lie on a common cycle.
 
-A spanning forest gives one cycle for each edge outside it: that edge and the way between its ends in the forest.
-Cycles that share an edge belong to one part. These cycles are enough to find all parts: the parts are the connected
-components of the graph's cycle matroid, and the fundamental circuits of any one basis join the members of each.
+A spanning forest gives one cycle for each other edge: that edge, and the way between its ends in the forest. Of
+these cycles, those that share an edge belong to one part, and no others are needed to find all parts: a part is a
+connected component of the graph's cycle matroid, which the fundamental circuits of any basis connect.
 """
 
 from collections.abc import Iterable
