@@ -1,4 +1,4 @@
-"""The start of `perceive` as a benchmark: its contract, its arithmetic, and one real process on a simulated cloud."""
+"""`perceive` from the shell as a benchmark: its contract, its arithmetic, and one real process."""
 
 import json
 from pathlib import Path
