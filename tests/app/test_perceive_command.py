@@ -4,6 +4,8 @@ import contextlib
 import json
 import os
 import pty
+import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -195,3 +197,116 @@ def test_a_cloud_cut_short_is_one_line(ask, cloud):
     path = cloud(*two_cubes([0, 0, 0.06]))
     path.write_bytes(path.read_bytes()[:1000])
     assert "cloud.npz" in ask("perceive", path).refusal
+
+
+@pytest.fixture
+def three(tmp_path) -> list[Path]:
+    """A cube on another, a cube alone, and no cloud at all."""
+    points, labels = two_cubes([0, 0, 0.06])
+    np.savez(tmp_path / "pair.npz", points=points, labels=labels)
+    np.savez(tmp_path / "alone.npz", points=CUBE, labels=np.full(len(CUBE), 2))
+    (tmp_path / "bad.npz").write_bytes(b"PK\x03\x04 and no more")
+    return [tmp_path / f"{name}.npz" for name in ("pair", "bad", "alone")]
+
+
+def test_several_clouds_are_one_document(ask, three):
+    answer = ask("perceive", three[0], three[2], "--up", "z", "--json")
+    assert (answer.status, answer.err) == (0, "")
+    assert [scene["source"] for scene in answer.document["scenes"]] == [str(three[0]), str(three[2])]
+    assert answer.document["failed"] == []
+    alone = ask("perceive", three[0], "--up", "z", "--json").document
+    assert {**answer.document["scenes"][0], "seconds": 0} == {"source": str(three[0]), **alone, "seconds": 0}
+
+
+def test_a_bad_cloud_among_many_is_one_line_and_the_others_go_on(ask, three):
+    answer = ask("perceive", *three, "--up", "z", "--json")
+    assert answer.status == 2
+    assert answer.err.startswith(f"lifelore: {three[1]}: is damaged")
+    assert answer.err.count("\n") == 1
+    assert [scene["source"] for scene in answer.document["scenes"]] == [str(three[0]), str(three[2])]
+    assert [failed["source"] for failed in answer.document["failed"]] == [str(three[1])]
+
+
+def test_several_clouds_for_a_person_and_their_files(ask, three, tmp_path):
+    answer = ask("perceive", three[0], three[2], "--up", "z", "--dot", tmp_path / "{name}.dot")
+    assert answer.status == 0
+    assert f"{three[0]}:" in answer.out
+    assert "2 objects" in answer.out
+    assert "1 object," in answer.out
+    assert f"written: {tmp_path / 'alone.dot'}" in answer.out
+    assert (tmp_path / "pair.dot").is_file()
+
+
+def test_one_cloud_of_a_pattern_has_its_name_too(ask, three, tmp_path):
+    assert ask("perceive", three[0], "--up", "z", "--dot", tmp_path / "{name}.dot", "--json").status == 0
+    assert (tmp_path / "pair.dot").is_file()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        ([], "give one or more clouds"),
+        (["pair.npz", "--watch", "."], "leave the clouds out"),
+        (["--watch", "no"], "watch must name a folder"),
+        (["--watch", ".", "--index", "0"], "is none: leave them out"),
+        (["--watch", ".", "--plot", "a.png"], "plot names one file for many clouds"),
+        (["pair.npz", "alone.npz", "--plot", "a.png"], "plot names one file for many clouds"),
+        (["pair.npz", "alone.npz", "--units", "inch"], "units must be m or mm"),
+        (["pair.npz", "alone.npz", "--topic", "/camera"], "is none: leave them out"),
+        (["pair.npz", "sub/pair.npz", "--dot", "{name}.dot"], "rename one of them"),
+    ],
+)
+@pytest.mark.usefixtures("three")
+def test_what_is_ambiguous_is_one_line(ask, arguments, word):
+    assert word in ask("perceive", *arguments).refusal
+
+
+def test_ctrl_c_among_several_keeps_what_is_finished(start, answer, three):
+    child = start("perceive", *[three[0]] * 2000, three[1], "--up", "z", "--dot", "no.dot")
+    assert answer(child).status == 2
+    child = start("perceive", *[three[1]] * 3, *[three[0]] * 2000, "--up", "z", "--json")
+    assert child.stderr is not None
+    assert "is damaged" in child.stderr.readline()
+    child.send_signal(signal.SIGINT)
+    said = answer(child)
+    assert said.status == 130
+    assert "stopping: " in said.err
+    assert len(said.document["scenes"]) < 2000
+    assert 1 <= len(said.document["failed"]) <= 3
+
+
+def test_a_folder_is_watched_until_ctrl_c(start, answer, three, tmp_path):
+    folder = tmp_path / "in"
+    folder.mkdir()
+    shutil.copy(three[0], folder / "old.npz")
+    child = start("perceive", "--watch", folder, "--up", "z", "--json")
+    assert child.stderr is not None
+    assert child.stdout is not None
+    assert child.stderr.readline() == f"lifelore: watching {folder} for new clouds; Ctrl-C stops\n"
+    shutil.copy(three[2], folder / "new.npz")
+    entry = json.loads(child.stdout.readline())
+    assert entry["source"] == str(folder / "new.npz")
+    assert [thing["id"] for thing in entry["objects"]] == [2]
+    shutil.copy(three[0], folder / "old.npz")
+    assert json.loads(child.stdout.readline())["source"] == str(folder / "old.npz")
+    child.send_signal(signal.SIGINT)
+    said = answer(child)
+    assert (said.status, said.out) == (130, "")
+    assert said.err.startswith("stopping: ")
+
+
+def test_a_start_loads_no_library_that_a_plain_scene_does_not_need(start, answer, three):
+    command = [sys.executable, "-c", LOADED, "perceive", str(three[0]), "--up", "z", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=True)
+    heavy = {"networkx", "scipy.spatial", "scipy.sparse", "sklearn", "matplotlib", "trimesh", "sqlalchemy", "rich"}
+    assert heavy & set(done.stderr.split()) == set()
+    assert "numba" in done.stderr.split()
+
+
+LOADED = """
+import sys
+from lifelore.app.command_line import run
+status = run(sys.argv[1:])
+print(*sys.modules, file=sys.stderr)
+sys.exit(status)
+"""

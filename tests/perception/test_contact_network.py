@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial.distance import pdist, squareform
 
 from lifelore.core.errors import InputError
 from lifelore.perception.contact_network import ContactPointNetwork, spanning_edges
@@ -41,6 +42,35 @@ def test_edges_are_a_lightest_spanning_tree(places):
     assert nx.is_connected(graph)
     total = sum(np.linalg.norm(at[i] - at[j]) for i, j in edges)
     assert total == pytest.approx(lightest_tree(at))
+
+
+def edges_of_networkx(positions):
+    """The same tree by networkx over SciPy's distances, pairs in the order of their higher number."""
+    distance = squareform(pdist(positions))
+    graph = nx.Graph()
+    graph.add_weighted_edges_from((i, j, distance[i, j]) for i in range(len(positions)) for j in range(i))
+    return sorted(sorted(edge) for edge in nx.minimum_spanning_edges(graph, data=False))
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=12))
+def test_of_equally_short_edges_those_of_networkx_are_taken(places):
+    at = np.array(places, float) * 0.1
+    assert spanning_edges(at).tolist() == edges_of_networkx(at)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(2, 40))
+def test_edges_among_scattered_points_are_those_of_networkx(seed, n):
+    at = np.random.default_rng(seed).normal(0, 0.1, (n, 3))
+    assert spanning_edges(at).tolist() == edges_of_networkx(at)
+
+
+@pytest.mark.parametrize("shape", [(4, 4, 1), (3, 3, 3), (12, 1, 1)])
+def test_edges_in_a_lattice_are_those_of_networkx(shape):
+    at = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3) * 0.05
+    for order in (slice(None), slice(None, None, -1), np.random.default_rng(0).permutation(len(at))):
+        assert spanning_edges(at[order]).tolist() == edges_of_networkx(at[order])
 
 
 def test_no_node_and_one_node_have_no_edges():

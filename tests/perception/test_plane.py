@@ -76,3 +76,21 @@ def test_over_an_outline():
     asked = np.array([[0.5, 0.5], [1.1, 0.5], [0.2, -0.1]])
     assert over_outline(asked, square).tolist() == [True, False, False]
     assert over_outline(asked, square[:2]).all()  # a line has no outline
+
+
+@pytest.mark.parametrize("tilt", [0.0, 0.02, 0.1])
+def test_refining_stops_where_five_rounds_would_end(tilt):
+    rng = np.random.default_rng(7)
+    table, _ = slab(rng, (0.1, 0.2, 1), 0.4, 5000, 0.003)
+    points = np.concatenate([table, rng.uniform(-0.5, 0.5, (2000, 3))])
+    start = np.array([0.1 + tilt, 0.2, 1])
+    plane = twin = Plane(start / np.linalg.norm(start), 0.4)
+    for _ in range(5):
+        close = points[np.abs(twin.height(points)) <= 0.01]
+        centre = close.mean(axis=0)
+        normal = np.linalg.eigh((close - centre).T @ (close - centre))[1][:, 0]
+        normal = normal if normal @ twin.normal >= 0 else -normal
+        twin = Plane(normal, float(-normal @ centre))
+    found = refined(points, plane)
+    assert (found.normal == twin.normal).all()
+    assert found.offset == twin.offset

@@ -187,3 +187,17 @@ def test_wrong_input_is_refused():
     with pytest.raises(InputError, match="most_conflicts"):
         most_likely_scene([], most_conflicts=0)
     assert most_likely_scene([]).relations == ()
+
+
+@settings(deadline=None)
+@given(st.lists(st.tuples(st.integers(1, 7), st.integers(1, 7)).filter(lambda pair: pair[0] != pair[1])))
+def test_circles_are_the_strongly_connected_components(pairs):
+    found = contradictions([Relation(a, b, "on", 1.0, 0.0) for a, b in pairs])
+    parts = nx.strongly_connected_components(nx.DiGraph(pairs))
+    circles = sorted(sorted(part) for part in parts if len(part) > 1)
+    expected = [f"{', '.join(map(str, circle))} rest on one another in a circle" for circle in circles]
+    assert [line for line in found if "circle" in line] == expected
+    assert ("something carries the table" in found) == any(a == 1 for a, _ in pairs)
+    resting = {a for a, _ in pairs}
+    hanging = sorted({end for pair in pairs for end in pair} - resting - {1})
+    assert [line for line in found if "nothing" in line] == [f"{thing} rests on nothing" for thing in hanging]

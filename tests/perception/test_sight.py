@@ -3,6 +3,7 @@
 import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.sight import Sight
@@ -48,3 +49,18 @@ def test_the_twin_agrees(points, place):
         before |= bool(apart <= radius and depth < distance - radius)
         behind |= bool(apart <= radius and depth > distance + radius)
     assert sight(points, radius=radius).is_free(place) == (behind and not before)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1))
+def test_a_search_among_directions_by_a_k_d_tree_agrees(seed):
+    rng = np.random.default_rng(seed)
+    points = rng.uniform(-1, 1, (200, 3)) + np.array([0, 2, 0])
+    tree = KDTree(points / np.linalg.norm(points, axis=1)[:, None])
+    depth = np.linalg.norm(points, axis=1)
+    seen = sight(points, radius=0.1)
+    for place in rng.uniform(-0.5, 0.5, (10, 3)) + np.array([0, 2, 0]):
+        distance = np.linalg.norm(place)
+        near = depth[tree.query_ball_point(place / distance, 0.1 / distance)]
+        free = bool((near > distance + 0.1).any() and not (near < distance - 0.1).any())
+        assert seen.is_free(place) == free

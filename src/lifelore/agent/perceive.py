@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -24,6 +24,8 @@ from lifelore.perception.table_frame import Up, to_scene
 
 MODEL_SUFFIX = ".npz"
 """Of a model in a file: by it a file is told from a name in memory."""
+Source = str | os.PathLike[str] | NDArray | PointCloud
+"""A cloud that `read_cloud` reads, or one that was read before."""
 STAGES = ("reading", "finding objects", "finding contacts and relations", "drawing conclusions", "writing")
 
 
@@ -72,10 +74,11 @@ def is_file_name(model: str) -> bool:
 
 
 DEFAULT = PerceiveSettings()
+NO_FILES = SceneFiles()
 
 
 def perceive(
-    source: str | os.PathLike[str] | NDArray | PointCloud,
+    source: Source,
     settings: PerceiveSettings = DEFAULT,
     *,
     pddl: str | None = None,
@@ -115,8 +118,19 @@ def perceive(
         A file cannot be written.
     """
     files = SceneFiles(pddl, dot, plot)
-    check_scene_files(files, _sources(source, settings))
-    model = model_of(settings)
+    check_scene_files(files, files_read([source], settings))
+    return perceived(source, model_of(settings), settings, files, progress, notice)
+
+
+def perceived(
+    source: Source,
+    model: RelationClassifier,
+    settings: PerceiveSettings = DEFAULT,
+    files: SceneFiles = NO_FILES,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> dict[str, Any]:
+    """As `perceive`, with the model of `model_of` at hand and files that were checked before."""
     began = time.perf_counter()
     _tell(progress, 0)
     cloud = _read(source, settings)
@@ -135,8 +149,9 @@ def perceive(
     return document
 
 
-def _sources(source: object, settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
-    read = [source, settings.model if settings.model and is_file_name(settings.model) else None]
+def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
+    """The files that are read, the model's among them: none of them may be written over."""
+    read = [*sources, settings.model if settings.model and is_file_name(settings.model) else None]
     return [path for path in read if isinstance(path, str | os.PathLike)]
 
 
@@ -145,7 +160,7 @@ def _tell(progress: Progress | None, stage: int) -> None:
         progress(stage, len(STAGES), STAGES[stage])
 
 
-def _read(source: str | os.PathLike[str] | NDArray | PointCloud, settings: PerceiveSettings) -> PointCloud:
+def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
     if not isinstance(source, PointCloud):
         source = read_cloud(source, units=settings.units, labels=settings.labels)
     if settings.segmentation is not None and source.is_labelled:

@@ -1,12 +1,15 @@
 """What a perceived scene is written to: a planning problem with its domain, a graph, a picture."""
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.perception.scene import Scene
+
+NAME = "{name}"
+"""In the name of a file: where the name of the cloud's own file stands."""
 
 
 @dataclass(frozen=True)
@@ -40,6 +43,26 @@ def domain_path(problem: str) -> str:
     return str(path.with_name(f"{path.stem}-domain.pddl")) if path.name else ""
 
 
+def named_files(name: str, pddl: str | None, dot: str | None, plot: str | None) -> SceneFiles:
+    """The files of one cloud: `NAME` in each is replaced by the name of the cloud's file without its suffix.
+
+    >>> named_files("clouds/cup.pcd", None, "graphs/{name}.dot", None).dot
+    'graphs/cup.dot'
+    """
+    stem = Path(name).stem
+    return SceneFiles(*(None if path is None else path.replace(NAME, stem) for path in (pddl, dot, plot)))
+
+
+def check_names(files: SceneFiles) -> None:
+    """Refuse one file for many clouds."""
+    for option, path in vars(files).items():
+        if path is not None and NAME not in path:
+            raise InputError(
+                f"{option} names one file for many clouds, '{path}': write {NAME} where each cloud's own name"
+                f" shall stand, such as --{option} {NAME}.{'png' if option == 'plot' else option}"
+            )
+
+
 def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str]]) -> None:
     """Refuse, before the work, files that cannot be written, or would overwrite one another or the `sources`.
 
@@ -48,12 +71,19 @@ def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str
     InputError
         Its line names the file.
     """
-    for path in files.paths:
-        _check_writable(path)
-    if files.plot is not None and not files.plot.lower().endswith(".png"):
-        raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
-    taken = {os.path.realpath(path) for path in sources if files.paths}
-    for path in files.paths:
+    check_files_of_scenes([files], sources)
+
+
+def check_files_of_scenes(many: Iterable[SceneFiles], sources: Sequence[str | os.PathLike[str]]) -> None:
+    """As `check_scene_files`, for the files of several scenes."""
+    many = [files for files in many if files.paths]
+    for files in many:
+        for path in files.paths:
+            _check_writable(path)
+        if files.plot is not None and not files.plot.lower().endswith(".png"):
+            raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
+    taken = {os.path.realpath(path) for path in sources if many}
+    for path in (path for files in many for path in files.paths):
         if os.path.realpath(path) in taken:
             raise InputError(
                 f"'{path}' would be written over: the cloud, the model, plot, dot, pddl and the domain beside it"

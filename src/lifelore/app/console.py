@@ -20,6 +20,11 @@ def print_json(document: Any) -> None:
     print(json.dumps(document, indent=2, allow_nan=False))
 
 
+def print_json_line(document: Any) -> None:
+    """One JSON document in one line of stdout, at once: a stream that can be read while it grows."""
+    print(json.dumps(document, allow_nan=False), flush=True)
+
+
 @contextmanager
 def progress_bar(what: str) -> "Iterator[Progress | None]":
     """A callback ``(done, total, label)`` that draws a bar on stderr; None where stderr is no terminal."""

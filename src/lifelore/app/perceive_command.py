@@ -1,16 +1,22 @@
-"""`lifelore perceive`: from a point cloud to what bears on what."""
+"""`lifelore perceive`: from point clouds to what bears on what."""
 
 import os
 import sys
-from typing import Annotated
+from collections.abc import Callable, Mapping
+from contextlib import nullcontext
+from typing import Annotated, Any
 
 import typer
 
 Option = typer.Option
+Files = dict[str, str | None]
+"""What --pddl, --dot and --plot name."""
 
 
 def perceive(
-    cloud: Annotated[str, typer.Argument(metavar="CLOUD", help="PCD, PLY, npz, npy or a rosbag.")],
+    clouds: Annotated[
+        list[str] | None, typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy or a rosbag; one or more.")
+    ] = None,
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Where up is: the table's normal, +z, or a vector.")
     ] = "table",
@@ -37,23 +43,113 @@ def perceive(
     plot: Annotated[
         str | None, Option(metavar="FILE", help="Draw the scene as its camera saw it; NAME.png.")
     ] = None,
-    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
-) -> None:
-    """Find objects, contact points and relations in a cloud."""
+    watch: Annotated[
+        str | None,
+        Option(metavar="FOLDER", help="Perceive each new cloud that appears in a folder, until Ctrl-C."),
+    ] = None,
+    as_json: Annotated[
+        bool,
+        Option("--json", help="One JSON document on stdout and nothing else; with --watch one a line and cloud."),
+    ] = False,
+) -> int:
+    """Find objects, contact points and relations in clouds.
+
+    Several clouds are perceived in one process, which is much faster than one process a cloud; --json then gives
+    {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}. A cloud that cannot be perceived is one line on
+    stderr, the others go on, and the exit status is 2. In the FILE of --pddl, --dot and --plot, {name} stands for
+    the name of the cloud without its suffix; several clouds, and --watch, need it.
+    """
+    if (watch is None) == (not clouds):
+        raise typer.BadParameter(
+            "--watch perceives what appears in a folder: leave the clouds out" if clouds else
+            "give one or more clouds, or --watch FOLDER"
+        )  # fmt: skip
+    _one_thread_for_matrices()
     from lifelore.agent.perceive import PerceiveSettings
-    from lifelore.agent.perceive import perceive as look
-    from lifelore.app.console import print_json, progress_bar
 
     told = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
+    files = {"pddl": pddl, "dot": dot, "plot": plot}
+    for cloud in [watch] if watch is not None else clouds or []:
+        _check_bag_options(cloud, topic, index)
+    if watch is not None:
+        return _watched(watch, told, files, as_json)
+
+    def source(cloud: str):
+        return _out_of_bag(cloud, topic, index or 0, units, labels) if _is_bag(cloud) else cloud
+
+    if clouds and len(clouds) > 1:
+        return _several(clouds, source, told, files, as_json)
+    return _one(clouds[0], source, told, files, as_json) if clouds else 0
+
+
+def _one_thread_for_matrices() -> None:
+    """Before NumPy is loaded: matrices of three columns are too small to share, and threads wait by spinning."""
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+
+def _one(cloud: str, source: Callable[[str], Any], told: Any, files: Files, as_json: bool) -> int:
+    from lifelore.agent.perceive import perceive as look
+    from lifelore.agent.scene_files import named_files
+    from lifelore.app.console import print_json, progress_bar
+
+    own = vars(named_files(cloud, **files))
     with progress_bar("perceiving") as progress:
-        source = _source(cloud, topic, index, units, labels)
-        document = look(source, told, pddl=pddl, dot=dot, plot=plot, progress=progress, notice=to_stderr)
+        document = look(source(cloud), told, **own, progress=progress, notice=to_stderr)
+    print_json(document) if as_json else _print_scene(cloud, document, files)
+    return 0
+
+
+def _several(clouds: list[str], source: Callable[[str], Any], told: Any, files: Files, as_json: bool) -> int:
+    from lifelore.agent.perceive_many import perceive_many, scenes_document
+    from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
+
+    entries = []
+    # A person sees each scene when it is found; a bar would draw over it.
+    with stop_on_interrupt() as stop, progress_bar("perceiving") if as_json else nullcontext() as progress:
+        for entry in perceive_many(
+            clouds, told, **files, read=source, stop=stop, progress=progress, notice=to_stderr
+        ):
+            entries.append(entry)
+            _print_entry(entry, files, None if as_json else _print_titled)
+    document = scenes_document(entries)
     if as_json:
         print_json(document)
-    else:
-        from lifelore.app.scene_table import print_scene
+    return INTERRUPTED if stop.is_set() else 2 if document["failed"] else 0
 
-        print_scene(document, [path for path in (pddl, dot, plot) if path])
+
+def _watched(folder: str, told: Any, files: Files, as_json: bool) -> int:
+    from lifelore.agent.perceive_many import perceive_folder
+    from lifelore.app.console import INTERRUPTED, print_json_line, stop_on_interrupt
+
+    with stop_on_interrupt() as stop:
+        entries = perceive_folder(folder, told, **files, stop=stop, notice=to_stderr)
+        to_stderr(f"watching {folder} for new clouds; Ctrl-C stops")
+        for entry in entries:
+            _print_entry(entry, files, None if as_json else _print_titled)
+            if as_json:
+                print_json_line(entry)
+    return INTERRUPTED
+
+
+def _print_entry(entry: Mapping[str, Any], files: Files, show: Callable[..., None] | None) -> None:
+    """A failure as one line on stderr; a scene as `show` does."""
+    if "error" in entry:
+        to_stderr(f"{entry['source']}: {entry['error']}")
+    elif show is not None:
+        show(entry["source"], entry, files)
+
+
+def _print_titled(cloud: str, document: Mapping[str, Any], files: Files) -> None:
+    print(f"{cloud}:", flush=True)
+    _print_scene(cloud, document, files)
+
+
+def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
+    from lifelore.agent.scene_files import named_files
+    from lifelore.app.scene_table import print_scene
+
+    own = named_files(cloud, **files)
+    print_scene(document, [path for path in (own.pddl, own.dot, own.plot) if path])
 
 
 def to_stderr(line: str) -> None:
@@ -74,15 +170,11 @@ def _cut(segment: str | None, colours: int | None):
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]
 
 
-def _source(cloud: str, topic: str | None, index: int | None, units: str, labels: str):
-    """A cloud out of a rosbag, or the file itself."""
-    if _is_bag(cloud):
-        return _out_of_bag(cloud, topic, index or 0, units, labels)
-    if topic is not None or index is not None:
+def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:
+    if (topic is not None or index is not None) and not _is_bag(cloud):
         from lifelore.core.errors import InputError
 
         raise InputError(f"topic and index choose a cloud of a rosbag, and '{cloud}' is none: leave them out")
-    return cloud
 
 
 def _is_bag(path: str) -> bool:

@@ -30,8 +30,7 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
     InputError
         Unknown units, no finite point, a width that speaks for other units, or beyond `FAR`.
     """
-    if units not in UNITS:
-        raise InputError(f"units must be m or mm, got {units!r}")
+    check_units(units)
     points = cloud.points if units == "m" else cloud.points * cloud.points.dtype.type(UNITS[units])
     measured = finite_rows(points)
     if not measured.any():
@@ -50,6 +49,12 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
     points[~measured] = np.nan
     camera = None if cloud.camera is None else cloud.camera * UNITS[units]
     return PointCloud(points, cloud.labels, cloud.colours, cloud.shape, camera)
+
+
+def check_units(units: str) -> None:
+    """Refuse units that are not known."""
+    if units not in UNITS:
+        raise InputError(f"units must be m or mm, got {units!r}")
 
 
 def _sample(points: NDArray[np.floating], measured: NDArray[np.bool_]) -> NDArray[np.floating]:

@@ -7,15 +7,17 @@ anew (§2.3.6).
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial.distance import pdist, squareform
 
 from lifelore.core.errors import InputError
 from lifelore.perception.contact_point import ContactPoint
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,8 +61,10 @@ class ContactPointNetwork:
         """Where the nodes are, shape ``(k, 3)``, metres."""
         return np.array([node.position for node in self.nodes]).reshape(-1, 3)
 
-    def to_networkx(self) -> nx.Graph:
+    def to_networkx(self) -> "nx.Graph":
         """A graph with nodes 0 … k-1, each with the fields of its `ContactPoint`, and edges with ``length``."""
+        import networkx as nx
+
         graph = nx.Graph(object_id=self.object_id)
         for number, node in enumerate(self.nodes):
             graph.add_node(number, **vars(node))
@@ -81,10 +85,19 @@ class ContactPointNetwork:
 def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:
     """Edges of the Euclidean minimum spanning tree, ``(k - 1, 2)``, each row ascending, rows in order.
 
-    Points at one place are joined like any others, by an edge of length 0.
+    Points at one place are joined like any others, by an edge of length 0. Of equally short edges, those of the
+    point that comes first in the order 1, 0, 2, 3, … are taken first: networkx breaks ties in this way.
     """
-    distance = squareform(pdist(positions)) if len(positions) > 1 else np.zeros((len(positions),) * 2)
-    graph = nx.Graph()
-    graph.add_weighted_edges_from((i, j, distance[i, j]) for i in range(len(positions)) for j in range(i))
-    edges = nx.minimum_spanning_edges(graph, data=False)
-    return np.array(sorted(sorted(edge) for edge in edges), np.int64).reshape(-1, 2)
+    n = len(positions)
+    if n < 2:
+        return np.empty((0, 2), np.int64)
+    apart = positions[:, None] - positions
+    distance = np.sqrt(apart[..., 0] ** 2 + apart[..., 1] ** 2 + apart[..., 2] ** 2).tolist()
+    tree = list(range(n))
+    edges = []
+    for edge in sorted(combinations([1, 0, *range(2, n)], 2), key=lambda pair: distance[pair[0]][pair[1]]):
+        kept, joined = tree[edge[0]], tree[edge[1]]
+        if kept != joined:
+            tree = [kept if part == joined else part for part in tree]
+            edges.append(sorted(edge))
+    return np.array(sorted(edges), np.int64)

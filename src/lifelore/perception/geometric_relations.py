@@ -12,6 +12,8 @@ Thesis: §5.2 proposes between = two adjacents, and in = on with adjacent. §2.2
 the convex hull, which a block on the foot of an L would pass.
 """
 
+from functools import cache
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -59,12 +61,11 @@ def _bearing(scene: Scene, b: int, other: int) -> NDArray[np.float64] | None:
 
 
 def _contained(scene: Scene) -> list[Fact]:
+    points_of = cache(scene.cloud.of)
     pairs = [(i.a, i.b) for i in scene.interfaces if TABLE not in (i.a, i.b)]
     ordered = [step for a, b in pairs for step in ((a, b), (b, a))]
     return [
-        Fact("contained", (a, b))
-        for a, b in ordered
-        if surrounded_share(scene.cloud.of(a), scene.cloud.of(b)) >= SURROUNDED
+        Fact("contained", (a, b)) for a, b in ordered if surrounded_share(points_of(a), points_of(b)) >= SURROUNDED
     ]
 
 

@@ -9,6 +9,7 @@ Thesis: §2.1, §2.4.2, §2.5.
 """
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,19 +61,24 @@ def grasp_seeds(scene: Scene, holes: tuple[Hole, ...] | None = None) -> tuple[Gr
         Those of `find_holes`; found anew when left out.
     """
     found = find_holes(scene) if holes is None else holes
-    edges = (_edge_seed(scene, label, i, j) for label in scene.objects for i, j in scene.networks[label].edges)
+    points_of = cache(scene.cloud.of)
+    edges = (
+        _edge_seed(scene, label, i, j, points_of(label))
+        for label in scene.objects
+        for i, j in scene.networks[label].edges
+    )
     through = (_hole_seed(scene, hole) for hole in found)
     return tuple(seed for seed in (*edges, *through) if seed is not None)
 
 
-def _edge_seed(scene: Scene, label: int, i: int, j: int) -> GraspSeed | None:
+def _edge_seed(scene: Scene, label: int, i: int, j: int, own: NDArray[np.float64]) -> GraspSeed | None:
     """At the middle of an edge, the fingers closing across it; None where no point of the object is near."""
     start, end = scene.position(label, i), scene.position(label, j)
     along, length = _unit(end - start)
     if length == 0:
         return None
     middle = (start + end) / 2
-    points = scene.cloud.of(label) - middle
+    points = own - middle
     near = points[np.abs(points @ along) <= HAND / 2]
     if not len(near):
         return None

@@ -26,24 +26,28 @@ object (a mug's handle) is no cycle of contacts and is not found.
 Thesis: §2.4.2, Fig. 2.6.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
-import networkx as nx
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, ON
+from lifelore.perception.biconnected_parts import Edge, biconnected_parts
 from lifelore.perception.cycle_basis import minimum_cycle_basis
 from lifelore.perception.interface import Interface
+from lifelore.perception.nearest_points import Nearest, nearest_points
 from lifelore.perception.scene import Scene
 from lifelore.perception.sight import Sight
 from lifelore.perception.voxel import voxelised
+
+if TYPE_CHECKING:
+    import networkx as nx
 
 CLEARANCE = 0.015
 """Metres: a finger's thickness. What a finger does not enter is no hole to a hand."""
@@ -103,27 +107,40 @@ def find_holes(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[Hole, ...
     """
     if not clearance > 0:
         raise InputError(f"clearance must be above 0 metres, got {clearance}")
+    loops = contact_loops(scene, clearance=clearance)
+    if not loops:
+        return ()
     sight = Sight(voxelised(scene.cloud, clearance / 5).cloud, clearance / 3)
     points_of = cache(sight.cloud.of)
-    holes = (_hole(scene, loop, sight, points_of, clearance) for loop in contact_loops(scene, clearance=clearance))
+    holes = (_hole(scene, loop, sight, points_of, clearance) for loop in loops)
     return tuple(sorted((hole for hole in holes if hole), key=lambda hole: (hole.size, hole.nodes)))
 
 
-def contact_graph(scene: Scene) -> nx.Graph:
+def contact_graph(scene: Scene) -> "nx.Graph":
     """All networks and the contact edges as one graph: nodes (object, number), edges with ``length`` and ``kind``.
 
     ``kind`` is ``network`` within an object and ``contact`` between two.
     """
+    import networkx as nx
+
     graph = nx.Graph()
     for label, network in scene.networks.items():
-        at = network.positions
-        graph.add_nodes_from((label, number) for number in range(len(at)))
-        for i, j in network.edges.tolist():
-            apart = float(np.linalg.norm(at[i] - at[j]))
-            graph.add_edge((label, i), (label, j), length=apart, kind="network")
+        graph.add_nodes_from((label, number) for number in range(len(network.nodes)))
+    for (x, y), length in _network_edges(scene).items():
+        graph.add_edge(x, y, length=length, kind="network")
     for edge in scene.contact_edges:
         graph.add_edge((edge.a, edge.node_a), (edge.b, edge.node_b), length=edge.length, kind="contact")
     return graph
+
+
+def _network_edges(scene: Scene) -> dict[Edge, float]:
+    """The length of each edge within an object, metres."""
+    lengths: dict[Edge, float] = {}
+    for label, network in scene.networks.items():
+        at = network.positions
+        for i, j in np.sort(network.edges, axis=1).tolist():
+            lengths[(label, i), (label, j)] = float(np.linalg.norm(at[i] - at[j]))
+    return lengths
 
 
 def contact_loops(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[tuple[Node, ...], ...]:
@@ -131,19 +148,21 @@ def contact_loops(scene: Scene, *, clearance: float = CLEARANCE) -> tuple[tuple[
 
     Whether the loops open is not asked.
     """
-    graph = contact_graph(scene)
     ajar = {frozenset((part.a, part.b)) for part in scene.interfaces if not _closes(scene, part, clearance)}
-    contacts = [(x, y) for x, y, kind in graph.edges(data="kind") if kind == "contact"]
-    graph.remove_edges_from((x, y) for x, y in contacts if frozenset((x[0], y[0])) in ajar)
+    lengths = _network_edges(scene)
+    for edge in scene.contact_edges:
+        if frozenset((edge.a, edge.b)) not in ajar:
+            x, y = sorted([(edge.a, edge.node_a), (edge.b, edge.node_b)])
+            lengths[x, y] = edge.length
     # A cycle lies within one biconnected part, and the search for a basis grows fast with the size of the graph.
-    parts = [graph.subgraph(nodes) for nodes in nx.biconnected_components(graph) if len(nodes) > 2]
-    return tuple(sorted(_turned(loop) for part in parts for loop in _shortest_loops(part)))
+    parts = biconnected_parts(lengths)
+    return tuple(sorted(_turned(loop) for part in parts for loop in _shortest_loops(part, lengths)))
 
 
-def _shortest_loops(graph: nx.Graph) -> list[list[Node]]:
-    names = sorted(graph.nodes)
+def _shortest_loops(part: list[Edge], lengths: Mapping[Edge, float]) -> list[list[Node]]:
+    names = sorted({node for edge in part for node in edge})
     number = {name: k for k, name in enumerate(names)}
-    edges = sorted((*sorted((number[x], number[y])), length) for x, y, length in graph.edges(data="length"))
+    edges = sorted((number[x], number[y], lengths[x, y]) for x, y in part)
     loops = minimum_cycle_basis([(x, y) for x, y, _ in edges], [length for *_, length in edges])
     return [[names[k] for k in loop] for loop in loops]
 
@@ -239,7 +258,7 @@ def opening_along(
 
     def nearest(x: float) -> Nearest | None:
         here, there = np.abs(at_own - x) <= clearance / 2, np.abs(at_others - x) <= clearance / 2
-        return _nearest(own[here], others[there])
+        return nearest_points(own[here], others[there])
 
     ends = nearest(stations[0]), nearest(stations[-1])
     if ends[0] is None or ends[1] is None:
@@ -256,21 +275,3 @@ def opening_along(
     free = [f for f in open_ if f]
     border = [start, *(f.own for f in free), end, *(f.other for f in reversed(free))]
     return Opening(width, np.array(border))
-
-
-@dataclass(frozen=True, eq=False)
-class Nearest:
-    """The smallest distance of two clouds, metres, and the point of either at which it is found, ``(3,)``."""
-
-    distance: float
-    own: NDArray[np.float64]
-    other: NDArray[np.float64]
-
-
-def _nearest(first: NDArray[np.float64], second: NDArray[np.float64]) -> Nearest | None:
-    """None where either cloud is empty."""
-    if not len(first) or not len(second):
-        return None
-    distances, partners = KDTree(second).query(first)
-    k = int(np.argmin(distances))
-    return Nearest(float(np.min(distances)), first[k], second[np.asarray(partners)[k]])

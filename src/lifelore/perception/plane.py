@@ -82,13 +82,19 @@ def dominant_plane(
 
 
 def refined(points: NDArray[np.float64], plane: Plane, near: float = NEAR) -> Plane:
-    """The least-squares plane of the points near `plane`, found anew five times from its own points."""
+    """The least-squares plane of the points near `plane`, found anew up to five times from its own points."""
+    held = None
     for _ in range(5):
-        close = points[np.abs(plane.height(points)) <= near]
+        before, held = held, np.abs(plane.height(points)) <= near
+        if before is not None and np.array_equal(before, held):
+            return plane  # the same points give the same plane
+        close = points[held]
         if len(close) < 3:
             return plane
         centre = close.mean(axis=0)
-        spread = (close - centre).T @ (close - centre)
+        close -= centre
+        # Two arrays: of one array and its own transpose NumPy computes another sum, with other last bits.
+        spread = close.T @ close.copy()
         normal = np.linalg.eigh(spread)[1][:, 0]
         if normal @ plane.normal < 0:
             normal = -normal

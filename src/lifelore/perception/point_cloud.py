@@ -67,10 +67,11 @@ class PointCloud:
 
     def only(self, keep: NDArray) -> "PointCloud":
         """The points that `keep` ((n,) bool, or indices) names; the order of the image is lost."""
+        rows = np.flatnonzero(keep) if keep.dtype == bool else keep
         return PointCloud(
-            self.points[keep],
-            None if self.labels is None else self.labels[keep],
-            None if self.colours is None else self.colours[keep],
+            self.points.take(rows, axis=0),
+            None if self.labels is None else self.labels[rows],
+            None if self.colours is None else self.colours.take(rows, axis=0),
             camera=self.camera,
             from_parts=self.from_parts,
         )

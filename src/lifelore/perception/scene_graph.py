@@ -1,18 +1,23 @@
 """A scene as a graph of objects and relations: for networkx, and in the DOT language of Graphviz."""
 
-import networkx as nx
+from typing import TYPE_CHECKING
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import NONE, SYMMETRIC
 from lifelore.perception.scene import Scene, object_name
 
+if TYPE_CHECKING:
+    import networkx as nx
 
-def relation_graph(scene: Scene) -> nx.MultiDiGraph:
+
+def relation_graph(scene: Scene) -> "nx.MultiDiGraph":
     """Objects and relations as a directed multigraph, *none* left out.
 
     Nodes are the scene's numbers (the table's is 1, present if a relation names it) with ``name``, ``n_points``
     and ``centroid``; edges run from a to b and have ``relation``, ``confidence``, ``gap`` and ``symmetric``.
     """
+    import networkx as nx
+
     graph = nx.MultiDiGraph()
     stated = [r for r in scene.relations if r.relation != NONE]
     for label in sorted({*scene.objects, *(TABLE for r in stated if TABLE in (r.a, r.b))}):

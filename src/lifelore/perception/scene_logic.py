@@ -17,11 +17,9 @@ table, it stands on the table if, and only if, no object carries it.
 Thesis: §2.5 leaves reasoning over the relations to other work; §5.2 proposes a logic engine.
 """
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, prod
-
-import networkx as nx
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
@@ -150,14 +148,36 @@ def contradictions(relations: Iterable[Relation], objects: Iterable[int] = ()) -
 
 
 def _contradictions(labels: Iterable[Label], must_rest: Iterable[int]) -> tuple[str, ...]:
-    rests = nx.DiGraph(sorted(step for label in labels if (step := carries(label)) is not None))
-    loops = [sorted(part) for part in nx.strongly_connected_components(rests) if len(part) > 1]
-    hanging = sorted(thing for thing in must_rest if thing not in rests or not rests.out_degree(thing))
+    rests: dict[int, set[int]] = {}
+    for label in labels:
+        if (step := carries(label)) is not None:
+            rests.setdefault(step[0], set()).add(step[1])
+    hanging = sorted(thing for thing in must_rest if thing not in rests)
     return (
-        *(["something carries the table"] if rests.has_node(TABLE) and rests.out_degree(TABLE) else []),
-        *(f"{', '.join(map(str, loop))} rest on one another in a circle" for loop in sorted(loops)),
+        *(["something carries the table"] if TABLE in rests else []),
+        *(f"{', '.join(map(str, circle))} rest on one another in a circle" for circle in _circles(rests)),
         *(f"{thing} rests on nothing" for thing in hanging),
     )
+
+
+def _circles(rests: Mapping[int, Iterable[int]]) -> list[tuple[int, ...]]:
+    """Largest sets of two or more objects that each rest on all others of the set, directly or not; sorted."""
+    below = {thing: _all_below(thing, rests) for thing in rests}
+    circles = {
+        tuple(sorted(y for y in under if x in below.get(y, ()))) for x, under in below.items() if x in under
+    }
+    return sorted(circle for circle in circles if len(circle) > 1)
+
+
+def _all_below(thing: int, rests: Mapping[int, Iterable[int]]) -> set[int]:
+    """All that an object rests on, directly or through others; itself where it is part of a circle."""
+    found: set[int] = set()
+    waiting = [thing]
+    while waiting:
+        new = set(rests.get(waiting.pop(), ())) - found
+        found |= new
+        waiting += new
+    return found
 
 
 def _judged(beliefs: Iterable[LabelDistribution]) -> set[int]:

@@ -5,7 +5,6 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import LabelledCloud
 
@@ -36,7 +35,9 @@ class Sight:
         distance = float(np.linalg.norm(away))
         if distance == 0:
             return True
-        near = self._directions.query_ball_point(away / distance, self.radius / distance)
+        reach = self.radius / distance
+        beside = self._directions - (away / distance)[:, None]
+        near = beside[0] ** 2 + beside[1] ** 2 + beside[2] ** 2 <= reach * reach
         depths = self._depths[near]
         return bool((depths > distance + self.radius).any() and not (depths < distance - self.radius).any())
 
@@ -49,5 +50,6 @@ class Sight:
         return np.linalg.norm(self._rays, axis=1)
 
     @cached_property
-    def _directions(self) -> KDTree:
-        return KDTree(self._rays / np.maximum(self._depths, 1e-9)[:, None])
+    def _directions(self) -> NDArray[np.float64]:
+        """Unit vectors from the camera, one a column."""
+        return np.ascontiguousarray((self._rays / np.maximum(self._depths, 1e-9)[:, None]).T)

@@ -134,18 +134,25 @@ def _pose(
     points: NDArray[np.float64], cloud: PointCloud, up: Up
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rotation (3, 3) and shift (3,) from the frame of the cloud to the scene's."""
+    check_up(up)
     if isinstance(up, str):
         if up == "table":
             plane = _table_plane(points, cloud.labels, cloud.camera)
             return upright(plane.normal), np.array([0.0, 0.0, plane.offset])
-        if up != "z":
-            raise InputError(f"up must be 'table', 'z' or three numbers, got {up!r}")
         table = _table_height(points[:, 2], points, np.array([0.0, 0.0, 1.0]), cloud.labels)
         return np.eye(3), np.array([0.0, 0.0, 0.0 if table is None else -table])
     normal = _unit(up)
     heights = points @ normal
     table = _table_height(heights, points, normal, cloud.labels)
     return upright(normal), np.array([0.0, 0.0, -float(np.percentile(heights, 1)) if table is None else -table])
+
+
+def check_up(up: Up) -> None:
+    """Refuse what is neither "table" nor "z" nor a direction."""
+    if not isinstance(up, str):
+        _unit(up)
+    elif up not in ("table", "z"):
+        raise InputError(f"up must be 'table', 'z' or three numbers, got {up!r}")
 
 
 def _unit(up: ArrayLike) -> NDArray[np.float64]:
