@@ -47,7 +47,7 @@ test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 $(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
 	test -x $(DEEP)/bin/python || $(PYTHON) -m venv $(DEEP)
 	$(DEEP)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
-		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest
+		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest hypothesis
 	touch $@
 
 test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
@@ -57,7 +57,7 @@ test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is u
 $(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
 	test -x $(CUDA)/bin/python || $(PYTHON) -m venv $(CUDA)
 	$(CUDA)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
-		--constraint constraints-cuda.txt --editable '.[cuda,postgres]' pytest
+		--constraint constraints-cuda.txt --editable '.[cuda,postgres]' pytest hypothesis
 	touch $@
 
 check: setup-test ## Formatting, lint, types, direction of imports
