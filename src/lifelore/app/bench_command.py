@@ -9,7 +9,8 @@ def bench(
     name: Annotated[
         str,
         typer.Argument(
-            help="kernels, priors, separator, perceive (speed); relations, pictures, courier, deep (worth)."
+            help="kernels, priors, separator, perceive (speed); relations, pictures, courier, deep (worth); "
+            "capacity (cost of a million learners)."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,

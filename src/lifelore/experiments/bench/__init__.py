@@ -19,6 +19,7 @@ BENCHES = (
     "factory",
     "deep",
     "reuse",
+    "capacity",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
