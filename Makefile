@@ -13,7 +13,10 @@ endif
 DEEP := .venv-deep
 DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 
-.PHONY: help setup setup-test demo test test-deep check format bench soak docs reproduce clean
+# So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
+CUDA := .venv-cuda
+
+.PHONY: help setup setup-test demo test test-deep test-cuda check format bench soak docs reproduce clean
 
 help: ## Name every target
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -45,7 +48,17 @@ test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 $(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
 	test -x $(DEEP)/bin/python || $(PYTHON) -m venv $(DEEP)
 	$(DEEP)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
-		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest
+		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest hypothesis
+	touch $@
+
+test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
+	$(CUDA)/bin/python -c "import numba_cuda"
+	$(CUDA)/bin/python -m pytest -m cuda tests/core/test_cuda.py
+
+$(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
+	test -x $(CUDA)/bin/python || $(PYTHON) -m venv $(CUDA)
+	$(CUDA)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
+		--constraint constraints-cuda.txt --editable '.[cuda,postgres]' pytest hypothesis
 	touch $@
 
 check: setup-test ## Formatting, lint, types, direction of imports
@@ -71,4 +84,4 @@ reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full
 
 clean: ## Remove the environment and caches
-	rm -rf $(VENV) $(DEEP) .pytest_cache .ruff_cache .hypothesis out
+	rm -rf $(VENV) $(DEEP) $(CUDA) .pytest_cache .ruff_cache .hypothesis out

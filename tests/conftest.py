@@ -1,12 +1,17 @@
-"""A real PostgreSQL for all tests that want one, and places where no memory has been yet."""
+"""A real PostgreSQL for all tests that want one, places where no memory has been yet, and no haste in any test."""
 
 import itertools
 from collections.abc import Callable, Iterator
 
 import psycopg
 import pytest
+from hypothesis import HealthCheck, settings
 
 Places = Callable[[str], str]
+
+# On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
+settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+settings.load_profile("patient")
 
 
 @pytest.fixture(scope="session")

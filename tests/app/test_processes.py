@@ -40,7 +40,7 @@ def task_indices(path: Path) -> list[int]:
 def test_ctrl_c_keeps_what_is_finished(start, answer, ask, wait_for_tasks, tmp_path):
     memory = tmp_path / "life.db"
     child = start(*LATTICE, "--tasks", 100_000, "--memory", memory, "--json")
-    wait_for_tasks(memory, 2)
+    wait_for_tasks(child, memory, 2)
     child.send_signal(signal.SIGINT)
     said = answer(child)
     assert said.status == 130
@@ -78,10 +78,10 @@ def killed_life(start, memory: Path, seconds: float, after: int | None, wait_for
     """Start a life and kill it: `seconds` after its start, or after there are more than `after` tasks."""
     child = start("live", "--tasks", 1_000_000, "--jobs", 1, "--memory", memory)
     if after is not None:
-        wait_for_tasks(memory, after + 1)
+        wait_for_tasks(child, memory, after + 1)
     time.sleep(seconds)
     child.kill()
-    assert (child.wait(30), child.stdout.read(), child.stderr.read()) == (-signal.SIGKILL, "", "")
+    assert (child.wait(), child.stdout.read(), child.stderr.read()) == (-signal.SIGKILL, "", "")
 
 
 def kill_loop(start, ask, wait_for_tasks, memory: Path, kills: int, seed: int) -> None:

@@ -9,7 +9,8 @@ def bench(
     name: Annotated[
         str,
         typer.Argument(
-            help="kernels, priors, separator, perceive, merge (speed); relations, pictures, courier, deep (worth)."
+            help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
+            "Worth: courier, relations, pictures, deep."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,

@@ -22,6 +22,7 @@ BENCHES = (
     "start",
     "buildings",
     "merge",
+    "capacity",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
