@@ -1,12 +1,11 @@
-"""The benchmarks of merging and of choosing from the shell: small, by their contract, on true work."""
+"""The benchmark of merging: small, by its contract, on true work."""
 
 import json
-from pathlib import Path
 
 import pytest
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench import bench, merge, reuse_start
+from lifelore.experiments.bench import bench, merge
 from lifelore.memory import open_memory
 
 
@@ -43,14 +42,3 @@ def test_a_merge_that_brings_too_little_is_no_measurement(small, tmp_path):
     source = merge.robot_memory(tmp_path / "r.db", 0)
     with pytest.raises(LifeloreError, match="must bring 8 contributions, got 4"):
         merge.merge_seconds([source, source], many=True)
-
-
-def test_seconds_of_processes_that_choose_and_update():
-    chosen, updated = reuse_start.reuse_start_seconds(repeats=1)
-    assert len(chosen) == len(updated) == 1
-    assert chosen[0] > 0 < updated[0]
-
-
-def test_a_process_that_fails_is_no_measurement(tmp_path: Path):
-    with pytest.raises(LifeloreError, match="no study 'default'"):
-        reuse_start._seconds("choose", "--user", "ann", "--memory", tmp_path / "m.db")

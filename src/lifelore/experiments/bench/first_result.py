@@ -1,11 +1,9 @@
 """Time to the first result in a fresh process, imports apart, with a cold and a warm cache of kernels."""
 
-import importlib.util
 import os
 import subprocess
 import sys
 import tempfile
-import time
 
 from lifelore.core.errors import LifeloreError
 
@@ -55,16 +53,6 @@ def first_result_seconds(learner: str) -> tuple[float, float]:
 def _timed_inside(source: str, cache: str) -> float:
     environment = os.environ | {"NUMBA_CACHE_DIR": cache}
     return float(_run([sys.executable, "-c", source], environment))
-
-
-def help_seconds() -> float | None:
-    """Seconds that ``lifelore --help`` takes from start to end; None where there is no command line."""
-    module = "lifelore.app.command_line"
-    if importlib.util.find_spec(module) is None:
-        return None
-    started = time.perf_counter()
-    _run([sys.executable, "-m", module, "--help"], dict(os.environ))
-    return time.perf_counter() - started
 
 
 def _run(command: list[str], environment: dict[str, str]) -> str:

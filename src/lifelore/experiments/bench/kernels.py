@@ -1,38 +1,43 @@
-"""`bench kernels`: the Q-learning kernel beside C, a textbook loop and tuned Python; and the time to start."""
+"""`bench kernels`: the Q-learning kernel beside C, a textbook loop and tuned Python; many learners; threads."""
 
 from collections.abc import Callable
 from statistics import median
 
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.c_loop import built_c_loop
-from lifelore.experiments.bench.first_result import LEARNERS, first_result_seconds, help_seconds
 from lifelore.experiments.bench.gymnasium_loop import short_textbook_rate, textbook_rate
 from lifelore.experiments.bench.lattice_case import kernel_rate
 from lifelore.experiments.bench.list_loop import short_tuned_rate, tuned_rate
-from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
+from lifelore.experiments.bench.many_learners import CHUNK, LEARNERS, alone_rate, many_rate
+from lifelore.experiments.bench.rounds import Rates, at_least, interleaved, paired_ratio, row
 from lifelore.experiments.bench.thread_scaling import THREADS, check_same_bits, threaded_rate
 
 KERNEL, C, TEXTBOOK, TUNED = "kernel", "C -O3 -march=native", "Gymnasium + NumPy", "tuned pure Python"
 SHORT = ", less work: first best action, no visits"
-GOALS = {C: 0.5, TEXTBOOK: 150.0, TUNED: 15.0}
+GOALS = {C: 0.75, TEXTBOOK: 150.0, TUNED: 15.0}
 """Least ratio of the kernel's rate to each rival's that does the same work."""
-COLD, WARM, HELP = 3.0, 0.6, 0.3
-"""Seconds."""
-START_ROUNDS = 3
-"""Starting costs seconds a time and differs little: at most this many rounds of it."""
+MANY_GOAL, THREADS_GOAL = 0.9, 1.8
+"""Least rate of many learners on one core beside learners that run alone, and of two threads beside one."""
 UNIT = "Msteps/s"
 
 
 ONE, SEVERAL = "8 learners, 1 thread", f"8 learners, {THREADS} threads"
+ALONE = "fresh learners, one after the other"
+_TURNS = f"{LEARNERS:,} learners in turns of {CHUNK} steps"
+MANY, MANY_THREADS = f"{_TURNS}, 1 thread", f"{_TURNS}, 2 threads"
+MANY_ROUNDS = 3
+"""A round of ten thousand learners costs ten seconds: at most this many rounds of it."""
 
 
 def bench_kernels(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
     contenders = _contenders()
+    crowd = {ALONE: alone_rate, MANY: lambda: many_rate(1), MANY_THREADS: lambda: many_rate(2)}
     check_same_bits()
     kernel_rate()  # compiled and warm before anything is timed
-    starts = min(repeats, START_ROUNDS)
-    total = repeats * len(contenders) + starts * (len(LEARNERS) + 1)
+    alone_rate(1)
+    rounds = min(repeats, MANY_ROUNDS)
+    total = repeats * len(contenders) + rounds * len(crowd)
     done = 0
 
     def after(label: str) -> None:
@@ -46,8 +51,24 @@ def bench_kernels(repeats: int, progress: Progress) -> dict:
         row(ONE, median(rates[ONE]), UNIT),
         row(SEVERAL, median(rates[SEVERAL]), UNIT, ONE, paired_ratio(rates[SEVERAL], rates[ONE])),
     ]
-    start_rows, start_goals = _starts(starts, after)
-    return {"rows": [*rate_rows, *threads, *start_rows], "goals": [*rate_goals, *start_goals]}
+    many_rows, many_goals = _many(interleaved(crowd, rounds, after))
+    return {"rows": [*rate_rows, *threads, *many_rows], "goals": [*rate_goals, *many_goals]}
+
+
+def _many(rates: Rates) -> tuple[list[dict], list[dict]]:
+    """Ten thousand learners beside learners that run alone, and two threads of them beside one."""
+    to_alone = paired_ratio(rates[MANY], rates[ALONE])
+    to_one_thread = paired_ratio(rates[MANY_THREADS], rates[MANY])
+    rows = [
+        row(ALONE, median(rates[ALONE]), UNIT),
+        row(MANY, median(rates[MANY]), UNIT, ALONE, to_alone),
+        row(MANY_THREADS, median(rates[MANY_THREADS]), UNIT, MANY, to_one_thread),
+    ]
+    goals = [
+        at_least(f"{MANY} / alone", MANY_GOAL, to_alone),
+        at_least(f"{MANY_THREADS} / 1 thread", THREADS_GOAL, to_one_thread),
+    ]
+    return rows, goals
 
 
 def _contenders() -> dict[str, Callable[[], float]]:
@@ -78,27 +99,4 @@ def _beside(rates: Rates) -> tuple[list[dict], list[dict]]:
             rows.append(row(f"{rival}: not measured, no gcc found", None, UNIT, KERNEL))
         if rival in GOALS:
             goals.append(at_least(f"{KERNEL} / {rival}", GOALS[rival], ours_to_theirs))
-    return rows, goals
-
-
-def _starts(rounds: int, after: Callable[[str], None]) -> tuple[list[dict], list[dict]]:
-    """First results with a cold and a warm cache, and the command line's help."""
-    rows, goals = [], []
-    for learner in LEARNERS:
-        times = []
-        for _ in range(rounds):
-            times.append(first_result_seconds(learner))
-            after(f"first result of learner {learner}")
-        cold, warm = (median(column) for column in zip(*times, strict=True))
-        name = f"first result of learner {learner}"
-        rows += [row(f"{name}, cold", cold, "s"), row(f"{name}, warm", warm, "s", f"{name}, cold", warm / cold)]
-        goals += [at_most(f"{name}, cold, s", COLD, cold), at_most(f"{name}, warm, s", WARM, warm)]
-    helps = []
-    for _ in range(rounds):
-        helps.append(help_seconds())
-        after("lifelore --help")
-    seconds = None if None in helps else median(helps)
-    missing = "" if seconds is not None else ": not measured, no command line found"
-    rows.append(row(f"lifelore --help{missing}", seconds, "s"))
-    goals.append(at_most("lifelore --help, s", HELP, seconds))
     return rows, goals
