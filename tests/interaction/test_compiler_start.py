@@ -14,9 +14,9 @@ from lifelore.interaction.belief import bayes_rule, update
 from lifelore.interaction.belief_kernels import bayes_row
 from lifelore.interaction.selection import InformationDirected, information_kernels, mixtures, support_kernels
 from lifelore.interaction.selection.choice import choose
-from lifelore.interaction.selection.rule import tied_shares
+from lifelore.interaction.selection.rule import shares_of_tied, tied_shares
 from lifelore.interaction.selection.support import rising_least
-from lifelore.interaction.selection.tie_kernels import choose_row
+from lifelore.interaction.selection.tie_kernels import choose_row, tied_rows
 
 seeds = st.integers(0, 2**32 - 1)
 logs = st.one_of(st.floats(-800, 300), st.just(-np.inf), st.sampled_from([0.0, -0.0, -1e308, 1e308]))
@@ -79,6 +79,22 @@ def test_shares_go_to_the_policies_that_the_kernel_may_choose(scores):
     uniforms = (np.arange(2520) + 0.5) / 2520  # A multiple of every number of tied policies.
     counts = np.bincount([choose_row(scores, u, 1e-9) for u in uniforms], minlength=len(scores))
     assert tied_shares(scores) == pytest.approx(counts / 2520)
+
+
+@settings(deadline=None, max_examples=300)
+@given(
+    arrays(
+        float,
+        st.tuples(st.integers(1, 4), st.integers(1, 9)),
+        elements=st.one_of(logs, st.sampled_from([np.inf, np.nan]), st.floats(1 - 3e-9, 1.0)),
+    )
+)
+def test_shares_of_tied(scores):
+    shares = np.empty_like(scores)
+    tied_rows(scores, 1e-9, shares)
+    plain = shares_of_tied(scores, 1e-9)
+    assert np.array_equal(np.isnan(plain), np.isnan(shares))
+    assert same_bits(np.nan_to_num(plain), np.nan_to_num(shares))
 
 
 def test_near_ties_share_and_choose_alike():

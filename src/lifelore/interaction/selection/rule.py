@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.compiler_start import kernel_pays
 from lifelore.interaction.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
@@ -67,14 +68,28 @@ class Deterministic:
 def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     """How likely `choose` is to take each policy, (..., n_policies)."""
     scores = np.asarray(scores, np.float64)
-    if np.isnan(scores).any():
+    if not kernel_pays(scores.size):
+        shares = shares_of_tied(scores, tolerance)
+    else:
+        from lifelore.interaction.selection.tie_kernels import tied_rows
+
+        rows = np.ascontiguousarray(scores.reshape(-1, scores.shape[-1]))
+        shares = np.empty_like(rows)
+        tied_rows(rows, tolerance, shares)
+    if np.isnan(shares).any():
         raise InputError("scores must be numbers, got NaN")
+    return shares.reshape(scores.shape)
+
+
+def shares_of_tied(scores: Array, tolerance: float) -> Array:
+    """1 / n for each of the n best of a row, NaN where a score is: the NumPy twin of `tie_kernels.tied_rows`."""
     best = scores.max(axis=-1, keepdims=True)
     least = np.where(scores > -np.inf, scores, best).min(axis=-1, keepdims=True)
     with np.errstate(invalid="ignore"):
         bar = best - (tolerance * np.abs(best) + ROUNDING * np.maximum(np.abs(best), np.abs(least)))
-    tied = scores >= np.where(np.isinf(best), best, bar)
-    return tied / tied.sum(axis=-1, keepdims=True)
+    bar = np.where(np.isinf(best), best, bar)
+    tied = scores >= bar
+    return np.where(np.isnan(best), np.nan, tied / np.maximum(tied.sum(axis=-1, keepdims=True), 1))
 
 
 def in_blocks(belief: Array, numbers: int, scored: Callable[[Array], Array]) -> Array:

@@ -65,3 +65,19 @@ def choose_rows(scores, uniforms, tolerance, chosen):
     """`choose_row` of rows (n, n_policies), into `chosen` (n,)."""
     for k in range(scores.shape[0]):
         chosen[k] = _place(scores[k], _bar(scores[k], tolerance), uniforms[k])
+
+
+@kernel
+def tied_rows(scores, tolerance, shares):
+    """1 / n for each of the n best of a row (k, n_policies), 0 for the others; NaN where a score is."""
+    for k in range(scores.shape[0]):
+        bar = _bar(scores[k], tolerance)
+        tied = 0
+        for i in range(scores.shape[1]):
+            if scores[k, i] >= bar:
+                tied += 1
+        for i in range(scores.shape[1]):
+            if np.isnan(bar):
+                shares[k, i] = np.nan
+            else:
+                shares[k, i] = 1.0 / tied if scores[k, i] >= bar else 0.0
