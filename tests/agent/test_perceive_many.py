@@ -131,7 +131,7 @@ def test_each_new_cloud_of_a_folder(clouds, tmp_path):
     np.save(folder / "a.npy", CUBE)
     twin = next(entries)
     assert twin["source"] == str(folder / "a.npy")
-    assert "would be written to one file" in twin["error"]
+    assert "would write over" in twin["error"]
     stop.set()
     assert list(entries) == []
 

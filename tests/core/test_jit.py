@@ -1,5 +1,6 @@
 """Compiled equals plain Python to the bit, and the cache of compiled kernels never answers for older source."""
 
+import ast
 import os
 import shutil
 import subprocess
@@ -12,7 +13,7 @@ import pytest
 
 import lifelore
 from lifelore.core.kernel_cache import STALE_DAYS, kernel_cache_dir, kernel_sources, remove_stale
-from lifelore.core.numba_internals import internals
+from lifelore.core.numba_internals import quick_cache
 
 KERNELS_RUN = Path(__file__).with_name("kernels_run.py")
 PACKAGE = Path(lifelore.__file__).parent
@@ -112,6 +113,38 @@ def test_the_cache_is_named_after_all_that_kernels_read(tmp_path):
     assert PACKAGE / "core" / "mdp.py" in kernel_sources(PACKAGE)
 
 
+def test_imports_are_found_as_python_finds_them(tmp_path):
+    """The quick reading of import statements beside the parser, on this package and on unusual layouts."""
+
+    def parsed(package: Path) -> set[Path]:
+        found, waiting = set(), [path for path in kernel_sources(package) if b"@kernel" in path.read_bytes()]
+        while waiting:
+            path = waiting.pop()
+            if path in found:
+                continue
+            found.add(path)
+            for node in ast.walk(ast.parse(path.read_bytes())):
+                names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+                if isinstance(node, ast.ImportFrom) and node.module:
+                    names += [node.module, *(f"{node.module}.{alias.name}" for alias in node.names)]
+                files = [package.joinpath(*name.split(".")[1:]).with_suffix(".py") for name in names]
+                waiting += [file for file in files if file.is_file() and package in file.parents]
+        return found
+
+    assert parsed(PACKAGE) == set(kernel_sources(PACKAGE))
+    package = tmp_path / "lifelore"
+    package.mkdir()
+    for name in "bcdef":
+        (package / f"{name}.py").write_text("")
+    layouts = (
+        "from lifelore import (  # the bits (see b)\n    b,\n    c,\n)\n"
+        "from lifelore import d, \\\n    e\nimport numpy, lifelore.f\n@kernel\ndef g(): pass\n"
+    )
+    (package / "a.py").write_text(layouts)
+    assert {path.stem for path in kernel_sources(package)} == set("abcdef")
+    assert parsed(package) == set(kernel_sources(package))
+
+
 def test_every_kernel_lies_in_the_cache_folder():
     from lifelore.core import model_learning, planning, q_learning
 
@@ -121,17 +154,15 @@ def test_every_kernel_lies_in_the_cache_folder():
 
 def test_numba_still_has_what_makes_kernels_quick():
     """A failure here means that a Numba release changed its insides: kernels still run, but slower."""
-    found = internals()
-    assert found is not None
-    assert found.no_counting == {"_nrt": False}
+    assert quick_cache() is not None
 
 
 NO_INTERNALS = """
 import sys
 import numba.core.caching
 del numba.core.caching.CompileResultCacheImpl
-from lifelore.core.numba_internals import internals
-assert internals() is None
+from lifelore.core.numba_internals import quick_cache
+assert quick_cache() is None
 """
 
 

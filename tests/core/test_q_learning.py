@@ -308,3 +308,12 @@ def test_many_refuse_what_breaks_a_rule(draw_world, worlds, options, message):
     owns = [stream(i) for i in range(2)]
     with pytest.raises(InputError, match=message):
         QLearning().learn_many(draw_world(1), 0.9, worlds=[stream(i) for i in range(worlds)], owns=owns, **options)
+
+
+def test_many_may_share_generators_drawn_learner_by_learner(draw_world):
+    tables, method = draw_world(2), QLearning(episodes=5)
+    shared, again = stream(1), stream(1)
+    learners, _ = method.learn_many(tables, 0.9, worlds=[shared] * 3, owns=[shared] * 3)
+    for i in range(3):
+        alone, _ = method.learn(tables, 0.9, world=again, own=again)
+        assert np.array_equal(learners.q[i], alone.q)

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from lifelore.core.curve import TOTAL
 from lifelore.core.errors import InputError
 from lifelore.experiments.bench import bench, capacity, capacity_case
 from lifelore.experiments.bench.capacity_case import ACTIONS, TURN, Contexts, Learners, bytes_of, contributions
@@ -66,8 +67,8 @@ def test_bytes_are_those_that_stay():
 def test_learners_take_turns_and_learn():
     many = Learners(3)
     assert many.advance() == many.advance() == 3 * TURN
-    assert [learner.cursor[4] for learner in many.learners] == [2 * TURN] * 3
-    tables = [learner.q for learner in many.learners]
+    assert many.learners.cursor[:, TOTAL].tolist() == [2 * TURN] * 3
+    tables = many.learners.q
     assert all(table.any() for table in tables)
     assert not np.array_equal(tables[0], tables[1])
 

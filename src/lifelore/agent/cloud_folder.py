@@ -4,7 +4,6 @@ import os
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from threading import Event
 
 from lifelore.core.errors import InputError, LifeloreError
@@ -70,8 +69,13 @@ def _arrivals(
     done: dict[str, Version],
 ) -> Iterator[tuple[str, PointCloud | LifeloreError]]:
     waiting: dict[str, _Waiting] = {}
-    while not stop.wait(LOOK_EVERY):
+    pause = LOOK_EVERY
+    while not stop.wait(pause):
+        began = time.perf_counter()
         there = _versions(folder)
+        # A folder of ten thousand recordings must not keep a core busy.
+        pause = max(LOOK_EVERY, 10 * (time.perf_counter() - began))
+        done = {path: version for path, version in done.items() if path in there}
         waiting = {path: one for path, one in waiting.items() if path in there}
         for path, version in sorted(there.items()):
             if done.get(path) == version or stop.is_set():
@@ -101,11 +105,11 @@ def _attempt(read: Callable[[str], PointCloud], path: str) -> PointCloud | Lifel
 
 def _versions(folder: str | os.PathLike[str]) -> dict[str, Version]:
     try:
-        names = os.listdir(folder)
+        with os.scandir(folder) as entries:
+            clouds = [entry.path for entry in entries if _is_cloud_name(entry.name)]
     except OSError as error:
         raise InputError(f"watch must name a folder, got '{folder}': {error.strerror}") from None
-    paths = [str(Path(folder, name)) for name in names if _is_cloud_name(name)]
-    found = ((path, _version(path)) for path in paths)
+    found = ((path, _version(path)) for path in clouds)
     return {path: version for path, version in found if version is not None}
 
 

@@ -135,15 +135,15 @@ def perceive_folder(
     arrivals = new_clouds(
         folder, lambda path: read_cloud(path, units=settings.units, labels=settings.labels), stop
     )
-    sources: dict[str, str] = {}
+    owner: dict[str, str] = {}
 
     def perceived_of(path: str, cloud: Source | LifeloreError) -> Entry:
         if isinstance(cloud, LifeloreError):
             raise cloud
         own = named_files(path, pddl, dot, plot)
         if own.paths:
-            _check_twins([sources.setdefault(Path(path).stem, path), path])
             check_scene_files(own, files_read([path], settings))
+            _claim(owner, path, own)
         return perceived(cloud, model, settings, own, None, None if notice is None else _named(notice, path))
 
     return (_entry(path, partial(perceived_of, path, cloud)) for path, cloud in arrivals)
@@ -161,7 +161,9 @@ def _entry(source: str, document: Callable[[], dict[str, Any]]) -> Entry:
     try:
         return {"source": source, **document()}
     except LifeloreError as error:
-        return {"source": source, "error": str(error).removeprefix(f"{source}: ")}
+        return {"source": source, "error": str(error).removeprefix(f"{Path(source)}: ")}
+    except MemoryError:
+        return {"source": source, "error": "does not fit into memory: thin the cloud out"}
 
 
 def _check_words(settings: PerceiveSettings) -> None:
@@ -181,6 +183,16 @@ def _check_twins(sources: Sequence[str]) -> None:
                 f"'{other}' and '{source}' would be written to one file, their name being"
                 f" '{Path(source).stem}': rename one of them, or perceive them one by one"
             )
+
+
+def _claim(owner: dict[str, str], source: str, files: SceneFiles) -> None:
+    """Note that `files` and `source` itself belong to `source`; refuse to write what another cloud owns."""
+    written = [os.path.realpath(path) for path in files.paths]
+    for path in written:
+        other = owner.get(path, source)
+        if other != source and os.path.exists(other):
+            raise InputError(f"'{source}' would write over '{other}' or a file of it, {path}: rename one of them")
+    owner.update(dict.fromkeys([*written, os.path.realpath(source)], source))
 
 
 def _step_of(progress: Progress, number: int, total: int, source: str) -> Progress:

@@ -1,4 +1,4 @@
-"""`lifelore doctor --warm`: compile the kernels of every verb ahead, so that nobody waits at the first use."""
+"""`lifelore doctor --warm`: compile the kernels of `live`, `perceive` and `reuse` before their first use."""
 
 import tempfile
 import time
@@ -8,12 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.core.errors import StoreError
 from lifelore.core.kernel_cache import kernel_cache_dir
 from lifelore.core.protocols import Progress
 
 
 def warm(progress: Progress | None = None) -> dict[str, Any]:
-    """Run every verb once on something small; what it compiles stays in the kernel cache.
+    """Run each of `VERBS` once on something small; what it compiles stays in the kernel cache.
 
     Parameters
     ----------
@@ -24,6 +25,11 @@ def warm(progress: Progress | None = None) -> dict[str, Any]:
     -------
     dict
         ``folder``; ``compiled``: kernels that were not there yet; ``kernels`` there now; ``seconds``.
+
+    Raises
+    ------
+    StoreError
+        Nothing was stored: the folder cannot be written, or compiling is switched off.
     """
     began, before = time.perf_counter(), _compiled()
     with tempfile.TemporaryDirectory() as folder:
@@ -32,6 +38,11 @@ def warm(progress: Progress | None = None) -> dict[str, Any]:
             if progress:
                 progress(done, len(VERBS), label)
     after = _compiled()
+    if not after:
+        raise StoreError(
+            f"no kernel could be stored in {kernel_cache_dir()}: make the folder writable or set NUMBA_CACHE_DIR, "
+            "and leave NUMBA_DISABLE_JIT unset"
+        )
     return {
         "folder": str(kernel_cache_dir()),
         "compiled": len(after - before),

@@ -8,14 +8,18 @@ import typer
 def doctor(
     memory: Annotated[str | None, typer.Option(metavar="FILE|URL", help="Which memory to look at.")] = None,
     warm: Annotated[
-        bool, typer.Option("--warm", help="Compile all kernels now instead of at their first use; nothing else.")
+        bool,
+        typer.Option("--warm", help="Compile the kernels of live, perceive and reuse now, not at first use."),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Say what is installed, what is missing and what brings it, whether memory opens, how fast this is."""
     from lifelore.app.console import print_json
+    from lifelore.core.errors import InputError
 
     if warm:
+        if memory is not None:
+            raise InputError("memory is not looked at while kernels are compiled: leave --memory or --warm out")
         _warm(as_json)
         return
     from lifelore.agent.doctor import examine

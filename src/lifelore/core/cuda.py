@@ -120,14 +120,15 @@ def _checked(name: str, values: ArrayLike, end: int, kind: type) -> NDArray[Any]
 
 def _on_device(params: tuple) -> tuple:
     """Parameters of a `step` with every array, at any depth of tuples, copied to the GPU."""
-    return tuple(
+    parts = [
         cuda.to_device(np.ascontiguousarray(part))
         if isinstance(part, np.ndarray)
         else _on_device(part)
         if isinstance(part, tuple)
         else part
         for part in params
-    )
+    ]
+    return type(params)(*parts) if hasattr(params, "_fields") else tuple(parts)
 
 
 @cache

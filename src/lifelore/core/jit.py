@@ -11,7 +11,7 @@ from typing import Any, TypeVar, overload
 import numba
 
 from lifelore.core.kernel_cache import PACKAGE, kernel_cache_dir
-from lifelore.core.numba_internals import internals
+from lifelore.core.numba_internals import NO_COUNTING, quick_cache
 
 F = TypeVar("F", bound=Callable)
 _config: Any = numba.config  # type: ignore[attr-defined]
@@ -32,9 +32,13 @@ def kernel(function=None, *, allocates: bool = True):
         False: the kernel makes no array, nor does any function that it calls. Numba then counts no references,
         whose atomic instructions cost up to two thirds of a learner's step. A kernel that makes one all the same
         does not compile.
+
+    Returns
+    -------
+    callable
+        The compiled function; without arguments in parentheses the decorator itself.
     """
-    found = internals()
-    options = found.no_counting if found and not allocates else {}
+    options = NO_COUNTING if not (allocates or _config.DISABLE_JIT) and quick_cache() else {}
     if function is None:
         return lambda decorated: _compiled(decorated, options)
     return _compiled(function, options)
@@ -46,12 +50,13 @@ def inlined(function: F) -> F:
 
 
 def _compiled(function: F, options: dict[str, Any]) -> F:
-    found, settings = internals(), dict(nogil=True, no_cfunc_wrapper=True, **options)
+    if _config.DISABLE_JIT:
+        return function
+    found, settings = quick_cache(), dict(nogil=True, no_cfunc_wrapper=True, **options)
     # The hash in the folder's name covers this package alone; elsewhere Numba's own cache looks at the file.
     if found and PACKAGE in Path(function.__code__.co_filename).parents:
         dispatcher: Any = _njit(**settings)(function)
-        if not _config.DISABLE_JIT:
-            dispatcher._cache = found.quick_cache(function)
+        dispatcher._cache = found(function)
         return dispatcher
     previous = _config.CACHE_DIR
     _config.CACHE_DIR = str(kernel_cache_dir())

@@ -28,6 +28,7 @@ _IMPORTS = re.compile(
     rb"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]+)|import[ \t]+([\w., \t]+))", re.MULTILINE
 )
 _NAME = re.compile(rb"[\w.]+")
+_COMMENT = re.compile(rb"#[^\n]*")
 
 
 @cache
@@ -82,6 +83,7 @@ def _python_files(folder: str) -> Iterator[str]:
 def _imported(source: bytes, package: Path) -> Iterator[Path]:
     """Files that the import statements of `source` may name; parsing them properly would take ten times longer."""
     root = package.name
+    source = _COMMENT.sub(b"", source).replace(b"\\\n", b"")
     for module, names, modules in _IMPORTS.findall(source):
         first = module.decode()
         members = [f"{first}.{name.decode()}" for name in _NAME.findall(names)] if module else []

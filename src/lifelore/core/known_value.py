@@ -24,7 +24,7 @@ class KnownValue:
     """Mean value over a task's starts of going the best way that a model knows.
 
     The model may only learn between two calls of `update`, by `explore` with one explorer. Where values do not
-    depend on distances alone (moves that cost, goals of unequal worth, a remembered model that is not true of
+    depend on distances alone (moves that cost, several goals, a remembered model that is not true of
     this world) every state is evaluated instead, as often as something new is known.
 
     Parameters
@@ -89,13 +89,17 @@ def _is_true(model: Model, tables: Tables) -> bool:
 
 
 def _one_goal_reward(tables: Tables) -> float | None:
-    """The goals' reward, where all moves into them end with it and no other move that leads on ends or gives."""
+    """The reward at the only goal, where all moves into it end with it and no other that leads on ends or gives.
+
+    Of several goals one not yet met may lie on the known way to another, and end the episode there.
+    """
     next_state, reward, event = tables.next_state[:, :, 0], tables.reward[:, :, 0], tables.event[:, :, 0]
     ends, stays = event & TERMINAL > 0, next_state == np.arange(tables.n_states)[:, None]
     wins = ends & (reward > 0)
-    goals = np.unique(next_state[wins])
-    into_goals = np.isin(next_state, goals) & ~stays
-    rewards = np.unique(reward[wins])
+    goals, rewards = np.unique(next_state[wins]), np.unique(reward[wins])
+    if len(goals) != 1 or len(rewards) != 1:
+        return None
     others = ~wins & ~stays
-    plain = len(rewards) == 1 and (into_goals == wins).all() and not (reward[others].any() or ends[others].any())
+    plain = not (others & (next_state == goals[0])).any() and not stays[wins].any()
+    plain = plain and not (reward[others].any() or ends[others].any())
     return float(rewards[0]) if plain else None

@@ -25,6 +25,10 @@ CHUNK = 1_000_000
 """Steps between two looks at the outside world: well under 0.2 s, so Ctrl-C is heard."""
 
 
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 @dataclass(frozen=True)
 class QLearning:
     """ε-greedy Q-learning; with rows from an action prior it is ε-QSAP or ε-QPAP (Alg. 2, 4).
@@ -157,7 +161,8 @@ class QLearning:
             raise InputError(f"threads must be at least 1, got {threads}")
         if chunk < 1:
             raise InputError(f"chunk must be at least 1, got {chunk}")
-        threads = threads or os.cpu_count() or 1
+        threads = threads or _cores()
+        chunk = chunk if watch else min(chunk, CHUNK)
         rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
         learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
         curves = new_curve((n, self.episodes))

@@ -138,11 +138,12 @@ def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:
 def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
     """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
     n = len(worlds)
+    drawn = [(random_state(world), random_state(own)) for world, own in zip(worlds, owns, strict=True)]
     return Learner(
         np.zeros((n, n_q_rows, n_actions)),
         np.zeros((n, n_q_rows, n_actions), np.int64),
-        np.stack([random_state(world) for world in worlds]),
-        np.stack([random_state(own) for own in owns]),
+        np.stack([world for world, _ in drawn]),
+        np.stack([own for _, own in drawn]),
         np.zeros((n, 5), np.int64),
         np.zeros((n, 2)),
     )

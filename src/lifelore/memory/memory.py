@@ -189,6 +189,8 @@ class Memory:
         StoreError
             As for `merge_from`; the message names the source, and nothing of any source was taken.
         """
+        if isinstance(others, str):
+            raise InputError(f"others must be a list of memories, got the text {others!r}: use merge_from for one")
         places = [other if isinstance(other, Memory) else locate(other) for other in others]
         for place in places:
             if isinstance(place, Path):

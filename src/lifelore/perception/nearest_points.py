@@ -7,6 +7,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.jit import kernel
 
+MOST_PAIRS = 1_000_000
+"""Pairs of points from which a k-d tree is quicker, its import included; fewer load SciPy needlessly."""
+
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
@@ -25,6 +28,12 @@ def nearest_points(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
     """
     if not len(first) or not len(second):
         return None
+    if len(first) * len(second) > MOST_PAIRS:
+        from scipy.spatial import KDTree
+
+        distances, partners = KDTree(second).query(first)
+        row = int(np.argmin(distances))
+        return Nearest(float(distances[row]), first[row], second[int(np.asarray(partners)[row])])
     distance, row, partner, alone = _nearest_rows(first, second)
     if not alone:
         # Which of equals a k-d tree finds depends on how it was built. Real clouds have none, and SciPy stays out.

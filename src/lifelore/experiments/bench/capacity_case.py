@@ -15,7 +15,7 @@ from lifelore.agent.lore import Lore, prior_scope
 from lifelore.core.curve import EPISODE, new_curve
 from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning import best_actions, optimal_q
-from lifelore.core.q_learning import Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.q_learning import Rows, Schedule, learn_each, new_learners, uniform_rows
 from lifelore.core.streams import stream
 from lifelore.domains import make_world
 from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
@@ -59,21 +59,19 @@ class Learners:
         tables, rows, schedule = _shared()
         world, own = (stream(0, "bench", "capacity", name) for name in ("world", "own"))
         self._shared = tables, rows, schedule
-        self.learners = [new_learner(tables.n_states, tables.n_actions, world, own) for _ in range(n)]
-        self.curves = [new_curve(EPISODES) for _ in range(n)]
+        self.n = n
+        self.learners = new_learners(tables.n_states, tables.n_actions, [world] * n, [own] * n)
+        self.curves = new_curve((n, EPISODES))
 
     def advance(self) -> int:
-        """A turn of every learner; returns the steps of all. No other place says how many learners are run."""
-        steps = 0
-        for learner, curve in zip(self.learners, self.curves, strict=True):
-            learner.cursor[EPISODE] = 0  # the course of a turn is kept, not of a life
-            steps += learn(*self._shared, learner, curve, TURN)
-        return steps
+        """A turn of every learner; returns the steps of all."""
+        self.learners.cursor[:, EPISODE] = 0  # the course of a turn is kept, not of a life
+        return learn_each(*self._shared, self.learners, self.curves, TURN, 0, self.n)
 
     def rate(self) -> float:
         """Steps a second of all together, in turns."""
         steps, started = 0, time.thread_time()
-        for _ in range(max(1, LEAST_STEPS // (TURN * len(self.learners)))):
+        for _ in range(max(1, LEAST_STEPS // (TURN * self.n))):
             steps += self.advance()
         return steps / (time.thread_time() - started)
 
@@ -87,7 +85,7 @@ def _shared() -> tuple[Tables, Rows, Schedule]:
 
 
 def move_rate() -> float:
-    """Moves a second of the scalar `step`, every (state, action) of a large lattice."""
+    """Moves a second of one core: `step` for every (state, action) of a large lattice at once."""
     task = _large_lattice()
     started = time.thread_time()
     tables = task.tables()
@@ -96,9 +94,7 @@ def move_rate() -> float:
 
 @cache
 def _large_lattice() -> Task:
-    task = make_world("lattice", size=LARGE).task(goal=0)
-    task.tables()  # compiled
-    return task
+    return make_world("lattice", size=LARGE).task(goal=0)
 
 
 # ---- contexts --------------------------------------------------------------------------------------------

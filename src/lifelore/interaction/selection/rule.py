@@ -68,6 +68,8 @@ class Deterministic:
 def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     """How likely `choose` is to take each policy, (..., n_policies)."""
     scores = np.asarray(scores, np.float64)
+    if not scores.shape[-1]:
+        return np.empty_like(scores)
     if not kernel_pays(scores.size):
         shares = shares_of_tied(scores, tolerance)
     else:

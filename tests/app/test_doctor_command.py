@@ -1,0 +1,75 @@
+"""`lifelore doctor --warm`: what it promises about the kernels of the verbs, and what it refuses."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.app.command_line import run
+from lifelore.core.kernel_cache import kernel_cache_dir
+
+JIT_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
+
+
+def shell(*arguments: object, **environment: str) -> subprocess.CompletedProcess:
+    """A process of its own, so that only kernels on disk are at hand."""
+    command = [sys.executable, "-m", "lifelore.app.command_line", *map(str, arguments)]
+    return subprocess.run(command, env=os.environ | environment, capture_output=True, text=True, check=False)
+
+
+def compiled() -> set[Path]:
+    return set(kernel_cache_dir().rglob("*.nbc"))
+
+
+@pytest.mark.skipif(JIT_OFF, reason="nothing is compiled")
+def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
+    said = ask("doctor", "--warm", "--json")
+    assert said.status == 0
+    assert said.document["kernels"] == len(compiled()) > 20
+    before = compiled()
+    random = np.random.default_rng(5)
+    points = np.vstack(
+        [random.uniform((-0.3, -0.3, 0), (0.3, 0.3, 0), (4000, 3)), random.uniform(0, 0.1, (900, 3))]
+    )
+    np.savez(tmp_path / "cloud.npz", points=points, labels=np.repeat([0, 1], [4000, 900]))
+    log = "user,policy,outcome\n" + "".join(f"u{i % 5},p{i % 3},{random.random()}\n" for i in range(60))
+    (tmp_path / "log.csv").write_text(log)
+    for arguments in (
+        ("live", "--seed", 9, "--tasks", 2, "--agent", "all", "--memory", tmp_path / "m.db"),
+        (
+            "live",
+            "--domain",
+            "noise",
+            "--learner",
+            "q",
+            "--episodes",
+            5,
+            "--tasks",
+            1,
+            "--memory",
+            tmp_path / "q.db",
+        ),
+        ("perceive", tmp_path / "cloud.npz", "--json"),
+        ("reuse", "fit", tmp_path / "log.csv", "--memory", tmp_path / "r.db"),
+        ("reuse", "choose", "--user", "ann", "--memory", tmp_path / "r.db"),
+    ):
+        done = shell(*arguments)
+        assert done.returncode == 0, done.stderr
+        assert compiled() == before, arguments
+
+
+def test_a_warm_up_that_stores_nothing_says_so(tmp_path):
+    blocked = tmp_path / "blocked"
+    blocked.write_text("a file where the folder should be")
+    done = shell("doctor", "--warm", NUMBA_CACHE_DIR=str(blocked), NUMBA_DISABLE_JIT="1")
+    assert done.returncode == 2
+    assert done.stderr.startswith("lifelore: no kernel could be stored in ")
+    assert done.stderr.count("\n") == 1
+
+
+def test_memory_is_not_looked_at_while_kernels_are_compiled(capsys):
+    assert run(["doctor", "--warm", "--memory", "some.db"]) == 2
+    assert "leave --memory or --warm out" in capsys.readouterr().err
