@@ -136,6 +136,19 @@ def test_each_new_cloud_of_a_folder(clouds, tmp_path):
     assert list(entries) == []
 
 
+def test_a_watched_cloud_never_writes_over_the_files_of_another(clouds, tmp_path):
+    folder, stop = tmp_path / "in", Event()
+    folder.mkdir()
+    entries = perceive_folder(folder, UPRIGHT, stop=stop, pddl=str(tmp_path / "{name}.pddl"))
+    (folder / "cup.npz").write_bytes(Path(clouds[0]).read_bytes())
+    assert "error" not in next(entries)
+    domain = (tmp_path / "cup-domain.pddl").read_text()
+    (folder / "cup-domain.npz").write_bytes(Path(clouds[0]).read_bytes())
+    assert "would write over" in next(entries)["error"]
+    assert (tmp_path / "cup-domain.pddl").read_text() == domain
+    stop.set()
+
+
 def test_a_folder_or_a_file_name_that_cannot_be_is_told_before_the_watch(tmp_path):
     stop = Event()
     refused("watch must name a folder", lambda: perceive_folder(tmp_path / "no", UPRIGHT, stop=stop))

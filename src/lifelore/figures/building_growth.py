@@ -44,5 +44,5 @@ def draw_building_growth(
 def _line(axes: "Axes", x: Sequence[float], y: Sequence[float], colour: str, label: str) -> None:
     axes.plot(x, y, color=colour, marker="o", markersize=4, linewidth=1.8, label=label)
     for place, value in zip(x, y, strict=True):
-        axes.annotate(f"{value:.2g}" if value < 100 else f"{value:.0f}", (place, value), (0, 6),
+        axes.annotate(f"{value:#.2g}" if value < 10 else f"{value:.0f}", (place, value), (0, 6),
                       textcoords="offset points", ha="center", fontsize=7.5)  # fmt: skip
