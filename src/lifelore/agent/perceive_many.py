@@ -87,8 +87,8 @@ def perceive_many(
             if stop is not None and stop.is_set():
                 return
             step = None if progress is None else _step_of(progress, number, len(sources), source)
-            told = None if notice is None else _named(notice, source)
-            yield _entry(source, partial(_perceived, source, read, model, settings, own, step, told))
+            noticed = None if notice is None else _named(notice, source)
+            yield _entry(source, partial(_perceived, source, read, model, settings, own, step, noticed))
 
     return each()
 

@@ -1,4 +1,4 @@
-"""`lifelore perceive`: from point clouds to what bears on what."""
+"""`lifelore perceive`: objects, contact points and spatial relations in point clouds."""
 
 import os
 import sys
@@ -67,19 +67,19 @@ def perceive(
     _one_thread_for_matrices()
     from lifelore.agent.perceive import PerceiveSettings
 
-    told = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
+    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)
     if watch is not None:
-        return _watched(watch, told, files, as_json)
+        return _watched(watch, settings, files, as_json)
 
     def source(cloud: str):
         return _out_of_bag(cloud, topic, index or 0, units, labels) if _is_bag(cloud) else cloud
 
     if clouds and len(clouds) > 1:
-        return _several(clouds, source, told, files, as_json)
-    return _one(clouds[0], source, told, files, as_json) if clouds else 0
+        return _several(clouds, source, settings, files, as_json)
+    return _one(clouds[0], source, settings, files, as_json) if clouds else 0
 
 
 def _one_thread_for_matrices() -> None:
@@ -87,19 +87,19 @@ def _one_thread_for_matrices() -> None:
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
-def _one(cloud: str, source: Callable[[str], Any], told: Any, files: Files, as_json: bool) -> int:
+def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive import perceive as look
     from lifelore.agent.scene_files import named_files
     from lifelore.app.console import print_json, progress_bar
 
     own = vars(named_files(cloud, **files))
     with progress_bar("perceiving") as progress:
-        document = look(source(cloud), told, **own, progress=progress, notice=to_stderr)
+        document = look(source(cloud), settings, **own, progress=progress, notice=to_stderr)
     print_json(document) if as_json else _print_scene(cloud, document, files)
     return 0
 
 
-def _several(clouds: list[str], source: Callable[[str], Any], told: Any, files: Files, as_json: bool) -> int:
+def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive_many import perceive_many, scenes_document
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
 
@@ -107,7 +107,7 @@ def _several(clouds: list[str], source: Callable[[str], Any], told: Any, files: 
     # A person sees each scene when it is found; a bar would draw over it.
     with stop_on_interrupt() as stop, progress_bar("perceiving") if as_json else nullcontext() as progress:
         for entry in perceive_many(
-            clouds, told, **files, read=source, stop=stop, progress=progress, notice=to_stderr
+            clouds, settings, **files, read=source, stop=stop, progress=progress, notice=to_stderr
         ):
             entries.append(entry)
             _print_entry(entry, files, None if as_json else _print_titled)
@@ -117,12 +117,12 @@ def _several(clouds: list[str], source: Callable[[str], Any], told: Any, files: 
     return INTERRUPTED if stop.is_set() else 2 if document["failed"] else 0
 
 
-def _watched(folder: str, told: Any, files: Files, as_json: bool) -> int:
+def _watched(folder: str, settings: Any, files: Files, as_json: bool) -> int:
     from lifelore.agent.perceive_many import perceive_folder
     from lifelore.app.console import INTERRUPTED, print_json_line, stop_on_interrupt
 
     with stop_on_interrupt() as stop:
-        entries = perceive_folder(folder, told, **files, stop=stop, notice=to_stderr)
+        entries = perceive_folder(folder, settings, **files, stop=stop, notice=to_stderr)
         to_stderr(f"watching {folder} for new clouds; Ctrl-C stops")
         for entry in entries:
             _print_entry(entry, files, None if as_json else _print_titled)
