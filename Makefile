@@ -53,7 +53,7 @@ $(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
 
 test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
 	$(CUDA)/bin/python -c "import numba_cuda"
-	$(CUDA)/bin/python -m pytest -m cuda tests/core/test_cuda.py
+	$(CUDA)/bin/python -m pytest -m cuda tests/core/compiled/test_cuda.py
 
 $(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
 	test -x $(CUDA)/bin/python || $(PYTHON) -m venv $(CUDA)
@@ -78,7 +78,7 @@ soak: setup-test ## Long runs: 200 kills, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
 docs: setup-test ## docs/reproduction.md from the committed results
-	$(BIN)/python -m lifelore.experiments.report
+	$(BIN)/python -m lifelore.experiments.engine.report
 
 reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full

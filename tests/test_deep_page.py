@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.action.prior_file import save_prior
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.prior_file import save_prior
 from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM
 
 ROOT = Path(__file__).parents[1]

@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from lifelore import make_world
-from lifelore.action.prior_file import load_prior
-from lifelore.core.planning import best_actions, optimal_q
+from lifelore.action.priors.prior_file import load_prior
+from lifelore.core.planning.planning import best_actions, optimal_q
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from lifelore.app.command_line import run as run_command
-from lifelore.interaction.categorical_outcomes import CategoricalOutcomes
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
 
 RESULTS = Path(__file__).parents[1] / "results"

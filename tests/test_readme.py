@@ -6,8 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
-from lifelore.domains.scene_folder import save_cloud
-from lifelore.domains.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.scene_folder import save_cloud
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
 
 README = Path(__file__).parents[1] / "README.md"
 

@@ -10,15 +10,16 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from lifelore.action.action_prior import ActionPrior as ActionPrior
-    from lifelore.agent.foreign_life import live_in as live_in
-    from lifelore.agent.life import live as live
-    from lifelore.agent.life_settings import LifeSettings as LifeSettings
-    from lifelore.agent.perceive import PerceiveSettings as PerceiveSettings
-    from lifelore.agent.perceive import perceive as perceive
+    from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
+    from lifelore.agent.external_world.live_in import live_in as live_in
+    from lifelore.agent.live.life import live as live
+    from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
+    from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
+    from lifelore.agent.perceive.perceive import perceive as perceive
     from lifelore.bridges.gymnasium_world import GymnasiumWorld as GymnasiumWorld
     from lifelore.core.errors import LifeloreError as LifeloreError
     from lifelore.core.labelled_cloud import LabelledCloud as LabelledCloud
+    from lifelore.core.learning.q_learner import QLearning as QLearning
     from lifelore.core.mdp import Domain as Domain
     from lifelore.core.mdp import Tables as Tables
     from lifelore.core.mdp import Task as Task
@@ -26,54 +27,53 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import Record as Record
     from lifelore.core.protocols import SignalModel as SignalModel
     from lifelore.core.protocols import World as World
-    from lifelore.core.q_learner import QLearning as QLearning
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.worlds import make_world as make_world
-    from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
-    from lifelore.interaction.beat import Beat as Beat
-    from lifelore.interaction.policy_library import PolicyLibrary as PolicyLibrary
-    from lifelore.interaction.user_beliefs import UserBeliefs as UserBeliefs
+    from lifelore.interaction.adaptation.beat import Beat as Beat
+    from lifelore.interaction.library.policy_library import PolicyLibrary as PolicyLibrary
+    from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
+    from lifelore.interaction.reuse.user_beliefs import UserBeliefs as UserBeliefs
     from lifelore.memory import Memory as Memory
     from lifelore.memory import open_memory as open_memory
-    from lifelore.perception.cloud_file import read_cloud as read_cloud
+    from lifelore.perception.clouds.cloud_file import read_cloud as read_cloud
     from lifelore.perception.perceived_scene import perceived_scene as perceived_scene
-    from lifelore.perception.relation_classifier import RelationClassifier as RelationClassifier
+    from lifelore.perception.relations.relation_classifier import RelationClassifier as RelationClassifier
     from lifelore.perception.scene import Scene as Scene
-    from lifelore.perception.table_frame import to_scene as to_scene
+    from lifelore.perception.segmentation.table_frame import to_scene as to_scene
 
 __version__ = "0.1.0"
 
 _HOME = {
-    "ActionPrior": "lifelore.action.action_prior",
-    "BayesianPolicyReuse": "lifelore.interaction.bayesian_policy_reuse",
-    "Beat": "lifelore.interaction.beat",
+    "ActionPrior": "lifelore.action.priors.action_prior",
+    "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
+    "Beat": "lifelore.interaction.adaptation.beat",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
-    "LifeSettings": "lifelore.agent.life_settings",
+    "LifeSettings": "lifelore.agent.live.life_settings",
     "LifeloreError": "lifelore.core.errors",
     "Memory": "lifelore.memory",
     "PairLabel": "lifelore.core.relations",
-    "PerceiveSettings": "lifelore.agent.perceive",
+    "PerceiveSettings": "lifelore.agent.perceive.perceive",
     "Policy": "lifelore.core.protocols",
-    "PolicyLibrary": "lifelore.interaction.policy_library",
-    "QLearning": "lifelore.core.q_learner",
+    "PolicyLibrary": "lifelore.interaction.library.policy_library",
+    "QLearning": "lifelore.core.learning.q_learner",
     "Record": "lifelore.core.protocols",
-    "RelationClassifier": "lifelore.perception.relation_classifier",
+    "RelationClassifier": "lifelore.perception.relations.relation_classifier",
     "Scene": "lifelore.perception.scene",
     "SignalModel": "lifelore.core.protocols",
     "Tables": "lifelore.core.mdp",
     "Task": "lifelore.core.mdp",
-    "UserBeliefs": "lifelore.interaction.user_beliefs",
+    "UserBeliefs": "lifelore.interaction.reuse.user_beliefs",
     "World": "lifelore.core.protocols",
-    "live": "lifelore.agent.life",
-    "live_in": "lifelore.agent.foreign_life",
+    "live": "lifelore.agent.live.life",
+    "live_in": "lifelore.agent.external_world.live_in",
     "make_world": "lifelore.domains.worlds",
     "open_memory": "lifelore.memory",
-    "perceive": "lifelore.agent.perceive",
+    "perceive": "lifelore.agent.perceive.perceive",
     "perceived_scene": "lifelore.perception.perceived_scene",
-    "read_cloud": "lifelore.perception.cloud_file",
-    "to_scene": "lifelore.perception.table_frame",
+    "read_cloud": "lifelore.perception.clouds.cloud_file",
+    "to_scene": "lifelore.perception.segmentation.table_frame",
 }
 
 __all__ = ["__version__", *_HOME]  # pyright: ignore[reportUnsupportedDunderAll]

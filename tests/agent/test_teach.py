@@ -5,12 +5,12 @@ from collections import deque
 import numpy as np
 import pytest
 
-from lifelore.action.demonstrations import read_demonstrations
-from lifelore.action.prior_file import load_prior, prior_about
-from lifelore.agent.lore import prior_scope
+from lifelore.action.demonstrations.demonstrations import read_demonstrations
+from lifelore.action.priors.prior_file import load_prior, prior_about
+from lifelore.agent.live.lore import prior_scope
 from lifelore.agent.teach import COLUMNS, ROWS, grid_text, teach
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import WorldSettings, make_world
 
 NOISE = WorldSettings("noise", size=9, density=0.3, seed=4)

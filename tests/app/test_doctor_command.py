@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from lifelore.app.command_line import run
-from lifelore.core.kernel_cache import kernel_cache_dir
+from lifelore.core.compiled.kernel_cache import kernel_cache_dir
 
 JIT_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.domains.occupancy_map import OccupancyMap, write_occupancy_map
-from lifelore.domains.office import office_map
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
 
 DOCUMENT = {"domain", "map", "n_states", "seed", "settings", "tasks", "summary", "memory", "seconds"}

@@ -17,7 +17,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.domains.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.memory import open_memory
 
 LATTICE = "live --memory {known} --domain lattice --tasks 1"

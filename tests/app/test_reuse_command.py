@@ -7,9 +7,9 @@ import sys
 import numpy as np
 import pytest
 
-from lifelore.agent.reuse import choose, update
-from lifelore.agent.reuse_fit import fit
-from lifelore.agent.reuse_study import open_study
+from lifelore.agent.reuse.fit import fit
+from lifelore.agent.reuse.one_user import choose, update
+from lifelore.agent.reuse.study import open_study
 from lifelore.memory import open_memory
 
 

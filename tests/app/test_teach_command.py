@@ -5,7 +5,7 @@ import json
 
 import pytest
 
-from lifelore.action.demonstrations import read_demonstrations
+from lifelore.action.demonstrations.demonstrations import read_demonstrations
 from lifelore.app.teach_command import teach
 
 

@@ -9,12 +9,12 @@ import pytest
 
 from lifelore.bridges.planner import Step, solve
 from lifelore.core.errors import InputError, MissingExtraError
-from lifelore.perception.cloud_file import read_cloud
+from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.planning_problem import DOMAIN, planning_problem
-from lifelore.perception.relation import Relation
-from lifelore.perception.scene_logic import contradictions
-from lifelore.perception.table_frame import to_scene
+from lifelore.perception.reasoning.planning_problem import DOMAIN, planning_problem
+from lifelore.perception.reasoning.scene_logic import contradictions
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.segmentation.table_frame import to_scene
 
 pytestmark = pytest.mark.planning
 

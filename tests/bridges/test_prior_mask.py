@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from gymnasium.spaces import Discrete
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.counted_episodes import count_episodes
 from lifelore.bridges.observations import as_batch, batch_size, check_actions
 from lifelore.bridges.prior_mask import PriorMask

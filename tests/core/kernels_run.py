@@ -21,13 +21,13 @@ def _twins():
 
 def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
-    from lifelore.core.curve import new_curve
-    from lifelore.core.known_world import best_known_actions, blank_model
-    from lifelore.core.layered_planning import LayeredPlan, layered_q
-    from lifelore.core.model_learning import Manner, Perceived, explore, new_explorer
-    from lifelore.core.planning import optimal_q, policy_values
-    from lifelore.core.q_learning import Schedule, learn, new_learner, uniform_rows
-    from lifelore.core.random_state import next_uniform, random_state
+    from lifelore.core.compiled.random_state import next_uniform, random_state
+    from lifelore.core.learning.curve import new_curve
+    from lifelore.core.learning.known_world import best_known_actions, blank_model
+    from lifelore.core.learning.model_learning import Manner, Perceived, explore, new_explorer
+    from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
+    from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
+    from lifelore.core.planning.planning import optimal_q, policy_values
     from lifelore.core.streams import stream
 
     twins, out = _twins(), {}

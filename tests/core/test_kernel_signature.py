@@ -5,10 +5,10 @@ from itertools import product
 import numpy as np
 import pytest
 
-from lifelore.core.curve import new_curve
+from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
 from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
-from lifelore.core.planning import optimal_q, policy_values
-from lifelore.core.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
+from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 
 SIDE = 3

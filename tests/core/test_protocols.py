@@ -5,7 +5,7 @@ from dataclasses import FrozenInstanceError
 import numpy as np
 import pytest
 
-from lifelore.core.curve import new_curve
+from lifelore.core.learning.curve import new_curve
 from lifelore.core.protocols import Policy, Record, SignalModel, World
 
 

@@ -2,12 +2,12 @@
 
 import numpy as np
 
-from lifelore.core.layered_learning import LayeredLearning
-from lifelore.core.q_learner import QLearning
-from lifelore.core.q_learning import uniform_rows
+from lifelore.core.learning.layered_learning import LayeredLearning
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.learning.q_learning import uniform_rows
 from lifelore.core.streams import stream
-from lifelore.domains.factory_contexts import state_contexts
-from lifelore.domains.factory_layout import factory
+from lifelore.domains.factory.contexts import state_contexts
+from lifelore.domains.factory.layout import factory
 
 
 def streams():

@@ -8,8 +8,8 @@ from gymnasium.utils.env_checker import check_env
 
 from lifelore.core.errors import InputError
 from lifelore.domains import ENVIRONMENTS
-from lifelore.domains.golf import category_of
-from lifelore.domains.telephone import OPEN, PATHS, reward
+from lifelore.domains.golf.golf import category_of
+from lifelore.domains.telephone.telephone import OPEN, PATHS, reward
 
 CASES = {"lifelore/Golf-v0": {}, "lifelore/Surveillance-v0": {"layout": "ring"}, "lifelore/Telephone-v0": {}}
 EVERY = pytest.mark.parametrize("name", sorted(CASES))

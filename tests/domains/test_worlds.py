@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.domains.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.worlds import WorldSettings, domain_names, make_world, world_from_settings
 
 

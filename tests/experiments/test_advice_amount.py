@@ -6,11 +6,23 @@ from math import log
 import numpy as np
 import pytest
 
-from lifelore.action.advisor import Advisor
-from lifelore.action.purpose import Purpose
-from lifelore.experiments.advice_amount import agent_policies, ceiling, greedy_policy, run_cell
-from lifelore.experiments.advice_grid import errands_of, maze_of, policy_of, purposes_of, thesis_advisor, walk
-from lifelore.experiments.c3_17 import QUICK
+from lifelore.action.advice.advisor import Advisor
+from lifelore.action.advice.goal_model import Purpose
+from lifelore.experiments.chapter3.advice_grid import (
+    errands_of,
+    maze_of,
+    policy_of,
+    purposes_of,
+    thesis_advisor,
+    walk,
+)
+from lifelore.experiments.chapter3.c3_17_advice_cost.advice_amount import (
+    agent_policies,
+    ceiling,
+    greedy_policy,
+    run_cell,
+)
+from lifelore.experiments.chapter3.c3_17_advice_cost.run import QUICK
 
 CELL = {"loops": 0.1, "maze": 0}
 

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advisor import BETTER
-from lifelore.core.planning import best_actions, optimal_q
-from lifelore.experiments.advice_estimates import grid_of, is_positive, maze_estimate, plain, share_of_grid
-from lifelore.experiments.advice_grid import (
+from lifelore.action.advice.advisor import BETTER
+from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.experiments.chapter3.advice_estimates import (
+    grid_of,
+    is_positive,
+    maze_estimate,
+    plain,
+    share_of_grid,
+)
+from lifelore.experiments.chapter3.advice_grid import (
     AGENTS,
     EXPERTS,
     SMALL,

@@ -5,18 +5,18 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.action.advised_walk import Walk
-from lifelore.action.advisor import Advisor
-from lifelore.action.purpose import Purpose
-from lifelore.experiments.advised_explorers import (
+from lifelore.action.advice.advised_walk import Walk
+from lifelore.action.advice.advisor import Advisor
+from lifelore.action.advice.goal_model import Purpose
+from lifelore.experiments.chapter3.advised_explorers import (
     block_curve,
     own_normalcy,
     run_cell,
     run_normalcy_cell,
     unadvised_normalcy,
 )
-from lifelore.experiments.c3_15 import QUICK
-from lifelore.experiments.c3_18 import QUICK as NORMALCY
+from lifelore.experiments.chapter3.c3_15_advice_table.run import QUICK
+from lifelore.experiments.chapter3.c3_18_normalcy.run import QUICK as NORMALCY
 
 CELL = {"loops": 0.1, "maze": 0}
 

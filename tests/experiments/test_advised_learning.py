@@ -5,9 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.advice_grid import errands_of, maze_of
-from lifelore.experiments.advised_learning import errand_tables, learn_errand, learnt, run_cell
-from lifelore.experiments.c3_16 import QUICK
+from lifelore.experiments.chapter3.advice_grid import errands_of, maze_of
+from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand, learnt, run_cell
+from lifelore.experiments.chapter3.c3_16_advised_learning.run import QUICK
 
 CELL = {"loops": 0.1, "maze": 0}
 SCHEDULE = [1.0, 0.99, 0.05]

@@ -5,16 +5,15 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game import LossScale, ball_game
-from lifelore.domains.ball_game_moves import N_AFTER, N_OUTCOMES
-from lifelore.experiments.ball_game_learners import (
+from lifelore.domains.ball_game.ball_game import LossScale, ball_game
+from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
+from lifelore.experiments.chapter4.ball_game_learners import (
     BeatLearner,
     PrintedExp3,
     exp3_by_episode,
     tuned_gamma,
 )
-from lifelore.experiments.ball_game_library import library_of, transition_of
-from lifelore.experiments.ball_game_play import (
+from lifelore.experiments.chapter4.ball_game_play import (
     FixedSpeeds,
     Players,
     log_shares,
@@ -23,7 +22,8 @@ from lifelore.experiments.ball_game_play import (
     populations,
     train,
 )
-from lifelore.experiments.ball_game_settings import DEFAULT, GAMES, Setting, check_games
+from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, GAMES, Setting, check_games
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.ball_game_library import library_of, transition_of
 from lifelore.interaction.baselines.exp3 import EXP3
 
 GAME = ball_game()

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from lifelore.core.curve import TOTAL
 from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import TOTAL
 from lifelore.experiments.bench import bench, capacity, capacity_case
 from lifelore.experiments.bench.capacity_case import ACTIONS, TURN, Contexts, Learners, bytes_of, contributions
 from lifelore.experiments.bench.gpu_bound import MOVE_COPIED, SAMPLE_BYTES, SAMPLE_COPIED, Gpu

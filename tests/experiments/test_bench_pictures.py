@@ -10,11 +10,11 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.experiments.bench import pictures
 from lifelore.experiments.bench.pictures import bench_pictures, draw_and_judge, judge, most_labelled
-from lifelore.experiments.real_scenes import RealScene, real_scenes_folder
-from lifelore.perception.cloud_file import read_cloud
-from lifelore.perception.relation import Relation
-from lifelore.perception.relation_truth import read_relations
-from lifelore.perception.table_frame import to_scene
+from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes_folder
+from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_truth import read_relations
+from lifelore.perception.segmentation.table_frame import to_scene
 
 
 def said(*relations: tuple[str, int, int]) -> list[Relation]:

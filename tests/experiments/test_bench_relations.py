@@ -9,10 +9,10 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.experiments.bench import network_stability, relation_learners, relation_scenes, relations
-from lifelore.experiments.bench.network_stability import contact_nodes, stability
-from lifelore.experiments.bench.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
-from lifelore.experiments.real_scenes import RealScene
-from lifelore.perception.interface import Interface
+from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
+from lifelore.experiments.chapter2.real_scenes import RealScene
+from lifelore.experiments.chapter2.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
+from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.peers import PEERS
 
 FEW = ("majority", "bounding-box rule", THESIS, OURS)

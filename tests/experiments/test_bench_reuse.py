@@ -10,7 +10,7 @@ from lifelore.experiments.bench import BENCHES, reuse, reuse_loops
 from lifelore.experiments.bench.reuse import bench_reuse
 from lifelore.experiments.bench.reuse_case import HORIZON, LargeReserve, Reserve
 from lifelore.experiments.bench.reuse_peers import BOTORCH, MABWISER, BoTorchUCB, installed, mabwiser_ucb1
-from lifelore.interaction.belief import entropy
+from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.selection import (
     BeliefEntropy,
     ExpectedImprovement,

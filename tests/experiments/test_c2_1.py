@@ -8,15 +8,24 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments import c2_1, c2_2
-from lifelore.experiments.c2_1 import CLAIM, PRINTED, confusion, data_sets, given_order, hardest_margin, readings
-from lifelore.experiments.pair_validation import Reading, as_seen, told_by_neighbours
-from lifelore.experiments.relation_scoring import JudgedPair
-from lifelore.experiments.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
-from lifelore.perception.interface import interfaces
-from lifelore.perception.pair_features import TURNING_COLUMNS, pair_features
+from lifelore.experiments.chapter2.c2_01_nearest_displacements import run as c2_1
+from lifelore.experiments.chapter2.c2_01_nearest_displacements.run import (
+    CLAIM,
+    PRINTED,
+    confusion,
+    data_sets,
+    given_order,
+    hardest_margin,
+    readings,
+)
+from lifelore.experiments.chapter2.c2_02_label_components import run as c2_2
+from lifelore.experiments.chapter2.pair_validation import Reading, as_seen, told_by_neighbours
+from lifelore.experiments.chapter2.relation_scoring import JudgedPair
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, pair_features
 from lifelore.perception.peers import PEERS
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 WEAK = NAMES[0]

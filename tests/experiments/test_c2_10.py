@@ -2,9 +2,9 @@
 
 import pytest
 
-from lifelore.experiments.arranged_scenes import arranged
-from lifelore.experiments.ball_on_block import BALL, BLOCK, findings
-from lifelore.experiments.c2_10 import measure
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.c2_10_ball_on_block.ball_on_block import BALL, BLOCK, findings
+from lifelore.experiments.chapter2.c2_10_ball_on_block.run import measure
 
 pytest.importorskip("mujoco")
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c2_11 import CLAIM as C2_11
-from lifelore.experiments.c2_11 import (
+from lifelore.experiments.chapter2.c2_11_distant_objects.run import CLAIM as C2_11
+from lifelore.experiments.chapter2.c2_11_distant_objects.run import (
     curves_of,
     gap_number,
     measure,
@@ -16,9 +16,9 @@ from lifelore.experiments.c2_11 import (
     support,
     table_of,
 )
-from lifelore.perception.contact_points import linked
-from lifelore.perception.interface import DEFAULT
-from lifelore.perception.separator import separate
+from lifelore.perception.contacts.contact_points import linked
+from lifelore.perception.contacts.interface import DEFAULT
+from lifelore.perception.separation.separator import separate
 
 COUNTS = np.array(
     [

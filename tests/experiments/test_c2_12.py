@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c2_12 import CLAIM, agreement, measure, rows
-from lifelore.experiments.pair_validation import Reading
-from lifelore.experiments.relation_clusters import (
+from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters import (
     METHODS,
     Sighted,
     cluster_counts,
@@ -19,8 +17,10 @@ from lifelore.experiments.relation_clusters import (
     rand_index_by_scene,
     sighted,
 )
-from lifelore.experiments.tabletop_pairs import KERNELS, kernel_name
-from lifelore.perception.pair_features import COLUMNS
+from lifelore.experiments.chapter2.c2_12_unlabelled_relations.run import CLAIM, agreement, measure, rows
+from lifelore.experiments.chapter2.pair_validation import Reading
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, kernel_name
+from lifelore.perception.pairs.pair_features import COLUMNS
 
 KERNEL_NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 MM = 0.001

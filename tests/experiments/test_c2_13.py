@@ -6,8 +6,15 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.ball_at_l_block import BALL, BLOCK, LESSON, SCENE, block_cells, run_cell
-from lifelore.experiments.c2_13 import (
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.ball_at_l_block import (
+    BALL,
+    BLOCK,
+    LESSON,
+    SCENE,
+    block_cells,
+    run_cell,
+)
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import (
     CLAIM,
     centres_apart,
     given,
@@ -17,7 +24,7 @@ from lifelore.experiments.c2_13 import (
     strong,
     topmost_alone_remains,
 )
-from lifelore.experiments.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
 
 FIGURE = [[0, 0, 0.2, 12], [0, 0, 0.0, 2], [0.1, 0, 0.03, 3]]
 """The thesis's: three nodes, one of which is strong."""

@@ -5,10 +5,18 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
-from lifelore.experiments import c2_2
-from lifelore.experiments.c2_2 import CLAIM, COMPONENTS, PRINTED, component_answers, measure, rows, split_answers
-from lifelore.experiments.pair_validation import Reading, Told
-from lifelore.experiments.tabletop_pairs import KERNELS, STANDARD, kernel_name
+from lifelore.experiments.chapter2.c2_02_label_components import run as c2_2
+from lifelore.experiments.chapter2.c2_02_label_components.run import (
+    CLAIM,
+    COMPONENTS,
+    PRINTED,
+    component_answers,
+    measure,
+    rows,
+    split_answers,
+)
+from lifelore.experiments.chapter2.pair_validation import Reading, Told
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name
 
 NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 SETTINGS = {**CLAIM.settings("quick"), "pairs": 12, "test": 3, "splits": 20}

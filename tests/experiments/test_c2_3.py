@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ON, PairLabel
-from lifelore.experiments.c2_1 import FULL as SIZES_OF_C2_1
-from lifelore.experiments.c2_3 import (
+from lifelore.experiments.chapter2.c2_01_nearest_displacements.run import FULL as SIZES_OF_C2_1
+from lifelore.experiments.chapter2.c2_03_displacements_by_relation.run import (
     CHOICES,
     CLAIM,
     FULL,
@@ -16,9 +16,9 @@ from lifelore.experiments.c2_3 import (
     rows,
     sideways,
 )
-from lifelore.experiments.pair_validation import displacements
-from lifelore.experiments.tabletop_pairs import KERNELS, STANDARD, kernel_name, pair_cells, pair_rows
-from lifelore.perception.pair_features import column_names
+from lifelore.experiments.chapter2.pair_validation import displacements
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name, pair_cells, pair_rows
+from lifelore.perception.pairs.pair_features import column_names
 
 RIGHT, BEHIND = (column_names(2).index(name) for name in ("right", "behind"))
 

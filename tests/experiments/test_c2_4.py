@@ -4,10 +4,17 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments import image_timing
-from lifelore.experiments.bench.perceive import STAGES
-from lifelore.experiments.c2_4 import CLAIM, FULL, QUICK, measure, rows
-from lifelore.experiments.image_timing import DENSE, KINDS, made_dense, run_cell, timed_image, timing_cells
+from lifelore.experiments.chapter2.c2_04_time_per_image import image_timing
+from lifelore.experiments.chapter2.c2_04_time_per_image.image_timing import (
+    DENSE,
+    KINDS,
+    made_dense,
+    run_cell,
+    timed_image,
+    timing_cells,
+)
+from lifelore.experiments.chapter2.c2_04_time_per_image.run import CLAIM, FULL, QUICK, measure, rows
+from lifelore.experiments.chapter2.perception_stages import STAGES
 
 
 def image(kind, seconds, points=100):

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.c2_5 import (
+from lifelore.experiments.chapter2.c2_05_discarded_points.run import (
     CLAIM,
     judged_views,
     less_majority,
@@ -16,8 +16,8 @@ from lifelore.experiments.c2_5 import (
     scene_of,
     taught,
 )
-from lifelore.experiments.relation_scoring import JudgedPair
-from lifelore.perception.relation import Relation
+from lifelore.experiments.chapter2.relation_scoring import JudgedPair
+from lifelore.perception.relations.relation import Relation
 
 UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4
 """Displacements χ_2 - χ_3: of 2 on 3, and of 2 beside 3; four each, as many as neighbours vote."""

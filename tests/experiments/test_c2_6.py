@@ -5,10 +5,10 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.experiments.arranged_scenes import arranged
-from lifelore.experiments.c2_6 import CLAIM, measure, rows
-from lifelore.experiments.hole_scenes import findings, objects_only, split_contact
-from lifelore.perception.holes import contact_loops
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.c2_06_same_hole.hole_scenes import findings, objects_only, split_contact
+from lifelore.experiments.chapter2.c2_06_same_hole.run import CLAIM, measure, rows
+from lifelore.perception.topology.holes import contact_loops
 
 pytest.importorskip("mujoco")
 

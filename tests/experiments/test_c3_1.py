@@ -7,9 +7,9 @@ import pytest
 from scipy import ndimage
 
 from lifelore.core.errors import InputError
-from lifelore.domains.grid_world import MOVES, GridWorld
-from lifelore.experiments import c3_1
-from lifelore.experiments.c3_1 import (
+from lifelore.domains.grids.grid_world import MOVES, GridWorld
+from lifelore.experiments.chapter3.c3_01_useful_actions import run as c3_1
+from lifelore.experiments.chapter3.c3_01_useful_actions.run import (
     CLAIM,
     FULL,
     measure,

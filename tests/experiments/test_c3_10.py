@@ -6,12 +6,25 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.planning import best_actions
-from lifelore.experiments.c3_10 import CLAIM, GOAL, QUICK, measure, rows, settled_after, shares
-from lifelore.experiments.lattice_learning import schedule_of
-from lifelore.experiments.modified_factory_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
-from lifelore.experiments.online_selection import Counting, OnlineAgent, counted
-from lifelore.experiments.selected_features import SERIES, cells, mask_of, run_cell
+from lifelore.core.planning.planning import best_actions
+from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import (
+    CLAIM,
+    GOAL,
+    QUICK,
+    measure,
+    rows,
+    settled_after,
+    shares,
+)
+from lifelore.experiments.chapter3.c3_10_selection_over_tasks.selected_features import (
+    SERIES,
+    cells,
+    mask_of,
+    run_cell,
+)
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
+from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent, counted
 
 SETTINGS = {**QUICK, "runs": 4, "tasks": 4, "last": 2}
 ALL = (1 << 10) - 1

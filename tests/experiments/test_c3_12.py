@@ -4,9 +4,17 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.c3_12 import CLAIM, QUICK, is_comparable, measure, rows
-from lifelore.experiments.open_choices import plain_how
-from lifelore.experiments.shown_priors import KEYS, PEOPLE, PLAIN, SELF, SHOWN, WEIGHTS, hows
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import CLAIM, QUICK, is_comparable, measure, rows
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import (
+    KEYS,
+    PEOPLE,
+    PLAIN,
+    SELF,
+    SHOWN,
+    WEIGHTS,
+    hows,
+)
+from lifelore.experiments.engine.open_choices import plain_how
 
 SETTINGS = {
     **QUICK, "runs": 4, "episodes": 3, "early": 2, "features": ["phi3"], "schedules": [[1.0, 0.95, 0.01]],

@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_13 import CLAIM, QUICK, measure, rows, slope
+from lifelore.experiments.chapter3.c3_13_futile_goals.run import CLAIM, QUICK, measure, rows, slope
 
 SETTINGS = {
     **QUICK, "runs": 3, "draws": 1000, "actions": [2], "alpha0": [1.0], "tasks": [0, 1, 10], "alike": [2],

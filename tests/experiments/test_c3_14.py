@@ -4,8 +4,8 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.c3_14 import CLAIM, FORMS, QUICK, measure, rows, worst
-from lifelore.experiments.minimised_learning import WHOLE, WITHIN
+from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning import WHOLE, WITHIN
+from lifelore.experiments.chapter3.c3_14_minimised_domains.run import CLAIM, FORMS, QUICK, measure, rows, worst
 
 FIRST, LAST = "lattice, every start", "random, few starts"
 SETTINGS = {**QUICK, "kinds": [FIRST, LAST], "runs": 4}

@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.advice_grid import AGENTS
-from lifelore.experiments.c3_15 import CLAIM, FULL, PRINTED, QUICK, measure, rows
+from lifelore.experiments.chapter3.advice_grid import AGENTS
+from lifelore.experiments.chapter3.c3_15_advice_table.run import CLAIM, FULL, PRINTED, QUICK, measure, rows
 
 SETTINGS = {**QUICK, "tasks": 4, "loops": [0.1, 0.4]}
 ARRIVED = {"none": 1, "thesis": 3, "better": 4, "uniform only": 2, "goal unknown": 1}

@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_16 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.lattice_learning import block_edges
+from lifelore.experiments.chapter3.c3_16_advised_learning.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.engine.curve_blocks import block_edges
 
 SETTINGS = {**QUICK, "tasks": 2, "episodes": 100, "schedules": [[1.0, 0.999, 0.05]]}
 N_BLOCKS = len(block_edges(100)) - 1

@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_17 import CLAIM, FULL, QUICK, agents_of, measure, rows
+from lifelore.experiments.chapter3.c3_17_advice_cost.run import CLAIM, FULL, QUICK, agents_of, measure, rows
 
 SETTINGS = {**QUICK, "kappas": [0.0, 0.5, 1.4]}
 FALLING = {

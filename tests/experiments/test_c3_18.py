@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.explorers import EXPLORERS
-from lifelore.experiments.c3_18 import CLAIM, QUICK, measure, rows
+from lifelore.domains.advice.explorers import EXPLORERS
+from lifelore.experiments.chapter3.c3_18_normalcy.run import CLAIM, QUICK, measure, rows
 
 SETTINGS = {**QUICK, "tasks": 2, "max_steps": 4, "blocks": 2}
 

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_2 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.lattice_grid import PLAIN, configurations
-from lifelore.experiments.lattice_learning import block_edges
+from lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid import PLAIN, configurations
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.engine.curve_blocks import block_edges
 
 SETTINGS = {
     **QUICK,

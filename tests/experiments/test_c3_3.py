@@ -4,10 +4,16 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_3 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.lattice_learning import block_edges
-from lifelore.experiments.noise_learning import COMPARED, KEYS, METHODS, PLAIN, hows
-from lifelore.experiments.open_choices import plain_how
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import (
+    COMPARED,
+    KEYS,
+    METHODS,
+    PLAIN,
+    hows,
+)
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.open_choices import plain_how
 
 SETTINGS = {
     **QUICK,

@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_4 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.factory_priors import cells, makes, run_cell, uses
-from lifelore.experiments.lattice_learning import block_edges
+from lifelore.experiments.chapter3.c3_04_factory_priors.factory_priors import cells, makes, run_cell, uses
+from lifelore.experiments.chapter3.c3_04_factory_priors.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.engine.curve_blocks import block_edges
 
 SETTINGS = {**QUICK, "encodings": ["global", "phase"], "alpha0": [0.1], "ties": ["uniform", "prior"]}
 """A grid of four cells: two encodings, two ways with ties."""

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments import c3_6
-from lifelore.experiments.c3_5 import CLAIM
-from lifelore.experiments.factory_gains import QUICK, measure, rows
-from lifelore.experiments.factory_series import cells, run_cell, uses
+from lifelore.experiments.chapter3.c3_05_one_component.run import CLAIM
+from lifelore.experiments.chapter3.c3_06_four_components import run as c3_6
+from lifelore.experiments.chapter3.factory_gains import QUICK, measure, rows
+from lifelore.experiments.chapter3.factory_series import cells, run_cell, uses
 
 SETTINGS = {**QUICK, "components": [1], "encodings": ["global", "phase"], "ties": ["uniform"]}
 """Sequences of seven tasks, the last two late; a grid of two cells."""

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.factory import RAW
-from lifelore.experiments.c3_7 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.feature_priors import KEYS, METHODS, cells, hows, method_how, run_cell
-from lifelore.experiments.lattice_learning import schedule_of
-from lifelore.experiments.modified_factory_tasks import (
+from lifelore.domains.factory.factory import RAW
+from lifelore.experiments.chapter3.c3_07_feature_sets.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.feature_priors import KEYS, METHODS, cells, hows, method_how, run_cell
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import (
     CARDINALS,
     DIAGONALS,
     contexts_of,

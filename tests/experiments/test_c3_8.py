@@ -3,11 +3,10 @@
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.domains.factory_contexts import PHI
-from lifelore.experiments.c3_8 import CLAIM, QUICK, gaps, measure, rows
-from lifelore.experiments.feature_importance import (
+from lifelore.domains.factory.contexts import PHI
+from lifelore.experiments.chapter3.c3_08_feature_importance.feature_importance import (
     cells,
     counted_actions,
     counted_states,
@@ -15,7 +14,8 @@ from lifelore.experiments.feature_importance import (
     importance,
     run_cell,
 )
-from lifelore.experiments.modified_factory_tasks import CARDINALS, FULL_SET, contexts_of, problem_of
+from lifelore.experiments.chapter3.c3_08_feature_importance.run import CLAIM, QUICK, gaps, measure, rows
+from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, contexts_of, problem_of
 
 SETTINGS = {**QUICK, "runs": 4, "policies": [3], "over": ["all", "way"], "actions": ["tied"]}
 """A grid of two cells."""

@@ -3,11 +3,18 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c3_9 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.lattice_learning import schedule_of
-from lifelore.experiments.modified_factory_tasks import learn_problem, problem_of
-from lifelore.experiments.online_selection import Counting, OnlineAgent, defaults_and_others
-from lifelore.experiments.selected_learning import KEYS, METHODS, cells, hows, method_how, run_cell
+from lifelore.experiments.chapter3.c3_09_online_features.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_09_online_features.selected_learning import (
+    KEYS,
+    METHODS,
+    cells,
+    hows,
+    method_how,
+    run_cell,
+)
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import learn_problem, problem_of
+from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent, defaults_and_others
 
 SETTINGS = {
     **QUICK,

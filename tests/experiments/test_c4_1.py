@@ -6,8 +6,16 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c4_1 import CLAIM, QUICK, follow_printed, greedy_shares, measure, rows, run_cell
-from lifelore.experiments.golf_runs import exact_library, learnt_library
+from lifelore.experiments.chapter4.c4_01_golf_example.run import (
+    CLAIM,
+    QUICK,
+    follow_printed,
+    greedy_shares,
+    measure,
+    rows,
+    run_cell,
+)
+from lifelore.experiments.chapter4.golf_runs import exact_library, learnt_library
 
 SMALL = {**QUICK, "rounds": 60, "libraries": 5}
 

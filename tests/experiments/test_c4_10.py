@@ -4,9 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments import c4_10
-from lifelore.experiments.c4_10 import CLAIM, EXAMPLE, example_regret, measure, rows
-from lifelore.experiments.landmark_tables import RANDOM, parted, random_table, surveillance_table
+from lifelore.experiments.chapter4.c4_10_landmark_regret import run as c4_10
+from lifelore.experiments.chapter4.c4_10_landmark_regret.landmark_tables import (
+    RANDOM,
+    parted,
+    random_table,
+    surveillance_table,
+)
+from lifelore.experiments.chapter4.c4_10_landmark_regret.run import CLAIM, EXAMPLE, example_regret, measure, rows
 
 TINY = {
     "tables": 2,

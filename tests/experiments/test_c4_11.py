@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c4_11 import (
+from lifelore.experiments.chapter4.c4_11_speeds.run import (
     CLAIM,
     best_speeds,
     cells,

@@ -5,9 +5,9 @@ from math import comb
 import numpy as np
 import pytest
 
-from lifelore.experiments.ball_game_settings import DEFAULT, Setting
-from lifelore.experiments.c4_12 import CLAIM, PRINTED, cells, measure, rows
-from lifelore.experiments.diversity_runs import (
+from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, Setting
+from lifelore.experiments.chapter4.c4_12_user_diversity.run import CLAIM, PRINTED, cells, measure, rows
+from lifelore.experiments.chapter4.diversity_runs import (
     HINDSIGHT,
     METHODS,
     ORACLE,

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.ball_game_settings import DEFAULT
-from lifelore.experiments.c4_13 import CLAIM, cells, measure, right_of, share
-from lifelore.experiments.type_naming import WAYS, confusion, run_cell
+from lifelore.experiments.chapter4.ball_game_settings import DEFAULT
+from lifelore.experiments.chapter4.c4_13_type_naming.run import CLAIM, cells, measure, right_of, share
+from lifelore.experiments.chapter4.type_naming import WAYS, confusion, run_cell
 
 
 def test_confusion_and_shares_by_hand():

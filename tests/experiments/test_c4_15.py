@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.c4_15 import CLAIM, cells, measure, rows, worst_ratio
-from lifelore.experiments.diversity_runs import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
-from lifelore.experiments.safety_runs import LAGGING, run_cell
+from lifelore.experiments.chapter4.c4_15_safety.run import CLAIM, cells, measure, rows, worst_ratio
+from lifelore.experiments.chapter4.c4_15_safety.safety_runs import LAGGING, run_cell
+from lifelore.experiments.chapter4.diversity_runs import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
 
 
 def made(n=30):

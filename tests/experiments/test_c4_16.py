@@ -4,7 +4,7 @@ import copy
 
 import pytest
 
-from lifelore.experiments.c4_16 import CLAIM, EPSILONS, cells, measure, rows, run_cell
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import CLAIM, EPSILONS, cells, measure, rows, run_cell
 
 SETTINGS = CLAIM.settings("quick", {"training": 4})
 RESULTS = [run_cell(SETTINGS, cell, 0) for cell in cells(SETTINGS)[1:3]]

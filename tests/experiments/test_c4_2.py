@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c4_2 import CLAIM, QUICK, measure, rows, run_cell
-from lifelore.experiments.golf_programs import program_gaps
-from lifelore.experiments.golf_runs import exact_library, play_holes
-from lifelore.experiments.reuse_rules import RULES_SHOWN
+from lifelore.experiments.chapter4.c4_02_golf_holes.golf_programs import program_gaps
+from lifelore.experiments.chapter4.c4_02_golf_holes.run import CLAIM, QUICK, measure, rows, run_cell
+from lifelore.experiments.chapter4.golf_runs import exact_library, play_holes
+from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
 from lifelore.interaction.selection import Greedy
 
 SMALL = {**QUICK, "groups": 3, "holes": 12, "shots": 3, "horizon": 2}

@@ -6,9 +6,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.telephone import Telephone
-from lifelore.experiments.c4_3 import CLAIM, QUICK, measure, orders, rows, run_cell
-from lifelore.experiments.telephone_runs import SIGNAL_OF_PATH, exact_library, learnt_library
+from lifelore.domains.telephone.telephone import Telephone
+from lifelore.experiments.chapter4.c4_03_telephone_signals.run import CLAIM, QUICK, measure, orders, rows, run_cell
+from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import (
+    SIGNAL_OF_PATH,
+    exact_library,
+    learnt_library,
+)
 
 SMALL = {
     **QUICK, "groups": 4, "users": 8, "calls": 30, "by_call": 20, "models": [3, 4], "default_models": 4,

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.pacman import STRATEGIES
-from lifelore.experiments.c4_4 import CLAIM, QUICK, REUSERS, measure, rows
-from lifelore.experiments.lattice_learning import block_edges
-from lifelore.experiments.pacman_reuse import LEARNERS
-from lifelore.experiments.reproduce import reproduce
+from lifelore.domains.pacman.pacman import STRATEGIES
+from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import LEARNERS
+from lifelore.experiments.chapter4.c4_04_pacman.run import CLAIM, QUICK, REUSERS, measure, rows
+from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.reproduce import reproduce
 
 SETTINGS = {**QUICK, "layouts": 3, "episodes": 10_000}
 N_BLOCKS = len(block_edges(10_000)) - 1

@@ -6,8 +6,16 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.c4_5 import CLAIM, QUICK, late_by_seen, measure, rows, run_cell, verdicts
-from lifelore.experiments.surveillance_runs import CASES, RULES
+from lifelore.experiments.chapter4.c4_05_selection_rules.run import (
+    CLAIM,
+    QUICK,
+    late_by_seen,
+    measure,
+    rows,
+    run_cell,
+    verdicts,
+)
+from lifelore.experiments.chapter4.surveillance_runs import CASES, RULES
 
 SMALL = {
     **QUICK,

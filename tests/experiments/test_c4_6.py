@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.surveillance import NOISES
-from lifelore.experiments.c4_6 import (
+from lifelore.domains.surveillance.surveillance import NOISES
+from lifelore.experiments.chapter4.c4_06_regret_deviation.run import (
     CLAIM,
     PRINTED,
     QUICK,
@@ -18,7 +18,7 @@ from lifelore.experiments.c4_6 import (
     rows,
     run_cell,
 )
-from lifelore.experiments.reuse_rules import OF_THESIS
+from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
 
 SMALL = {**QUICK, "tasks": 3, "groups": 3}
 SHOWN = ("sampling", "EI", "eps-greedy")

@@ -4,9 +4,18 @@ import json
 
 import pytest
 
-from lifelore.experiments.c4_7 import CASES_SHOWN, CLAIM, QUICK, REUSE, best_gp, measure, rows, run_cell
-from lifelore.experiments.surveillance_peers import PEERS
-from lifelore.experiments.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import (
+    CASES_SHOWN,
+    CLAIM,
+    QUICK,
+    REUSE,
+    best_gp,
+    measure,
+    rows,
+    run_cell,
+)
+from lifelore.experiments.chapter4.surveillance_peers import PEERS
+from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
 
 SMALL = {**QUICK, "tasks": 2, "groups": 3, "episodes": 12}
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c4_8 import CLAIM, QUICK, measure, rows, run_cell
+from lifelore.experiments.chapter4.c4_08_library_size.run import CLAIM, QUICK, measure, rows, run_cell
 
 SMALL = {**QUICK, "trials": 4, "shares": [0.1, 1.0], "episodes": [2, 6], "samples": 3}
 

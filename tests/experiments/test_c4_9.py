@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c4_9 import CLAIM, measure
-from lifelore.experiments.stored_models import (
+from lifelore.experiments.chapter4.c4_09_model_storage.run import CLAIM, measure
+from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
     Application,
     pacman_application,
     random_application,
@@ -13,7 +13,7 @@ from lifelore.experiments.stored_models import (
     stored,
     telephone_application,
 )
-from lifelore.interaction.storage_cost import StorageSizes
+from lifelore.interaction.library.storage_cost import StorageSizes
 
 TINY = {
     "states": [3, 8], "rewards": [2, 12], "draws": 2, "episodes": 5, "models": [3], "reserves": [[17, 5]],

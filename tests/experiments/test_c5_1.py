@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c5_1 import CLAIM as C5_1
-from lifelore.experiments.c5_1 import (
+from lifelore.experiments.chapter2.relation_scoring import wilson
+from lifelore.experiments.chapter5.c5_01_more_relations.run import CLAIM as C5_1
+from lifelore.experiments.chapter5.c5_01_more_relations.run import (
     accuracy,
     both_orders,
     compound_counts,
@@ -22,10 +23,9 @@ from lifelore.experiments.c5_1 import (
     turned_counts,
     word_counts,
 )
-from lifelore.experiments.relation_scoring import wilson
-from lifelore.experiments.view_words import WORDS
-from lifelore.perception.pair_features import COLUMNS
-from lifelore.perception.relation import Relation
+from lifelore.experiments.chapter5.c5_01_more_relations.view_words import WORDS
+from lifelore.perception.pairs.pair_features import COLUMNS
+from lifelore.perception.relations.relation import Relation
 
 ROW = {
     "pairs": [[2, 3], [3, 2]],

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.arranged_scenes import Placement, settled
-from lifelore.experiments.c5_2 import judged_queries
-from lifelore.experiments.thing_roles import PARTS, POOLS, ROLES, predicate_bag
-from lifelore.perception.relation import Relation
+from lifelore.experiments.chapter2.arranged_scenes import Placement, settled
+from lifelore.experiments.chapter5.c5_02_functional_roles.run import judged_queries
+from lifelore.experiments.chapter5.c5_02_functional_roles.thing_roles import PARTS, POOLS, ROLES, predicate_bag
+from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 
 pytest.importorskip("mujoco")

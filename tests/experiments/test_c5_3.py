@@ -6,8 +6,19 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.c5_3 import CLAIM, QUICK, measure, rows
-from lifelore.experiments.guided_choices import BOTH, EVEN, FLAT, INDICES, KINDS, MEAN, MOST, PLAIN, PRUNED, WAYS
+from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import (
+    BOTH,
+    EVEN,
+    FLAT,
+    INDICES,
+    KINDS,
+    MEAN,
+    MOST,
+    PLAIN,
+    PRUNED,
+    WAYS,
+)
+from lifelore.experiments.chapter5.c5_03_priors_in_search.run import CLAIM, QUICK, measure, rows
 
 SETTINGS = {**QUICK, "mazes": 6, "forms": ["proportion", "support"], "other_strengths": []}
 """Two kinds, two forms, three ways and two numbers of simulations: 24 guided ways of tree search."""

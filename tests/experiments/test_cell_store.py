@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import StoreError
-from lifelore.experiments.cell_store import CellStore, write_atomically
+from lifelore.experiments.engine.cell_store import CellStore, write_atomically
 
 CELL = {"run": 3, "schedule": [1.0, 0.98]}
 

@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.claim import Claim
-from lifelore.experiments.predicate import Predicate
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.predicate import Predicate
 
 
 def claim(check=None):

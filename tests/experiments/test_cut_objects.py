@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.cut_objects import cut_object
+from lifelore.experiments.chapter2.cut_objects import cut_object
 
 CLOUD = LabelledCloud(
     np.array([[0, 0, 0], [0, 0, 0.1], [0, 0, 0.2], [0, 0, 0.3], [1, 0, 0.3]], float), np.array([TABLE, 2, 2, 2, 5])

@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.core.planning import best_actions
-from lifelore.domains.lattice import lattice
-from lifelore.experiments.c3_1 import prior_of
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.planning.planning import best_actions
+from lifelore.domains.grids.lattice import lattice
+from lifelore.experiments.chapter3.c3_01_useful_actions.run import prior_of
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")

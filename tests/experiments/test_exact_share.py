@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.stats import binomtest
 
-from lifelore.experiments.exact_share import UNMEASURED, exact_share, mean_or_unmeasured
+from lifelore.experiments.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured
 
 
 def test_all_and_none_have_closed_forms():

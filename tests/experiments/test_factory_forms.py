@@ -5,12 +5,12 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.domains.factory_contexts import feature_codes, features
-from lifelore.experiments import factory_forms
-from lifelore.experiments.c3_11 import FULL, QUICK
-from lifelore.experiments.factory_forms import (
+from lifelore.domains.factory.contexts import feature_codes, features
+from lifelore.experiments.chapter3 import factory_forms
+from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import FULL, QUICK
+from lifelore.experiments.chapter3.factory_forms import (
     FORMS,
     KEYS,
     PLAIN,
@@ -24,7 +24,7 @@ from lifelore.experiments.factory_forms import (
     run_of,
     summary,
 )
-from lifelore.experiments.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
 
 SMALL = {**QUICK, "episodes": 6, "early": 2, "max_steps": [50, 100], "features": ["phi2", "phi3"]}
 SMALL["default"] = {**QUICK["default"], "max_steps": 100}

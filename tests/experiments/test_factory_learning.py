@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.q_learner import QLearning
-from lifelore.domains.factory_contexts import state_contexts
-from lifelore.domains.factory_layout import factory
-from lifelore.experiments import factory_learning
-from lifelore.experiments.factory_learning import (
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.domains.factory.contexts import state_contexts
+from lifelore.domains.factory.layout import factory
+from lifelore.experiments.chapter3 import factory_learning
+from lifelore.experiments.chapter3.factory_learning import (
     Problem,
     exact_prior,
     greedy_return,
@@ -21,7 +21,7 @@ from lifelore.experiments.factory_learning import (
     tasks_of,
     with_pseudo_count,
 )
-from lifelore.experiments.factory_settings import OPEN, check_components, check_open, check_sizes
+from lifelore.experiments.chapter3.factory_settings import OPEN, check_components, check_open, check_sizes
 
 SETTINGS = {**OPEN, "max_steps": 300}
 THREE_CELLS = """

@@ -3,10 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.action.domain_reduction import domain_futile_states
-from lifelore.core.q_learning import uniform_rows
-from lifelore.experiments.c3_13 import QUICK
-from lifelore.experiments.futile_goals import (
+from lifelore.action.search.domain_reduction import domain_futile_states
+from lifelore.core.learning.q_learning import uniform_rows
+from lifelore.experiments.chapter3.c3_13_futile_goals.futile_goals import (
     best_in,
     constructed,
     constructed_cases,
@@ -14,6 +13,7 @@ from lifelore.experiments.futile_goals import (
     frequency,
     goal_tables,
 )
+from lifelore.experiments.chapter3.c3_13_futile_goals.run import QUICK
 
 SETTINGS = {**QUICK, "draws": 4000, "actions": [2, 4], "alpha0": [0.5], "tasks": [0, 1, 3], "alike": [2]}
 SETTINGS["default"] = {"actions": 4, "alpha0": 0.5}

@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.grid_shares import is_above, is_below, share_of
+from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 
 
 @pytest.mark.parametrize(

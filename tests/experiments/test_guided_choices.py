@@ -6,8 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
-from lifelore.experiments.c5_3 import QUICK
-from lifelore.experiments.guided_choices import (
+from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import (
     BETA,
     EVEN,
     FLAT,
@@ -20,6 +19,7 @@ from lifelore.experiments.guided_choices import (
     maze_of,
     run_cell,
 )
+from lifelore.experiments.chapter5.c5_03_priors_in_search.run import QUICK
 
 TINY = {
     **QUICK,

@@ -5,10 +5,16 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.core.planning import best_actions
-from lifelore.experiments.c3_2 import FULL, QUICK
-from lifelore.experiments.lattice_grid import PLAIN, cells, configurations, online_priors, run_cell
-from lifelore.experiments.lattice_learning import learn_task, rows_of, run_of, schedule_of
+from lifelore.core.planning.planning import best_actions
+from lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid import (
+    PLAIN,
+    cells,
+    configurations,
+    online_priors,
+    run_cell,
+)
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import FULL, QUICK
+from lifelore.experiments.chapter3.lattice_learning import learn_task, rows_of, run_of, schedule_of
 
 SMALL = {**QUICK, "episodes": 30, "runs": 1, "test_tasks": 2, "window": 5, "last": 5}
 

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.core.planning import best_actions, greedy_policy, optimal_q
-from lifelore.experiments import lattice_learning, learning_run
-from lifelore.experiments.c3_2 import QUICK
-from lifelore.experiments.lattice_learning import (
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
+from lifelore.experiments.chapter3 import lattice_learning
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import QUICK
+from lifelore.experiments.chapter3.lattice_learning import (
     block_edges,
     block_means,
     exact_prior,
@@ -19,6 +19,7 @@ from lifelore.experiments.lattice_learning import (
     start_values,
     summary,
 )
+from lifelore.experiments.engine import learning_run
 
 SETTINGS = {**QUICK, "episodes": 40}
 

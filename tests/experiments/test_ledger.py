@@ -2,7 +2,7 @@
 
 from collections import Counter
 
-from lifelore.experiments.ledger import entries
+from lifelore.experiments.engine.ledger import entries
 
 
 def test_every_claim_stands_once():

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
-from lifelore.domains.factory import ASSEMBLE, PROCURE
-from lifelore.domains.factory_layout import factory
-from lifelore.experiments.c3_14 import QUICK
-from lifelore.experiments.minimised_worlds import KINDS, task_set, with_list
+from lifelore.domains.factory.factory import ASSEMBLE, PROCURE
+from lifelore.domains.factory.layout import factory
+from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import KINDS, task_set, with_list
+from lifelore.experiments.chapter3.c3_14_minimised_domains.run import QUICK
 
 
 def test_a_list_within_a_larger_domain_by_hand():

@@ -5,13 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.streams import stream
-from lifelore.domains.lattice import lattice
-from lifelore.domains.noise_maze import noise_maze
-from lifelore.experiments.c3_3 import FULL, QUICK
-from lifelore.experiments.lattice_learning import learn_task, schedule_of
-from lifelore.experiments.noise_learning import (
+from lifelore.domains.grids.lattice import lattice
+from lifelore.domains.grids.noise_maze import noise_maze
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import (
     COMPARED,
     KEYS,
     METHODS,
@@ -24,6 +22,8 @@ from lifelore.experiments.noise_learning import (
     run_cell,
     run_of,
 )
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import FULL, QUICK
+from lifelore.experiments.chapter3.lattice_learning import learn_task, schedule_of
 
 SMALL = {**QUICK, "episodes": 30, "test_tasks": 2, "training_tasks": [2, 4], "last": 5}
 SMALL["default"] = {**QUICK["default"], "training_tasks": 4}

@@ -1,6 +1,6 @@
 """Cells of a grid of open choices, by hand."""
 
-from lifelore.experiments.open_choices import default_of, how_key, is_default_but_for_schedule, plain_how
+from lifelore.experiments.engine.open_choices import default_of, how_key, is_default_but_for_schedule, plain_how
 
 KEYS = ("schedule", "ties", "max_steps")
 SETTINGS = {"default": {"schedule": [1.0, 0.9, 0.1], "ties": "uniform", "max_steps": 9, "else": 1}}

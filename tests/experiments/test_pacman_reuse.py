@@ -4,9 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.streams import stream
-from lifelore.domains.pacman import STRATEGIES, PacmanMaze
-from lifelore.experiments.c4_4 import QUICK
-from lifelore.experiments.pacman_library import (
+from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
+from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import (
     arenas,
     exact_moments,
     falling,
@@ -14,8 +13,9 @@ from lifelore.experiments.pacman_library import (
     sampled_returns,
     trained_policies,
 )
-from lifelore.experiments.pacman_reuse import first_lasting, first_stretch, reused, run_cell
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import first_lasting, first_stretch, reused, run_cell
+from lifelore.experiments.chapter4.c4_04_pacman.run import QUICK
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
 
 MAZE = PacmanMaze(5, 5)
@@ -73,7 +73,7 @@ def test_samples_are_of_the_policies_on_the_types(at_home, library):
 
 
 def test_learning_in_parts_is_learning_at_once(at_home):
-    from lifelore.core.q_learning import Schedule
+    from lifelore.core.learning.q_learning import Schedule
 
     def learnt(parts):
         learner, rewards = at_home[3].begin((2, "parts")), []

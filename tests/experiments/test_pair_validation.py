@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
-from lifelore.experiments import pair_validation
-from lifelore.experiments.pair_validation import (
+from lifelore.experiments.chapter2 import pair_validation
+from lifelore.experiments.chapter2.pair_validation import (
     Reading,
     Told,
     as_scene,
@@ -19,11 +19,11 @@ from lifelore.experiments.pair_validation import (
     united,
     vote,
 )
-from lifelore.experiments.tabletop_pairs import STANDARD
-from lifelore.perception.pair_features import column_names
+from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.perception.pairs.pair_features import column_names
 from lifelore.perception.peers import PEERS
-from lifelore.perception.relation import Relation
-from lifelore.perception.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_classifier import RelationClassifier
 
 COLUMNS = column_names(2)
 

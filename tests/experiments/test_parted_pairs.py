@@ -8,8 +8,8 @@ from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments import parted_pairs
-from lifelore.experiments.parted_pairs import (
+from lifelore.experiments.chapter2.c2_11_distant_objects import parted_pairs
+from lifelore.experiments.chapter2.c2_11_distant_objects.parted_pairs import (
     away,
     bearing_pairs,
     counts,

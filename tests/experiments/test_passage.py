@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.tabletop_pose import Pose
-from lifelore.domains.tabletop_shapes import arch, box, cylinder
-from lifelore.experiments.passage import GRID, MARGIN, passages
+from lifelore.domains.tabletop.pose import Pose
+from lifelore.domains.tabletop.shapes import arch, box, cylinder
+from lifelore.experiments.chapter2.c2_06_same_hole.passage import GRID, MARGIN, passages
 
 STILL = Pose(np.zeros(3), np.eye(3))
 

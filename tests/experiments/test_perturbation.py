@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.experiments.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
+from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
 
 CAMERA = np.array([0.0, 0.0, 1.0])
 

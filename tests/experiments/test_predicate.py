@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.predicate import (
+from lifelore.experiments.engine.predicate import (
     FAILS,
     HOLDS,
     IN_PART,

@@ -9,10 +9,10 @@ import pytest
 
 import lifelore.experiments
 from lifelore.core.errors import NotFoundError
-from lifelore.experiments.ledger import entries
-from lifelore.experiments.predicate import FOLDER, VERDICTS
-from lifelore.experiments.registry import built_ids, claim_of, list_claims, module_name
-from lifelore.experiments.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.experiments.engine.ledger import entries
+from lifelore.experiments.engine.predicate import FOLDER, VERDICTS
+from lifelore.experiments.engine.registry import built_ids, claim_folders, claim_of, list_claims
+from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
 from lifelore.figures.style import MAX_BYTES as MAX_FIGURE_BYTES
 
 IDS = built_ids()
@@ -26,8 +26,8 @@ def quick(tmp_path_factory):
 
 
 def test_registry_is_complete():
-    names = {path.stem for path in Path(lifelore.experiments.__file__).parent.glob("c[0-9]_*.py")}
-    assert names == {module_name(i) for i in IDS}
+    names = {folder.name for folder in Path(lifelore.experiments.__file__).parent.glob("chapter*/c[0-9]_*")}
+    assert names == {folder.name for folder in claim_folders().values()}
     assert {path.stem for path in FOLDER.glob("*.json")} == set(IDS)
 
 

@@ -5,8 +5,15 @@ import pytest
 from scipy.stats import binomtest
 
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.relation_scoring import JudgedPair, difference, judged_scene, score, share, wilson
-from lifelore.perception.relation import Relation
+from lifelore.experiments.chapter2.relation_scoring import (
+    JudgedPair,
+    difference,
+    judged_scene,
+    score,
+    share,
+    wilson,
+)
+from lifelore.perception.relations.relation import Relation
 
 
 def judged(truth: str, said: str | None, *, way=(2, 3), gap=0.001, scene="a", truth_way=(2, 3)) -> JudgedPair:

@@ -6,9 +6,9 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.registry import built_ids, claim_of
-from lifelore.experiments.report import read_results, render_report, write_report
-from lifelore.experiments.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.experiments.engine.registry import built_ids, claim_of
+from lifelore.experiments.engine.report import read_results, render_report, write_report
+from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "results"
@@ -16,7 +16,7 @@ PAGE = ROOT / "docs" / "reproduction.md"
 
 
 def test_page_agrees_with_results():
-    assert PAGE.read_text(encoding="utf-8") == render_report(RESULTS), "run: python -m lifelore.experiments.report"
+    assert PAGE.read_text(encoding="utf-8") == render_report(RESULTS), "run: make docs"
 
 
 @pytest.mark.parametrize("result", read_results(RESULTS), ids=lambda r: r["claim"])

@@ -7,10 +7,10 @@ import pytest
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.metrics import mean_estimate
-from lifelore.experiments import reproduce as module
-from lifelore.experiments.claim import Claim
-from lifelore.experiments.predicate import Predicate
-from lifelore.experiments.reproduce import reproduce, rounded
+from lifelore.experiments.engine import reproduce as module
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.reproduce import reproduce, rounded
 from lifelore.figures.style import house_style, new_figure
 
 RAN = []

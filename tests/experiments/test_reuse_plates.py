@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lifelore.experiments.reuse_plates import plates
+from lifelore.experiments.pictures.policy_reuse import plates
 
 ROOT = Path(__file__).parents[2]
 

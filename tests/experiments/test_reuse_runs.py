@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.reuse_runs import (
+from lifelore.experiments.chapter4.reuse_runs import (
     converged_after,
     curve,
     grouped_mean,
@@ -13,9 +13,9 @@ from lifelore.experiments.reuse_runs import (
     play_rule,
 )
 from lifelore.interaction.baselines import UCB1
-from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.belief import entropy
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, InformationDirected
 
 MEANS = np.array([[10.0, 4.0, 0.0], [5.0, 9.0, 1.0], [0.0, 3.0, 8.0]])

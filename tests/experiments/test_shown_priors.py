@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.c3_12 import QUICK
-from lifelore.experiments.shown_priors import (
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import QUICK
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import (
     PEOPLE,
     PLAIN,
     SELF,

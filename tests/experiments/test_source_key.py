@@ -4,16 +4,20 @@ import shutil
 
 import pytest
 
-from lifelore.experiments import source_key as module
-from lifelore.experiments.source_key import PACKAGE, source_key
+from lifelore.experiments.engine import source_key as module
+from lifelore.experiments.engine.source_key import PACKAGE, source_key
 
 
 def test_closure_reaches_through_imports_and_leaves_figures_out():
-    found = module._closure("lifelore.experiments.lattice_grid")
-    assert {"lifelore.core.q_learning", "lifelore.core.random_state", "lifelore.core.jit"} <= found
-    assert "lifelore.experiments.lattice_learning" in found
+    found = module._closure("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
+    assert {
+        "lifelore.core.learning.q_learning",
+        "lifelore.core.compiled.random_state",
+        "lifelore.core.compiled.jit",
+    } <= found
+    assert "lifelore.experiments.chapter3.lattice_learning" in found
     assert not any(name.startswith("lifelore.figures") for name in found)
-    assert "lifelore.experiments.c3_2" not in found
+    assert "lifelore.experiments.chapter3.c3_02_lattice_prior.run" not in found
 
 
 @pytest.fixture
@@ -34,11 +38,11 @@ def copy(tmp_path, monkeypatch):
 )
 def test_the_key_changes_with_the_code_it_rests_on(copy, changed, matters):
     fresh = source_key.__wrapped__
-    before = fresh("lifelore.experiments.lattice_grid")
-    assert before == source_key("lifelore.experiments.lattice_grid")
+    before = fresh("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
+    assert before == source_key("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
     with (copy / changed).open("a", encoding="utf-8") as file:
         file.write("# changed\n")
-    assert (fresh("lifelore.experiments.lattice_grid") != before) is matters
+    assert (fresh("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid") != before) is matters
 
 
 @pytest.mark.parametrize(("name", "matters"), [("lattice_grid", False), ("skeleton_pairs", True)])

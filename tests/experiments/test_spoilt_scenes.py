@@ -7,8 +7,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments import spoilt_scenes
-from lifelore.experiments.spoilt_scenes import (
+from lifelore.experiments.chapter2 import spoilt_scenes
+from lifelore.experiments.chapter2.spoilt_scenes import (
     BORDER,
     DISCARDED,
     MASKS,

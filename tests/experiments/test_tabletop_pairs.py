@@ -8,8 +8,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments import tabletop_pairs
-from lifelore.experiments.tabletop_pairs import (
+from lifelore.experiments.chapter2 import tabletop_pairs
+from lifelore.experiments.chapter2.tabletop_pairs import (
     BESIDE_US,
     KERNELS,
     LOT,
@@ -24,10 +24,10 @@ from lifelore.experiments.tabletop_pairs import (
     run_cell,
     without_table,
 )
-from lifelore.perception.contact_settings import ContactSettings
-from lifelore.perception.interface import interfaces
-from lifelore.perception.pair_features import COLUMNS
-from lifelore.perception.separator import separate
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.pairs.pair_features import COLUMNS
+from lifelore.perception.separation.separator import separate
 
 CAMERA = np.array([0.05, -1.0, 0.6])
 SETTINGS = {"data_sets": 2, "pairs": 50, "camera": "stereo", "real": False}

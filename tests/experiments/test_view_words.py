@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.view_words import (
+from lifelore.experiments.chapter5.c5_01_more_relations.view_words import (
     is_between,
     is_in,
     offset,

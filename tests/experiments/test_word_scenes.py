@@ -7,12 +7,12 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.domains.depth_camera import CAMERAS
-from lifelore.domains.tabletop_photograph import choose_view, photograph
-from lifelore.domains.tabletop_pose import Pose
-from lifelore.domains.tabletop_shapes import ball, box, cup
-from lifelore.experiments import word_scenes
-from lifelore.experiments.word_scenes import (
+from lifelore.domains.tabletop.depth_camera import CAMERAS
+from lifelore.domains.tabletop.photograph import choose_view, photograph
+from lifelore.domains.tabletop.pose import Pose
+from lifelore.domains.tabletop.shapes import ball, box, cup
+from lifelore.experiments.chapter5.c5_01_more_relations import word_scenes
+from lifelore.experiments.chapter5.c5_01_more_relations.word_scenes import (
     KINDS,
     compound_counts,
     from_the_other_side,
@@ -179,7 +179,7 @@ def test_the_thesiss_rules_on_what_is_true():
 
 def test_the_other_side_of_the_table():
     pytest.importorskip("mujoco")
-    from lifelore.domains.tabletop_physics import Tabletop
+    from lifelore.domains.tabletop.physics import Tabletop
 
     poses = [at(-0.05, 0), at(0.05, 0)]
     scene = made(poses, [PairLabel(2, 3, "none"), *ON_TABLE[:2]])

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.domains.grid_picture import AGENT_COLOUR, GOAL_COLOUR
-from lifelore.experiments.world_plates import pictures, walked
+from lifelore.domains.grids.grid_picture import AGENT_COLOUR, GOAL_COLOUR
+from lifelore.experiments.pictures.figure_world_plates import draw_world_plates
+from lifelore.experiments.pictures.worlds import pictures, walked
 from lifelore.figures.style import save_figure
-from lifelore.figures.world_plates import draw_world_plates
 
 
 def pixels(picture, colour) -> int:

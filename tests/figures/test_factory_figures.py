@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 from matplotlib.collections import PathCollection
 
-from lifelore.domains.factory_layout import factory
-from lifelore.experiments.registry import claim_of
-from lifelore.experiments.reproduce import finish
-from lifelore.figures.factory_floor import draw_factory_prior
+from lifelore.domains.factory.layout import factory
+from lifelore.experiments.chapter3.factory_floor import draw_factory_prior
+from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.reproduce import finish
 from lifelore.figures.style import colour_of, house_style, new_figure
 
 FEW = {"runs": 3, "episodes": 10, "max_steps": 150, "ties": ["uniform"], "alpha0": [0.1]}

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.domains.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.floor_plan import draw_floor_plan, draw_scale_bar, wall_segments
 from lifelore.figures.style import new_figure
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.prior_map import CLOSE_UP, close_up_corner, draw_prior_map, open_moves
 from lifelore.figures.style import save_figure
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.domains.grid_world import GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.figures.style import save_figure
 from lifelore.figures.world_map import draw_world_map
 

@@ -4,12 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.confusion_matrix import draw_confusions
-from lifelore.figures.displacement_scatter import draw_displacements
-from lifelore.figures.method_bars import draw_method_bars
+from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure_displacement_scatter import (
+    draw_displacements,
+)
+from lifelore.experiments.chapter2.c2_05_discarded_points.figure_robustness_curves import draw_robustness
+from lifelore.experiments.chapter2.confusion_matrix import draw_confusions
+from lifelore.experiments.chapter2.method_bars import draw_method_bars
+from lifelore.experiments.chapter2.scene_gallery import draw_gallery
 from lifelore.figures.object_palette import method_palette, mixed, object_palette, relation_palette
-from lifelore.figures.robustness_curves import draw_robustness
-from lifelore.figures.scene_gallery import draw_gallery
 from lifelore.figures.separation_curve import draw_separation
 from lifelore.perception.peers import PEERS
 

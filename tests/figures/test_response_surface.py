@@ -5,8 +5,8 @@ import pytest
 from matplotlib.patches import Circle, Rectangle
 
 from lifelore.core.errors import InputError
-from lifelore.figures.interaction_model import draw_interaction_model
-from lifelore.figures.response_surface import draw_response_surface
+from lifelore.experiments.pictures.figure_interaction_model import draw_interaction_model
+from lifelore.experiments.pictures.figure_response_surface import draw_response_surface
 from lifelore.figures.style import save_figure
 
 MEAN = np.array([[1.0, 3.0, 2.0], [0.0, 2.0, 2.5], [-1.0, 0.5, 4.0]])

@@ -4,19 +4,19 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import NotFoundError
-from lifelore.domains.golf import CLUBS, EDGES, HOLES, Golf
-from lifelore.domains.surveillance import BASE, SIDE, Surveillance
-from lifelore.domains.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
-from lifelore.experiments.reuse_rules import NEAR_GREEDY, RULES_SHOWN
-from lifelore.experiments.surveillance_peers import PEERS
-from lifelore.experiments.telephone_runs import SIGNAL_OF_PATH
-from lifelore.figures.call_graph import PLACES, draw_call_graph
-from lifelore.figures.category_bars import draw_category_bars
-from lifelore.figures.performance_curves import draw_performance_curves
-from lifelore.figures.reserve_map import draw_reserve_maps
-from lifelore.figures.reuse_palette import LOOKS, look_of
-from lifelore.figures.telephone_curves import EDGES as CALL_EDGES
-from lifelore.figures.type_model import draw_type_model
+from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
+from lifelore.domains.surveillance.surveillance import BASE, SIDE, Surveillance
+from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
+from lifelore.experiments.chapter4.c4_03_telephone_signals.figure_call_graph import PLACES, draw_call_graph
+from lifelore.experiments.chapter4.c4_03_telephone_signals.figure_telephone_curves import EDGES as CALL_EDGES
+from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import SIGNAL_OF_PATH
+from lifelore.experiments.chapter4.category_bars import draw_category_bars
+from lifelore.experiments.chapter4.reuse_palette import LOOKS, look_of
+from lifelore.experiments.chapter4.reuse_rules import NEAR_GREEDY, RULES_SHOWN
+from lifelore.experiments.chapter4.surveillance_peers import PEERS
+from lifelore.experiments.pictures.figure_performance_curves import draw_performance_curves
+from lifelore.experiments.pictures.figure_reserve_map import draw_reserve_maps
+from lifelore.experiments.pictures.figure_type_model import draw_type_model
 
 
 def test_category_bars_show_the_tables():

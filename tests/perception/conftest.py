@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.contact_point import ContactPoint
-from lifelore.perception.interface import Interface
-from lifelore.perception.relation import Relation
+from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.interface import Interface
+from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
 
 UP = (0.0, 0.0, 1.0)

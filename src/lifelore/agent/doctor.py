@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.core.curve import TOTAL
+from lifelore.core.compiled.kernel_cache import kernel_cache_dir
 from lifelore.core.errors import LifeloreError
-from lifelore.core.kernel_cache import kernel_cache_dir
-from lifelore.core.q_learner import QLearning
+from lifelore.core.learning.curve import TOTAL
+from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.streams import stream
 from lifelore.domains.worlds import make_world
 from lifelore.memory import open_memory

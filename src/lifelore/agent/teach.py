@@ -11,17 +11,17 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.action.competence import competence_by_steps
-from lifelore.action.demonstrations import Demonstration, count_demonstrations, write_demonstrations
-from lifelore.action.policy_counts import actions_to_count
-from lifelore.action.prior_file import save_prior
-from lifelore.agent.lore import prior_scope
+from lifelore.action.demonstrations.competence import competence_by_steps
+from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations, write_demonstrations
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.action.priors.prior_file import save_prior
+from lifelore.agent.live.lore import prior_scope
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL
-from lifelore.core.planning import optimal_q
+from lifelore.core.planning.planning import optimal_q
 from lifelore.core.streams import stream
-from lifelore.domains.grid_world import MOVE_NAMES, PERCEPT, GridWorld
+from lifelore.domains.grids.grid_world import MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 
 MOVE_OF = {"w": 0, "\x1b[A": 0, "s": 1, "\x1b[B": 1, "d": 2, "\x1b[C": 2, "a": 3, "\x1b[D": 3}
@@ -53,7 +53,7 @@ def teach(
     show : callable
         Called with each picture and message.
     out : str or Path
-        Demonstrations as JSON lines are added here, see `lifelore.action.demonstrations`.
+        Demonstrations as JSON lines are added here, see `lifelore.action.demonstrations.demonstrations`.
     person : str
         The name written as `agent`.
     tasks : int

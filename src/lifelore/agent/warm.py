@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.core.compiled.kernel_cache import kernel_cache_dir
 from lifelore.core.errors import StoreError
-from lifelore.core.kernel_cache import kernel_cache_dir
 from lifelore.core.protocols import Progress
 
 
@@ -56,8 +56,8 @@ def _compiled() -> set[str]:
 
 
 def _live(folder: Path) -> None:
-    from lifelore.agent.life import live
-    from lifelore.agent.life_settings import LifeSettings
+    from lifelore.agent.live.life import live
+    from lifelore.agent.live.life_settings import LifeSettings
 
     for learner in ("model", "q"):
         memory = str(folder / f"{learner}.db")
@@ -65,7 +65,7 @@ def _live(folder: Path) -> None:
 
 
 def _perceive(folder: Path) -> None:
-    from lifelore.agent.perceive import perceive
+    from lifelore.agent.perceive.perceive import perceive
 
     points, labels = _two_boxes_on_a_table()
     cloud = folder / "cloud.npz"
@@ -95,9 +95,9 @@ def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
 
 
 def _reuse(folder: Path) -> None:
-    from lifelore.agent.reuse import choose, update
-    from lifelore.agent.reuse_fit import FitSettings, fit
-    from lifelore.agent.reuse_study import open_study
+    from lifelore.agent.reuse.fit import FitSettings, fit
+    from lifelore.agent.reuse.one_user import choose, update
+    from lifelore.agent.reuse.study import open_study
     from lifelore.memory import open_memory
 
     random, log = np.random.default_rng(0), folder / "log.csv"

@@ -33,8 +33,8 @@ def advise(
     """Watch agents step by step and tell the lost ones the way; one JSON line out for each line in."""
     from contextlib import nullcontext
 
-    from lifelore.agent.advise import AdviceDesk, AdviseSettings
-    from lifelore.agent.step_lines import read_steps
+    from lifelore.agent.advise.advise import AdviceDesk, AdviseSettings
+    from lifelore.agent.advise.step_lines import read_steps
     from lifelore.app.console import print_json
 
     desk = AdviceDesk(AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius))

@@ -33,8 +33,8 @@ def learn_relations(
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Learn what words for relations mean from scenes in which they were said."""
-    from lifelore.agent.learn_relations import RelationLesson
-    from lifelore.agent.learn_relations import learn_relations as learn
+    from lifelore.agent.perceive.learn_relations import RelationLesson
+    from lifelore.agent.perceive.learn_relations import learn_relations as learn
     from lifelore.app.console import print_json, progress_bar
     from lifelore.app.perceive_command import direction, to_stderr
 

@@ -56,10 +56,10 @@ def live(
     building or another one.
     """
     settings = {k: v for k, v in locals().items() if k not in ("out", "l2log", "as_json", "start")}
-    from lifelore.agent.l2_log import LifeLog
-    from lifelore.agent.life import live as live_through
-    from lifelore.agent.life_settings import LifeSettings
-    from lifelore.agent.portfolio import check_folder, write_portfolio
+    from lifelore.agent.live.l2_log import LifeLog
+    from lifelore.agent.live.life import live as live_through
+    from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.live.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
 

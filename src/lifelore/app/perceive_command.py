@@ -65,7 +65,7 @@ def perceive(
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
     _one_thread_for_matrices()
-    from lifelore.agent.perceive import PerceiveSettings
+    from lifelore.agent.perceive.perceive import PerceiveSettings
 
     settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
     files = {"pddl": pddl, "dot": dot, "plot": plot}
@@ -88,8 +88,8 @@ def _one_thread_for_matrices() -> None:
 
 
 def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
-    from lifelore.agent.perceive import perceive as look
-    from lifelore.agent.scene_files import named_files
+    from lifelore.agent.perceive.perceive import perceive as look
+    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.app.console import print_json, progress_bar
 
     own = vars(named_files(cloud, **files))
@@ -100,7 +100,7 @@ def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, 
 
 
 def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, files: Files, as_json: bool) -> int:
-    from lifelore.agent.perceive_many import perceive_many, scenes_document
+    from lifelore.agent.perceive.perceive_many import perceive_many, scenes_document
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
 
     entries = []
@@ -118,7 +118,7 @@ def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, fil
 
 
 def _watched(folder: str, settings: Any, files: Files, as_json: bool) -> int:
-    from lifelore.agent.perceive_many import perceive_folder
+    from lifelore.agent.perceive.perceive_many import perceive_folder
     from lifelore.app.console import INTERRUPTED, print_json_line, stop_on_interrupt
 
     with stop_on_interrupt() as stop:
@@ -145,7 +145,7 @@ def _print_titled(cloud: str, document: Mapping[str, Any], files: Files) -> None
 
 
 def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
-    from lifelore.agent.scene_files import named_files
+    from lifelore.agent.perceive.scene_files import named_files
     from lifelore.app.scene_table import print_scene
 
     own = named_files(cloud, **files)
@@ -164,7 +164,7 @@ def _cut(segment: str | None, colours: int | None):
         raise InputError("colours belongs to --segment colour: add it, or leave --colours out")
     if segment is None:
         return None
-    from lifelore.perception.segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
 
     default = SegmentationSettings.colours
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]

@@ -23,8 +23,8 @@ def reproduce(
     """Run claims of the thesis as measured experiments. Stop and start as you like: finished parts are kept."""
     from lifelore.app.console import print_json, progress_bar
     from lifelore.core.errors import InputError
-    from lifelore.experiments.registry import list_claims
-    from lifelore.experiments.reproduce import reproduce as run
+    from lifelore.experiments.engine.registry import list_claims
+    from lifelore.experiments.engine.reproduce import reproduce as run
 
     if list_all:
         entries = list_claims()

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
-    from lifelore.agent.reuse_study import Study
+    from lifelore.agent.reuse.study import Study
     from lifelore.memory import Memory
 
 reuse = typer.Typer(
@@ -45,8 +45,8 @@ def fit(
     as_json: AsJson = False,
 ) -> None:
     """Learn types of users and what each policy achieves on them from a log."""
-    from lifelore.agent.reuse_fit import FitSettings
-    from lifelore.agent.reuse_fit import fit as fitted
+    from lifelore.agent.reuse.fit import FitSettings
+    from lifelore.agent.reuse.fit import fit as fitted
     from lifelore.app.console import print_json
     from lifelore.memory import open_memory
 
@@ -68,7 +68,7 @@ def choose(
     as_json: AsJson = False,
 ) -> None:
     """Choose a policy for a user, and remember the choice."""
-    from lifelore.agent.reuse import choose as chosen
+    from lifelore.agent.reuse.one_user import choose as chosen
 
     with _opened(name, where) as (memory, study):
         document = chosen(memory, study, user, context=context, seed=seed)
@@ -92,8 +92,8 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Take in how a decision ended: once, however late."""
-    from lifelore.agent.reuse import update as updated
-    from lifelore.agent.reuse_log import read_outcome
+    from lifelore.agent.reuse.log import read_outcome
+    from lifelore.agent.reuse.one_user import update as updated
 
     value = read_outcome(outcome)
     with _opened(name, where) as (memory, study):
@@ -118,7 +118,7 @@ def report(
     as_json: AsJson = False,
 ) -> None:
     """Uplift and regret against the users held out, with 95 % intervals."""
-    from lifelore.agent.reuse_report import report as reported
+    from lifelore.agent.reuse.report import report as reported
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
@@ -140,7 +140,7 @@ def retire(
     as_json: AsJson = False,
 ) -> None:
     """Give a policy to nobody from now on."""
-    from lifelore.agent.reuse import retire as retired
+    from lifelore.agent.reuse.one_user import retire as retired
 
     with _opened(name, where) as (memory, study):
         study = retired(memory, study, policy)
@@ -155,7 +155,7 @@ def add(
     as_json: AsJson = False,
 ) -> None:
     """Bring a policy in: a retired one as it was, a new one to the held out first."""
-    from lifelore.agent.reuse import add as added
+    from lifelore.agent.reuse.one_user import add as added
 
     with _opened(name, where) as (memory, study):
         study = added(memory, study, policy)
@@ -172,7 +172,7 @@ def forget(
     as_json: AsJson = False,
 ) -> None:
     """Forget one user's decisions, outcomes and belief for good."""
-    from lifelore.agent.reuse import forget as forgot
+    from lifelore.agent.reuse.one_user import forget as forgot
 
     with _opened(name, where) as (memory, study):
         count = forgot(memory, study, user)
@@ -181,7 +181,7 @@ def forget(
 
 @contextmanager
 def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
-    from lifelore.agent.reuse_study import open_study
+    from lifelore.agent.reuse.study import open_study
     from lifelore.memory import open_memory
 
     with open_memory(where, durable=True) as memory:

@@ -30,7 +30,7 @@ def scenes(
 
     Writes a PCD a scene, and relations.csv, planes.csv and gaps.csv with what is true of all.
     """
-    from lifelore.agent.scenes import make_scenes
+    from lifelore.agent.perceive.scenes import make_scenes
     from lifelore.app.console import print_json, progress_bar
     from lifelore.app.perceive_command import to_stderr
 

@@ -4,7 +4,7 @@ from typing import Any
 
 import gymnasium
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.observations import Contexts, as_batch, check_actions
 from lifelore.core.streams import stream
 

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 Contexts = Callable[[Any], NDArray[np.int64]]

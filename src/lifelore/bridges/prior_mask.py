@@ -6,7 +6,7 @@ import gymnasium
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.observations import Contexts, as_batch, check_actions
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream

@@ -7,8 +7,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lifelore.core.errors import InputError, LifeloreError, MissingExtraError, NotFoundError
-from lifelore.perception.point_cloud import PointCloud
-from lifelore.perception.point_cloud2 import cloud_from_message
+from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.clouds.point_cloud2 import cloud_from_message
 
 if TYPE_CHECKING:
     from rosbags.highlevel import AnyReader

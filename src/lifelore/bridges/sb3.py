@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.bridges.cached_prior_sampler import KeptDraws
 from lifelore.bridges.counted_episodes import count_episodes as count_episodes
-from lifelore.bridges.kept_draws import KeptDraws
 from lifelore.bridges.observations import Contexts, as_batch, batch_size, check_actions
 from lifelore.bridges.prior_mask import PriorMask as PriorMask
 from lifelore.core.errors import InputError, MissingExtraError
@@ -37,7 +37,7 @@ class PriorDQN(DQN):
     contexts : callable
         Sees observations as the policy does, but before ``VecNormalize``.
     form : str
-        See `lifelore.action.action_prior.FORMS`.
+        See `lifelore.action.priors.action_prior.FORMS`.
     how : dict, optional
         ``beta`` or ``escape`` of that form.
 

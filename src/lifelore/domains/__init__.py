@@ -10,11 +10,11 @@ from typing import TYPE_CHECKING, Any
 import gymnasium
 
 if TYPE_CHECKING:
-    from lifelore.domains.building import building_from_map
-    from lifelore.domains.environment import GridEnvironment
-    from lifelore.domains.grid_world import Frame, GridWorld
-    from lifelore.domains.occupancy_map import OccupancyMap, read_occupancy_map, write_occupancy_map
-    from lifelore.domains.office import office_map
+    from lifelore.domains.buildings.building import building_from_map
+    from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map, write_occupancy_map
+    from lifelore.domains.buildings.office import office_map
+    from lifelore.domains.grid_environment import GridEnvironment
+    from lifelore.domains.grids.grid_world import Frame, GridWorld
     from lifelore.domains.task_environment import TaskEnvironment
     from lifelore.domains.worlds import WorldSettings, domain_names, make_world, world_from_settings
 
@@ -36,33 +36,33 @@ __all__ = [
 ]
 
 _HOME = {
-    "Frame": "grid_world",
-    "GridEnvironment": "environment",
-    "GridWorld": "grid_world",
-    "OccupancyMap": "occupancy_map",
+    "Frame": "grids.grid_world",
+    "GridEnvironment": "grid_environment",
+    "GridWorld": "grids.grid_world",
+    "OccupancyMap": "buildings.occupancy_map",
     "TaskEnvironment": "task_environment",
     "WorldSettings": "worlds",
-    "building_from_map": "building",
+    "building_from_map": "buildings.building",
     "domain_names": "worlds",
     "make_world": "worlds",
-    "office_map": "office",
-    "read_occupancy_map": "occupancy_map",
+    "office_map": "buildings.office",
+    "read_occupancy_map": "buildings.occupancy_map",
     "world_from_settings": "worlds",
-    "write_occupancy_map": "occupancy_map",
+    "write_occupancy_map": "buildings.occupancy_map",
 }
 
 ENVIRONMENTS = {
     "lifelore/AdviceMaze-v0": ("advice_environment:AdviceMazeEnvironment", 5000),
-    "lifelore/BallGame-v0": ("ball_game_environment:BallGameEnvironment", 400),
-    "lifelore/Building-v0": ("environment:BuildingEnvironment", 2000),
-    "lifelore/Factory-v0": ("factory_environment:FactoryEnvironment", 2000),
-    "lifelore/Golf-v0": ("golf_environment:GolfEnvironment", 3),
-    "lifelore/Lattice-v0": ("environment:LatticeEnvironment", 1000),
-    "lifelore/ModifiedFactory-v0": ("factory_environment:ModifiedFactoryEnvironment", 2000),
-    "lifelore/NoiseMaze-v0": ("environment:NoiseMazeEnvironment", 1000),
-    "lifelore/Pacman-v0": ("pacman_environment:PacmanEnvironment", 200),
-    "lifelore/Surveillance-v0": ("surveillance_environment:SurveillanceEnvironment", 50),
-    "lifelore/Telephone-v0": ("telephone_environment:TelephoneEnvironment", 3),
+    "lifelore/BallGame-v0": ("ball_game.environment:BallGameEnvironment", 400),
+    "lifelore/Building-v0": ("grid_environment:BuildingEnvironment", 2000),
+    "lifelore/Factory-v0": ("factory.environment:FactoryEnvironment", 2000),
+    "lifelore/Golf-v0": ("golf.environment:GolfEnvironment", 3),
+    "lifelore/Lattice-v0": ("grid_environment:LatticeEnvironment", 1000),
+    "lifelore/ModifiedFactory-v0": ("factory.environment:ModifiedFactoryEnvironment", 2000),
+    "lifelore/NoiseMaze-v0": ("grid_environment:NoiseMazeEnvironment", 1000),
+    "lifelore/Pacman-v0": ("pacman.environment:PacmanEnvironment", 200),
+    "lifelore/Surveillance-v0": ("surveillance.environment:SurveillanceEnvironment", 50),
+    "lifelore/Telephone-v0": ("telephone.environment:TelephoneEnvironment", 3),
 }
 """Registered name → where its class lives in this package, and the steps after which an episode is cut."""
 

@@ -1,8 +1,8 @@
 """The advice maze as a Gymnasium environment; `lifelore.domains` registers it."""
 
 from lifelore.core.streams import stream
-from lifelore.domains.advice_maze import maze_goals
-from lifelore.domains.environment import Goal, GridEnvironment
+from lifelore.domains.advice.advice_maze import maze_goals
+from lifelore.domains.grid_environment import Goal, GridEnvironment
 from lifelore.domains.worlds import make_world
 
 

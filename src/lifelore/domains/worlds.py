@@ -6,13 +6,13 @@ from pathlib import Path
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
-from lifelore.domains.advice_maze import advice_maze
-from lifelore.domains.building import building_from_map
-from lifelore.domains.grid_world import GridWorld
-from lifelore.domains.lattice import lattice
-from lifelore.domains.noise_maze import noise_maze
-from lifelore.domains.occupancy_map import read_occupancy_map
-from lifelore.domains.office import office_map
+from lifelore.domains.advice.advice_maze import advice_maze
+from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map
+from lifelore.domains.buildings.office import office_map
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.lattice import lattice
+from lifelore.domains.grids.noise_maze import noise_maze
 
 
 @dataclass(frozen=True)

@@ -14,8 +14,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from lifelore.core.atomic_write import whole_file
 from lifelore.core.errors import NotFoundError, StoreError
-from lifelore.core.whole_file import whole_file
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure

@@ -2,11 +2,11 @@
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.perception.interface import interfaces
-from lifelore.perception.relation_classifier import RelationClassifier
-from lifelore.perception.relation_model_file import shipped_model
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_model_file import shipped_model
 from lifelore.perception.scene import Scene
-from lifelore.perception.scene_logic import alternatives, most_likely_scene
 
 
 def perceived_scene(

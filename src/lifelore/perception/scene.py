@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE
-from lifelore.perception.contact_network import ContactPointNetwork
-from lifelore.perception.contact_point import ContactPoint
-from lifelore.perception.interface import Interface
-from lifelore.perception.relation import Relation
+from lifelore.perception.contacts.contact_network import ContactPointNetwork
+from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.interface import Interface
+from lifelore.perception.relations.relation import Relation
 
 TABLE_NAME = "table"
 

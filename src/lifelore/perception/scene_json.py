@@ -16,12 +16,12 @@ import math
 from collections.abc import Iterable
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.contact_point import ContactPoint
-from lifelore.perception.grasp_seeds import GraspSeed, grasp_seeds
-from lifelore.perception.holes import Hole, find_holes
-from lifelore.perception.relation import Relation
+from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.reasoning.scene_facts import scene_facts
+from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import TABLE_NAME, Scene
-from lifelore.perception.scene_facts import scene_facts
+from lifelore.perception.topology.grasp_seeds import GraspSeed, grasp_seeds
+from lifelore.perception.topology.holes import Hole, find_holes
 
 DIGITS = 6
 """Decimals of a metre: a micrometre, far below any sensor's noise."""

@@ -7,7 +7,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.perception.peers import PEERS
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 LEARNT = [name for name in PEERS if name != "bounding-box rule"]
 LEAST_RIGHT = {

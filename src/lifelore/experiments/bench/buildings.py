@@ -31,10 +31,10 @@ OUT = Path("results")
 _LIFE = """
 import json, resource, sys, time
 from pathlib import Path
-from lifelore.agent.life import live
-from lifelore.agent.life_settings import LifeSettings
-from lifelore.domains.occupancy_map import write_occupancy_map
-from lifelore.domains.office import RESOLUTION, office_map
+from lifelore.agent.live.life import live
+from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.domains.buildings.occupancy_map import write_occupancy_map
+from lifelore.domains.buildings.office import RESOLUTION, office_map
 from lifelore.domains.worlds import make_world
 
 width, height, cell, tasks, folder = *map(float, sys.argv[1:4]), int(sys.argv[4]), Path(sys.argv[5])
@@ -115,7 +115,7 @@ def _life(size: Sequence[float]) -> dict:
 
 
 def _draw(lives: Sequence[dict[str, float]], out: Path) -> None:
-    from lifelore.figures.building_growth import draw_building_growth
+    from lifelore.experiments.bench.figure_building_growth import draw_building_growth
     from lifelore.figures.style import save_figure
 
     out.mkdir(parents=True, exist_ok=True)

@@ -192,7 +192,7 @@ def _gpu_rows(learners: Measured, contexts: Measured, moves: float, cores: int, 
 def _draw(
     learners: Measured, contexts: Measured, stored: Measured, machine: Mapping[str, float], path: Path
 ) -> None:
-    from lifelore.figures.capacity_curves import draw_capacity_curves
+    from lifelore.experiments.bench.figure_capacity_curves import draw_capacity_curves
     from lifelore.figures.style import save_figure
 
     kinds = {

@@ -10,12 +10,12 @@ from typing import TypeVar
 
 import numpy as np
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.agent.lore import Lore, prior_scope
-from lifelore.core.curve import EPISODE, new_curve
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.core.learning.curve import EPISODE, new_curve
+from lifelore.core.learning.q_learning import Rows, Schedule, learn_each, new_learners, uniform_rows
 from lifelore.core.mdp import Tables, Task
-from lifelore.core.planning import best_actions, optimal_q
-from lifelore.core.q_learning import Rows, Schedule, learn_each, new_learners, uniform_rows
+from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains import make_world
 from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task

@@ -9,9 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 
-from lifelore.agent.life import live
-from lifelore.agent.life_settings import LifeSettings
-from lifelore.agent.summary import third
+from lifelore.agent.live.life import live
+from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.summary import third
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.rounds import at_most, row

@@ -15,15 +15,15 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.action.action_prior import ActionPrior
-from lifelore.core.learning_metrics import LearningGain, learning_gain
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.learning.learning_metrics import LearningGain, learning_gain
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench import deep_learning, deep_speed, deep_worlds
 from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM, crossing_prior, excluded_best, exploring
 from lifelore.experiments.bench.rounds import at_least, at_most, paired_ratio, row
-from lifelore.experiments.cell_store import CellStore
-from lifelore.experiments.source_key import source_key
+from lifelore.experiments.engine.cell_store import CellStore
+from lifelore.experiments.engine.source_key import source_key
 
 EXPLORED = ("SimpleCrossingS9N1", "SimpleCrossingS11N5", "FourRooms")
 LEARNT = ("SimpleCrossingS9N1", "SimpleCrossingS11N5")
@@ -215,7 +215,7 @@ def _told(learning: Mapping, gain: LearningGain) -> dict:
 
 
 def _draw(result: Mapping, path: Path) -> None:
-    from lifelore.figures.deep_curves import draw_deep_curves
+    from lifelore.experiments.bench.figure_deep_curves import draw_deep_curves
     from lifelore.figures.style import save_figure
 
     names = {PLAIN: "scratch", PRIOR: "prior", UNIFORM: "scratch", GUIDED: "prior"}

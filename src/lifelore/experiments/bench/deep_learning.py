@@ -9,7 +9,7 @@ from typing import Any
 import gymnasium
 from threadpoolctl import threadpool_limits
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import open_ways, solved_layout
 from lifelore.experiments.bench.deep_worlds import layout_seed, one_layout
 

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_ways
 from lifelore.experiments.bench.deep_worlds import new_world
 from lifelore.experiments.bench.rounds import Rates, interleaved

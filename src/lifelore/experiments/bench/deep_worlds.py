@@ -6,7 +6,7 @@ from typing import Any
 import gymnasium
 import numpy as np
 
-from lifelore.action.action_prior import ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_ways, solved_layout
 from lifelore.core.streams import stream
 

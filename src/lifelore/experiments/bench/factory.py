@@ -14,10 +14,10 @@ import numpy as np
 
 from lifelore.core.errors import LifeloreError
 from lifelore.core.mdp import Tables, _enumerate_with
-from lifelore.core.planning import optimal_q
+from lifelore.core.planning.planning import optimal_q
 from lifelore.core.protocols import Progress
-from lifelore.domains.factory import FactoryTask
-from lifelore.domains.factory_layout import factory
+from lifelore.domains.factory.factory import FactoryTask
+from lifelore.domains.factory.layout import factory
 from lifelore.experiments.bench.rounds import at_most, interleaved, paired_ratio, row
 
 COMPONENTS, ALL = 4, 9
@@ -81,8 +81,8 @@ def bench_factory(repeats: int, progress: Progress, episodes: int = 400) -> dict
 
 def learn_all(components: int, episodes: int) -> None:
     """Learn a task of the first components with the configurations that are met."""
-    from lifelore.core.layered_learning import LayeredLearning
-    from lifelore.core.q_learner import QLearning
+    from lifelore.core.learning.layered_learning import LayeredLearning
+    from lifelore.core.learning.q_learner import QLearning
     from lifelore.core.streams import stream
 
     task = factory().task(range(components))

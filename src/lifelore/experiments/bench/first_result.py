@@ -9,7 +9,7 @@ from lifelore.core.errors import LifeloreError
 
 _Q = """
 import time
-from lifelore.core.planning import greedy_policy, optimal_q, policy_values
+from lifelore.core.planning.planning import greedy_policy, optimal_q, policy_values
 from lifelore.experiments.bench.lattice_case import lattice_task, new_case, run_kernel
 started = time.perf_counter()
 case = new_case(500)
@@ -22,10 +22,10 @@ print(time.perf_counter() - started)
 _MODEL = """
 import time
 import numpy as np
-from lifelore.core.curve import new_curve
-from lifelore.core.known_world import blank_model, known_policy
-from lifelore.core.model_learning import Manner, Perceived, explore, new_explorer
-from lifelore.core.planning import optimal_q, policy_values
+from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.known_world import blank_model, known_policy
+from lifelore.core.learning.model_learning import Manner, Perceived, explore, new_explorer
+from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 from lifelore.experiments.bench.lattice_case import lattice_task
 started = time.perf_counter()

@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from lifelore.core.curve import Curve, new_curve
+from lifelore.core.learning.curve import Curve, new_curve
+from lifelore.core.learning.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import Tables
-from lifelore.core.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
 from lifelore.core.streams import stream
-from lifelore.domains.lattice import lattice
+from lifelore.domains.grids.lattice import lattice
 
 EPSILON, ALPHA, MAX_STEPS, DISCOUNT = 0.1, 0.1, 1000, 0.95
 EPISODES, LEARNERS = 4000, 5

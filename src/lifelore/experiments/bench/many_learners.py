@@ -6,9 +6,9 @@ the processor's nearest cache; of ten thousand that take turns after 100 steps, 
 
 import time
 
-from lifelore.core.curve import TOTAL
-from lifelore.core.q_learner import QLearning
-from lifelore.core.q_learning import learn
+from lifelore.core.learning.curve import TOTAL
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.learning.q_learning import learn
 from lifelore.core.streams import stream
 from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task, new_case
 

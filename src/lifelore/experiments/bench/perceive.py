@@ -5,10 +5,8 @@ import subprocess
 import sys
 import tempfile
 import time
-from collections.abc import Callable
 from pathlib import Path
 from statistics import median
-from typing import Any
 
 import numpy as np
 
@@ -16,19 +14,12 @@ from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
-from lifelore.domains.scene_folder import save_cloud
-from lifelore.domains.tabletop import TabletopScene, TabletopSettings, draw_scene
+from lifelore.domains.tabletop.scene_folder import save_cloud
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, draw_scene
 from lifelore.experiments.bench.rounds import at_most, row
-from lifelore.experiments.real_scenes import real_scenes_folder
-from lifelore.perception.interface import interface
-from lifelore.perception.near_pairs import near_pairs, split_objects
-from lifelore.perception.relation_classifier import RelationClassifier
-from lifelore.perception.relation_model_file import shipped_model
-from lifelore.perception.scene import Scene
-from lifelore.perception.scene_json import scene_document
-from lifelore.perception.scene_logic import alternatives, most_likely_scene
-from lifelore.perception.scene_pairs import scene_pairs
-from lifelore.perception.voxel import voxelised
+from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
+from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
+from lifelore.perception.relations.relation_model_file import shipped_model
 
 THINGS, POINTS = 15, 100_000
 SEED = 7003
@@ -37,15 +28,6 @@ JITTER = 0.0005
 WHOLE, SHELL = 0.4, 3.0
 """Most seconds."""
 REAL_SCENE = "test51"
-STAGES = (
-    "thin to voxels",
-    "near pairs",
-    "separators and contacts",
-    "features",
-    "relations",
-    "logic",
-    "networks and holes",
-)
 
 
 def bench_perceive(repeats: int, progress: Progress) -> dict:
@@ -73,27 +55,6 @@ def bench_perceive(repeats: int, progress: Progress) -> dict:
     wholes = {name: median(sum(stages.values()) for stages in rounds) for name, rounds in times.items()}
     goals = [at_most(f"{name}, s", WHOLE, seconds) for name, seconds in wholes.items()]
     return {"rows": rows, "goals": [*goals, at_most(f"{what}, from the shell, s", SHELL, median(shell))]}
-
-
-def timed_stages(cloud: LabelledCloud, model: RelationClassifier) -> dict[str, float]:
-    """Seconds of each of `STAGES`; together they are what `perceive` does with a cloud it has read."""
-    seconds: dict[str, float] = {}
-
-    def timed(stage: str, work: Callable[[], Any]) -> Any:
-        began = time.perf_counter()
-        result = work()
-        seconds[stage] = time.perf_counter() - began
-        return result
-
-    settings = model.settings
-    thin = timed(STAGES[0], lambda: voxelised(cloud, settings.voxel).cloud)
-    pairs = timed(STAGES[1], lambda: near_pairs(split_objects(thin), settings.near, settings.table_margin))
-    found = timed(STAGES[2], lambda: tuple(interface(pair, settings) for pair in pairs))
-    seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))
-    beliefs = timed(STAGES[4], lambda: model.beliefs_of(seen))
-    logic = timed(STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects))
-    timed(STAGES[6], lambda: scene_document(Scene(cloud, found, logic.relations).bearing, seconds=0.0))
-    return seconds
 
 
 def _stage_rows(name: str, rounds: list[dict[str, float]]) -> list[dict]:

@@ -16,11 +16,11 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.protocols import Progress
 from lifelore.core.relations import NONE, SYMMETRIC, PairLabel
 from lifelore.experiments.bench.rounds import at_most, row
-from lifelore.experiments.cell_store import write_atomically
-from lifelore.experiments.real_scenes import RealScene, real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes, real_scenes_folder
+from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relation import Relation
-from lifelore.perception.relation_model_file import shipped_model
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_model_file import shipped_model
 from lifelore.perception.scene import object_name
 from lifelore.perception.scene_json import scene_document
 

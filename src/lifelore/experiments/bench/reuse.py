@@ -19,7 +19,8 @@ from lifelore.experiments.bench import reuse_loops as loops
 from lifelore.experiments.bench.reuse_case import HORIZON, NOISE, LargeReserve, Reserve
 from lifelore.experiments.bench.reuse_peers import BOTORCH, MABWISER, BoTorchUCB, Player, installed, mabwiser_ucb1
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
-from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import (
     BeliefEntropy,
     BeliefSampling,
@@ -30,7 +31,6 @@ from lifelore.interaction.selection import (
     SelectionRule,
     choose,
 )
-from lifelore.interaction.user_beliefs import UserBeliefs
 
 SIGNALS = 50
 SIZES = ((30, 50), (68, 50), (100, 50), (300, 50), (1000, 100))

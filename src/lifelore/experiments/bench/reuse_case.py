@@ -7,12 +7,12 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
-from lifelore.domains.surveillance import Surveillance
+from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.experiments.bench import reuse_loops as loops
-from lifelore.interaction.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.gaussian_outcomes import GaussianOutcomes
-from lifelore.interaction.policy_library import PolicyLibrary
-from lifelore.interaction.return_signal import ReturnSignal
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import (
     BeliefEntropy,
     ExpectedImprovement,
@@ -20,7 +20,7 @@ from lifelore.interaction.selection import (
     KnowledgeGradient,
     SelectionRule,
 )
-from lifelore.interaction.signal_table import SignalTable
+from lifelore.interaction.signals.return_signal import ReturnSignal
 
 Array = NDArray[np.float64]
 

@@ -15,7 +15,7 @@ from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.cloud_pairs import Cloud, cloud_pair, names, small_pairs
 from lifelore.experiments.bench.rounds import at_least, at_most, interleaved, paired_ratio, row
 from lifelore.experiments.bench.separator_start import separator_start_seconds
-from lifelore.perception.separator import separate
+from lifelore.perception.separation.separator import separate
 
 
 class Setting(NamedTuple):

@@ -10,7 +10,7 @@ from lifelore.core.errors import LifeloreError
 _FIRST = """
 import time
 import numpy as np
-from lifelore.perception.separator import separate
+from lifelore.perception.separation.separator import separate
 cloud = np.random.default_rng(0).uniform(0, 0.1, (4000, 3))
 started = time.perf_counter()
 found = separate(cloud, cloud + np.array([0.1013, 0, 0]))

@@ -13,11 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
-from lifelore.interaction.outcome_model import LARGEST
+from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.selection.choice import choose
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class Baseline(ABC):

@@ -13,7 +13,7 @@ from lifelore.interaction.baselines.ucb1 import checked_exploration, checked_sca
 from lifelore.interaction.selection.choice import choose
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 REPRESENTATIVES = ("mean", "max")
 

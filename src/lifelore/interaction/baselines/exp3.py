@@ -10,7 +10,7 @@ from lifelore.interaction.baselines.baseline import Baseline
 from lifelore.interaction.baselines.ucb1 import checked_scale, to_unit
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class EXP3(Baseline):

@@ -17,7 +17,7 @@ from lifelore.interaction.baselines.library_moments import library_moments
 from lifelore.interaction.baselines.policy_kernels import performance_kernel, prior_covariance
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 KERNELS = ("performance", "covariance")
 MOST_ROWS = 4

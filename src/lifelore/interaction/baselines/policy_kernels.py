@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 FORMS = ("gaussian", "exponential")
 JITTER = 1e-10

@@ -10,7 +10,7 @@ from lifelore.interaction.baselines.baseline import Baseline, row_of
 from lifelore.interaction.baselines.library_moments import library_moments
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 LEAST = 1e-9
 """Deviation that stands for 0, where a library is certain."""

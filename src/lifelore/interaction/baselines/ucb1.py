@@ -11,7 +11,7 @@ from lifelore.interaction.baselines.baseline import Baseline
 from lifelore.interaction.baselines.library_moments import library_moments
 
 if TYPE_CHECKING:
-    from lifelore.interaction.policy_library import PolicyLibrary
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class UCB1(Baseline):

@@ -11,12 +11,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.information import mutual_information
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
 from lifelore.interaction.selection.support import MASS, check_mass
-from lifelore.interaction.signal_table import SignalTable
 
 
 @dataclass(frozen=True)

@@ -6,8 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, check_generator, tied_shares
 
 

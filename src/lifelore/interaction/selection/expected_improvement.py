@@ -8,8 +8,8 @@ outcomes on a fifth of the surveillance tasks.
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
 
 

@@ -3,8 +3,8 @@
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic
 
 

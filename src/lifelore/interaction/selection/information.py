@@ -8,13 +8,13 @@ S logarithms. Thesis: §4.5.2.2, whose own expression is another (see the errata
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.belief import Array, entropy
-from lifelore.interaction.compiler_start import kernel_pays
+from lifelore.interaction.beliefs.belief import Array, entropy
+from lifelore.interaction.beliefs.compiler_start import kernel_pays
+from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.selection.mixtures import class_mixtures, mixtures
 from lifelore.interaction.selection.rule import in_blocks
 from lifelore.interaction.selection.support import supported_types, truncated
 from lifelore.interaction.selection.type_classes import TypeClasses, type_classes
-from lifelore.interaction.signal_table import SignalTable
 
 _TINY = np.float32(1e-37)
 

@@ -15,12 +15,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
 from lifelore.interaction.selection.support import MASS, check_mass, supported_types
 from lifelore.interaction.selection.type_classes import type_classes
-from lifelore.interaction.signal_table import SignalTable
 
 Candidates = Literal["responses", "all"]
 

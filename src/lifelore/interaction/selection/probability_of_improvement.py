@@ -10,8 +10,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.belief import expected_utility
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
 
 MARGIN_SHARE = 0.02

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.compiler_start import kernel_pays
-from lifelore.interaction.policy_library import PolicyLibrary
+from lifelore.interaction.beliefs.compiler_start import kernel_pays
+from lifelore.interaction.library.policy_library import PolicyLibrary
 
 Array = NDArray[np.float64]
 Variant = Literal["standard", "thesis"]

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.compiler_start import kernel_pays
+from lifelore.interaction.beliefs.compiler_start import kernel_pays
 
 Array = NDArray[np.float64]
 

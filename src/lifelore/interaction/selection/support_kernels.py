@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.core.jit import kernel
+from lifelore.core.compiled.jit import kernel
 
 
 @kernel

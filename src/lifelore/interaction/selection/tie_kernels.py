@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.core.jit import inlined, kernel
+from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.interaction.selection.rule import ROUNDING
 
 TIED = -2

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
-from lifelore.interaction.signal_table import SignalTable
+from lifelore.interaction.finite_signals.signal_table import SignalTable
 
 
 class TypeClasses(NamedTuple):

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
-from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.pairs.directed_label import REVERSED
 from lifelore.perception.peers.peer import Peer, SeenPair
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 TOLERANCE = 0.02
 """Metres by which a thing may start under the top of what carries it, or over the table."""

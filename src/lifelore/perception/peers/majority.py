@@ -6,10 +6,10 @@ from typing import Self
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.directed_label import REVERSED
+from lifelore.perception.pairs.directed_label import REVERSED
 from lifelore.perception.peers.centroid_neighbours import centroid_displacement
 from lifelore.perception.peers.peer import Peer, SeenPair, labelled
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 
 class Majority(Peer):

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.directed_label import mirrored
+from lifelore.perception.pairs.directed_label import mirrored
 from lifelore.perception.peers.peer import Describe, Peer, SeenPair, labelled
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 
 class PairClassifier(Peer):

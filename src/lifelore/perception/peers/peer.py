@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.directed_label import REVERSED
-from lifelore.perception.pair_class import LEAST_CONFIDENCE, pair_class
+from lifelore.perception.pairs.directed_label import REVERSED
+from lifelore.perception.pairs.pair_class import LEAST_CONFIDENCE, pair_class
 from lifelore.perception.peers.seen_pairs import seen_pairs
-from lifelore.perception.relation import Relation
+from lifelore.perception.relations.relation import Relation
 
 Describe = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 """Two clouds of points, (n, 3) and (m, 3), to a vector; always of the same length."""

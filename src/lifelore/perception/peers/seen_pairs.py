@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.perception.contact_settings import ContactSettings
-from lifelore.perception.near_pairs import NearPair, near_pairs, split_objects
-from lifelore.perception.voxel import voxelised
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
 
 SETTINGS = ContactSettings()
 

@@ -1,0 +1,4 @@
+"""Advice to agents with unknown goals (thesis §3.7).
+
+Read in this order: `advice` (the evidence), `behaviour_models`, `goal_model`, `advisor`, `advised_walk`.
+"""

@@ -1,0 +1,143 @@
+"""What experts bound for one goal do: counts by state, and how far it was from there.
+
+Thesis: §3.7.1.3, offline phase. The thesis pools all goals into one prior; kept apart they tell more.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.errors import InputError
+from lifelore.core.learning.known_world import GOAL, goal_distances
+
+
+class Trajectory(NamedTuple):
+    """States passed, (n + 1,) with the one it ended in, and the actions taken in all but that one, (n,)."""
+
+    states: NDArray[np.int64]
+    actions: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Purpose:
+    """The way to a goal, as experts go it.
+
+    Parameters
+    ----------
+    goals : tuple of int
+        States that are this goal; none where goals are pooled.
+    prior : ActionPrior
+        Actions of the experts by state.
+    steps : (n_states,) float64
+        Mean number of steps the experts still had to go, inf in states none of them passed.
+    """
+
+    goals: tuple[int, ...]
+    prior: ActionPrior
+    steps: NDArray[np.float64]
+
+    @property
+    def theta(self) -> NDArray[np.float64]:
+        """The advice, (n_states, n_actions): proportions of the counts without α⁰, zeros where there are none."""
+        counts = self.prior.counts(np.arange(len(self.steps)))
+        total = counts.sum(axis=1, keepdims=True)
+        return np.divide(counts, total, out=np.zeros_like(counts), where=total > 0)
+
+    @classmethod
+    def from_trajectories(
+        cls,
+        trajectories: Iterable[Trajectory],
+        n_states: int,
+        n_actions: int,
+        goals: Sequence[int] = (),
+        alpha0: float = 0.1,
+    ) -> "Purpose":
+        """Count every step; actions of -1 (nothing that has an outcome) are passed over.
+
+        Raises
+        ------
+        InputError
+            A state or an action is out of range, or a trajectory's lengths do not fit.
+        """
+        prior = ActionPrior(n_actions, alpha0)
+        to_go, visits = np.zeros(n_states), np.zeros(n_states)
+        for trajectory in trajectories:
+            states, actions = _checked(trajectory, n_states, n_actions)
+            ahead = np.arange(len(actions), 0, -1)
+            counted = actions >= 0
+            prior.update_trajectory(states[:-1][counted], actions[counted])
+            np.add.at(to_go, states[:-1][counted], ahead[counted])
+            np.add.at(visits, states[:-1][counted], 1)
+        steps = np.divide(to_go, visits, out=np.full(n_states, np.inf), where=visits > 0)
+        return cls(tuple(int(goal) for goal in goals), prior, steps)
+
+    @classmethod
+    def from_best_actions(
+        cls, best: ArrayLike, goals: Sequence[int] = (), steps: ArrayLike | None = None, alpha0: float = 0.1
+    ) -> "Purpose":
+        """Count a policy's best or tied-best actions, (n_states, n_actions) bool; leave goal rows all False.
+
+        `steps` (n_states,) defaults to 0 wherever something is counted: every goal is as far.
+        """
+        best = np.asarray(best, bool)
+        prior = ActionPrior(best.shape[1], alpha0)
+        prior.update(np.arange(len(best)), best)
+        shown = best.any(axis=1)
+        far = np.zeros(len(best)) if steps is None else np.asarray(steps, np.float64)
+        return cls(tuple(int(goal) for goal in goals), prior, np.where(shown, far, np.inf))
+
+    @classmethod
+    def pooled(cls, purposes: Sequence["Purpose"]) -> "Purpose":
+        """The thesis's one prior over all goals; bound for none of them."""
+        shown = np.any([np.isfinite(purpose.steps) for purpose in purposes], axis=0)
+        prior = ActionPrior.merged(purpose.prior for purpose in purposes)
+        return cls((), prior, np.where(shown, 0.0, np.inf))
+
+
+def stitched(purposes: Sequence[Purpose], moves: ArrayLike) -> list[Purpose]:
+    """The same purposes, each known wherever experts of any of them passed.
+
+    In a state that only others' experts passed, the best moves are those of the shortest way over states that
+    experts passed (in either direction); where no expert ever was, all stay silent.
+
+    Parameters
+    ----------
+    purposes : sequence of Purpose
+        Each with its goals.
+    moves : (n_states, n_actions) int
+        The map: where each action leads, -1 where it is refused.
+    """
+    moves = np.asarray(moves, np.int32)
+    trodden = np.any([np.isfinite(purpose.steps) for purpose in purposes], axis=0)
+    trodden[[goal for purpose in purposes for goal in purpose.goals]] = True
+    among = np.where((moves >= 0) & trodden[:, None] & trodden[moves], moves, -1).astype(np.int32)
+    return [_filled(purpose, among) for purpose in purposes]
+
+
+def _filled(purpose: Purpose, moves: NDArray[np.int32]) -> Purpose:
+    place = np.zeros(len(moves), np.int8)
+    place[list(purpose.goals)] = GOAL
+    distance = goal_distances(moves, place)
+    new = ~np.isfinite(purpose.steps) & (distance > 0)
+    nearer = (moves >= 0) & (distance[moves] == distance[:, None] - 1)
+    prior = ActionPrior.merged([purpose.prior])
+    prior.update(np.flatnonzero(new), nearer[new])
+    return Purpose(purpose.goals, prior, np.where(new, distance, purpose.steps))
+
+
+def _checked(trajectory: Trajectory, n_states: int, n_actions: int):
+    states, actions = np.asarray(trajectory.states, np.int64), np.asarray(trajectory.actions, np.int64)
+    if len(states) != len(actions) + 1:
+        raise InputError(
+            f"a trajectory must have one state more than actions, the last where it ended; "
+            f"got {len(states)} states and {len(actions)} actions"
+        )
+    if states.min() < 0 or states.max() >= n_states:
+        raise InputError(f"states must lie in [0, {n_states}), got {states.min()}..{states.max()}")
+    if actions.size and (actions.min() < -1 or actions.max() >= n_actions):
+        raise InputError(f"actions must lie in [0, {n_actions}) or be -1, got {actions.min()}..{actions.max()}")
+    return states, actions

@@ -1,0 +1,4 @@
+"""Features that a prior is conditioned on, and their selection by entropy (thesis §3.5).
+
+Read in this order: `feature_set`, `feature_function`, `counted_features`, `feature_selection`, `uncertainty`.
+"""

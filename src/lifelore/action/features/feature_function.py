@@ -1,0 +1,141 @@
+"""What features are read from: the state, the task, the reward just received, the class of the agent.
+
+    φ(s, τ, r) -> (f_1, …, f_k)
+
+Thesis: §3.3, §3.3.2 ("aspects of the task description, or recent rewards"), §3.7.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.action.features.feature_set import Columns, FeatureSet
+from lifelore.core.errors import InputError, NotFoundError
+
+
+class FeatureFunction(Protocol):
+    """φ(state, task, last reward): a row of feature values for each state, in the order of `features`.
+
+    `states` is (n,) int, `task` whatever the world calls a task, `last_rewards` (n,) float, the reward received on
+    coming to each state (0 at the start of an episode). Pure: equal arguments give equal rows.
+    """
+
+    @property
+    def features(self) -> FeatureSet: ...
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns: ...
+
+
+@dataclass(frozen=True, eq=False)
+class StateFeatures:
+    """Features read from a table with a row for each state, (n_states, n_features) int."""
+
+    features: FeatureSet
+    table: NDArray[np.integer]
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
+        return np.asarray(self.table, np.int64)[np.asarray(states, np.int64).ravel()]
+
+
+@dataclass(frozen=True)
+class TaskFeature:
+    """One feature of the task description: ``of_task(task)`` in [0, size)."""
+
+    name: str
+    size: int
+    of_task: Callable[[Any], int]
+
+    @property
+    def features(self) -> FeatureSet:
+        return FeatureSet((self.name,), (self.size,))
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
+        return np.full((np.asarray(states).size, 1), int(self.of_task(task)), np.int64)
+
+
+@dataclass(frozen=True)
+class LastReward:
+    """The last reward as a class: how many of the rising `edges` it has reached.
+
+    Examples
+    --------
+    >>> LastReward((0.0, 50.0))([4, 4, 4], None, [-10.0, 0.0, 100.0]).ravel().tolist()
+    [0, 1, 2]
+    """
+
+    edges: tuple[float, ...]
+    name: str = "last reward"
+
+    def __post_init__(self) -> None:
+        edges = np.asarray(self.edges, float)
+        if not (np.isfinite(edges).all() and (np.diff(edges) > 0).all()):
+            raise InputError(f"edges must be finite and rise, got {list(self.edges)}")
+
+    @property
+    def features(self) -> FeatureSet:
+        return FeatureSet((self.name,), (len(self.edges) + 1,))
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
+        rewards = np.asarray(last_rewards, float).ravel()
+        return np.searchsorted(np.asarray(self.edges, float), rewards, side="right")[:, None].astype(np.int64)
+
+
+@dataclass(frozen=True)
+class AgentClass:
+    """The class of the agent that acts, one of `classes`: agents of one class share their counts (§3.7)."""
+
+    classes: tuple[str, ...]
+    own: str
+    name: str = "agent class"
+
+    def __post_init__(self) -> None:
+        if self.own not in self.classes:
+            raise NotFoundError(f"agent class must be one of {', '.join(self.classes)}, got '{self.own}'")
+
+    @property
+    def features(self) -> FeatureSet:
+        return FeatureSet((self.name,), (len(self.classes),))
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
+        return np.full((np.asarray(states).size, 1), self.classes.index(self.own), np.int64)
+
+
+@dataclass(frozen=True)
+class JoinedFeatures:
+    """Several feature functions side by side."""
+
+    parts: tuple[FeatureFunction, ...]
+
+    @property
+    def features(self) -> FeatureSet:
+        sets = [part.features for part in self.parts]
+        names = tuple(name for one in sets for name in one.names)
+        return FeatureSet(names, tuple(size for one in sets for size in one.sizes))
+
+    def __call__(self, states: ArrayLike, task: Any, last_rewards: ArrayLike) -> Columns:
+        states = np.asarray(states, np.int64).ravel()
+        rewards = np.broadcast_to(np.asarray(last_rewards, float).ravel(), states.shape)
+        return np.hstack([np.empty((len(states), 0), np.int64)] + [p(states, task, rewards) for p in self.parts])
+
+
+def context_codes(
+    phi: FeatureFunction, states: ArrayLike, task: Any = None, last_rewards: ArrayLike = 0.0
+) -> NDArray[np.int64]:
+    """The contexts of states in a task, (n,) int64: what `ActionPrior` counts and reads.
+
+    Parameters
+    ----------
+    phi : FeatureFunction
+    states : (n,) int
+    task : any, optional
+    last_rewards : (n,) float or one for all
+        Rewards received on coming to each state; 0 at the start of an episode.
+    """
+    states = np.asarray(states, np.int64).ravel()
+    rewards = np.asarray(last_rewards, float).ravel()
+    if rewards.size not in (1, len(states)):
+        raise InputError(f"last_rewards must be one or one for each of {len(states)} states, got {rewards.size}")
+    return phi.features.codes(phi(states, task, np.broadcast_to(rewards, states.shape)))

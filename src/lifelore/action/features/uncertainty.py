@@ -1,0 +1,89 @@
+"""Why a context leaves its actions open: tasks disagree there, or its features are too poor (§3.3.2)."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.features.counted_features import CountedFeatures, pooled_counts
+from lifelore.action.features.feature_set import FeatureSet
+
+REASONS = ("certain", "tasks disagree", "features too poor", "too few counts")
+
+
+@dataclass(frozen=True, eq=False)
+class Uncertainty:
+    """Why each context of a feature set leaves its actions open, told against the full set.
+
+    columns : (m, n_chosen) int64, the contexts
+    share : (m,) P(φ^i), sums to 1
+    entropy : (m,) H[θ_{φ^i}] in bits
+    with_all : (m,) the mean entropy there once all features are known, bits; never more than `entropy`
+    counts_each : (m,) mean counts of a full configuration there
+    reason : (m,) index into `REASONS`
+    """
+
+    features: FeatureSet
+    columns: NDArray[np.int64]
+    share: NDArray[np.float64]
+    entropy: NDArray[np.float64]
+    with_all: NDArray[np.float64]
+    counts_each: NDArray[np.float64]
+    reason: NDArray[np.int64]
+
+    @property
+    def disagreement(self) -> float:
+        """Bits of H_φ that no feature of the full set explains: tasks disagree, or several actions tie."""
+        return float(self.share @ self.with_all)
+
+    @property
+    def poverty(self) -> float:
+        """Bits of H_φ that the left-out features explain; `disagreement` + `poverty` = H_φ."""
+        return float(self.share @ (self.entropy - self.with_all))
+
+    def share_of(self, reason: str) -> float:
+        """Share of all counts that lie in contexts of this reason, one of `REASONS`."""
+        return float(self.share[self.reason == REASONS.index(reason)].sum())
+
+
+def why_uncertain(
+    counted: CountedFeatures, names: Sequence[str], high: float = 0.5, enough: float = 5.0
+) -> Uncertainty:
+    """Whether the entropy is high because tasks disagree or because the features are too poor (§3.3.2).
+
+    A context's entropy splits exactly into what stays once all features are known and what they explain. The
+    larger part is the reason. A full configuration with few counts looks certain whatever is true, so where
+    they average fewer than `enough` the split is not believed: "too few counts".
+
+    Parameters
+    ----------
+    counted : CountedFeatures
+        Over the full set, "the most informative set of observation features".
+    names : sequence of str
+        The features that are chosen.
+    high : float
+        Bits above which a context's actions count as open.
+    enough : float
+        Mean counts of the full configurations within a context, from which the split is believed.
+    """
+    features = counted.features
+    fine_codes, fine = pooled_counts(counted.codes, counted.counts)
+    coarse_of_fine = features.coarser(fine_codes, names)
+    codes, counts = pooled_counts(coarse_of_fine, fine)
+    place = np.searchsorted(codes, coarse_of_fine)
+    total = counts.sum(axis=1)
+    left = np.bincount(place, fine.sum(axis=1) * _row_entropy(fine), len(codes)) / total
+    each = total / np.bincount(place, minlength=len(codes))
+    entropy = _row_entropy(counts)
+    reason = np.where(2 * left >= entropy, 1, 2)
+    reason = np.select([entropy <= high, each < enough], [0, 3], reason)
+    chosen = features.subset(names)
+    share = total / total.sum()
+    return Uncertainty(chosen, chosen.columns(codes), share, entropy, left, each, reason.astype(np.int64))
+
+
+def _row_entropy(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Entropy in bits of each row's proportions, (n,); every row has counts."""
+    share = counts / counts.sum(axis=1, keepdims=True)
+    return -(share * np.log2(np.where(share > 0, share, 1.0))).sum(axis=1)

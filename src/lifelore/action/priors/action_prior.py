@@ -1,0 +1,337 @@
+"""Action priors: how often each action was best in each context, over tasks and policies.
+
+    α_c(a) = Σ_π w(π) U_c^π(a) + α⁰        U = 1 where a is best or tied best under π, else 0
+
+Counts are kept sparse by context code, weights as fixed-point integers, and α⁰ apart from them, so that priors
+of many robots merge exactly in any order. Thesis: §3.2.2, §3.3, Eq. 3.1-3.8.
+"""
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.action.priors.context_index import FEW, ContextIndex
+from lifelore.action.priors.count_rows import SEQUENTIAL, draw_by_proportion, merged_rows, rising, sorted_order
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.metrics import entropy
+from lifelore.core.protocols import Record
+
+MOST_WEIGHT = 1e6
+"""Largest w(π): the counts of 2**23 such policies still fit a 64-bit integer."""
+KIND, VERSION = "action_prior", 1
+ONE = 1 << 20
+"""A weight of 1 as a fixed-point integer: weights keep six decimal digits and sum without rounding."""
+
+BLOCK = 1 << 13
+"""Rows sampled at a time: their numbers stay in the processor's cache."""
+
+MANY = 1 << 16
+"""Contexts from which their counts no longer fit the cache: they are then sampled in the order they lie in."""
+
+FORMS = ("proportion", "dirichlet", "softmax", "support", "tempered")
+"""How counts become probabilities (§3.2.2.1): their proportion (the mean of the Dirichlet), one draw from the
+Dirichlet, a softmax of the counts, uniform over actions ever counted, or the proportion to a power."""
+
+
+class ActionPrior:
+    """Counts of useful actions by context.
+
+    Parameters
+    ----------
+    n_actions : int
+        At least 1.
+    alpha0 : float
+        Pseudo-count α⁰ of every action in every context, > 0; the weight of the uniform policy π₀.
+    key : str
+        What the contexts mean, usually a hash of their definition and the actions. Priors of different
+        keys do not merge.
+
+    Notes
+    -----
+    A context is an int64 code of magnitude at most 2**63 / (n_actions + 1). A context without counts has the
+    uniform distribution in every form but ``dirichlet``, which is drawn around it, far from it where α⁰ is small.
+
+    Examples
+    --------
+    >>> prior = ActionPrior(2, alpha0=0.5)
+    >>> prior.update([7, 7, 9], [[True, False], [True, True], [False, False]])
+    >>> prior.probs([7, 9]).tolist()
+    [[0.625, 0.375], [0.5, 0.5]]
+    """
+
+    def __init__(self, n_actions: int, alpha0: float = 0.1, key: str = "") -> None:
+        if n_actions < 1:
+            raise InputError(f"n_actions must be at least 1, got {n_actions}")
+        if not (alpha0 > 0 and np.isfinite(alpha0)):
+            raise InputError(f"alpha0 must be positive and finite, got {alpha0}")
+        self.n_actions, self.alpha0, self.key = n_actions, float(alpha0), key
+        self._index = ContextIndex(np.empty(0, np.int64))
+        self._counts = np.empty((0, n_actions), np.int64)
+
+    @property
+    def _codes(self) -> NDArray[np.int64]:
+        return self._index.codes
+
+    def __len__(self) -> int:
+        return len(self._codes)
+
+    @property
+    def contexts(self) -> NDArray[np.int64]:
+        """The (n,) sorted codes of contexts with counts."""
+        return self._codes.copy()
+
+    # ---- learning --------------------------------------------------------------------------------
+
+    def update(self, contexts: ArrayLike, best: ArrayLike, weight: float = 1.0) -> None:
+        """Count a policy's best actions (Eq. 3.5, 3.7).
+
+        Parameters
+        ----------
+        contexts : (n,) int
+            Context of each state counted; codes may repeat (§3.3.1: states with one percept pool).
+        best : (n, n_actions) bool
+            Best or tied-best actions of each; a row without any counts nothing. Leave out, or pass as all
+            False, goal rows (where every action ties), completed rows, and states a learnt policy does not
+            know.
+        weight : float
+            w(π) in [0, `MOST_WEIGHT`]; kept to six decimal digits.
+        """
+        contexts, best = np.asarray(contexts, np.int64).ravel(), np.asarray(best, bool)
+        if best.shape != (len(contexts), self.n_actions):
+            raise InputError(
+                f"best must have shape ({len(contexts)}, {self.n_actions}), one row a context, got {best.shape}"
+            )
+        if not 0 <= weight <= MOST_WEIGHT:
+            raise InputError(f"weight must lie in [0, {MOST_WEIGHT:.0f}], got {weight}")
+        # A record's slot is code · n_actions + action, which must not wrap round.
+        largest = (2**63 - 1) // (self.n_actions + 1)
+        if contexts.size and not (-largest <= contexts.min() and contexts.max() <= largest):
+            raise InputError(f"contexts must be codes of magnitude at most {largest}; shorten the hash")
+        worth = round(weight * ONE)
+        counted = np.logical_or.reduce(list(best.T))  # column by column: rows are short
+        if not counted.all():
+            contexts, best = contexts[counted], best[counted]
+        if worth:
+            self._add(contexts, best, worth)
+
+    def update_trajectory(self, contexts: ArrayLike, actions: ArrayLike, weight: float = 1.0) -> None:
+        """Count the actions of a trajectory or demonstration, one for each visit (§3.4.8)."""
+        actions = np.asarray(actions, np.int64).ravel()
+        if actions.size and not (actions.min() >= 0 and actions.max() < self.n_actions):
+            raise InputError(f"actions must lie in [0, {self.n_actions}), got {actions.min()}..{actions.max()}")
+        self.update(contexts, np.eye(self.n_actions, dtype=bool)[actions], weight)
+
+    def merge(self, other: "ActionPrior") -> None:
+        """Add another prior's counts; exact in any order and grouping."""
+        if (other.n_actions, other.key) != (self.n_actions, self.key):
+            raise InputError(
+                f"priors must agree in actions and key, got {self.n_actions} '{self.key}' "
+                f"and {other.n_actions} '{other.key}'"
+            )
+        self._add(other._codes, other._counts)
+
+    def _add(self, codes: NDArray[np.int64], rows: NDArray, worth: int = 1) -> None:
+        """Add `worth` times each row of whole numbers or truths; none may be without any."""
+        if len(codes) >= FEW:
+            codes, self._counts = merged_rows(self._codes, self._counts, codes, rows, worth)
+            self._index = ContextIndex(codes)
+            return
+        place = self._index.places(codes)
+        if (place < 0).any():
+            self._make_room(np.unique(codes[place < 0]))
+            place = self._index.places(codes)
+        np.add.at(self._counts, place, rows * np.int64(worth))
+
+    def _make_room(self, codes: NDArray[np.int64]) -> None:
+        """Rows of zeros for distinct rising codes that have none yet."""
+        at = np.searchsorted(self._codes, codes)
+        self._index = ContextIndex(np.insert(self._codes, at, codes))
+        self._counts = np.insert(self._counts, at, 0, axis=0)
+
+    # ---- reading ---------------------------------------------------------------------------------
+
+    def counts(self, contexts: ArrayLike) -> NDArray[np.float64]:
+        """Weighted counts Σ w U without α⁰, (n, n_actions); zeros where a context has none."""
+        return self._counts_at(self._index.places(np.asarray(contexts, np.int64).ravel()))
+
+    def _counts_at(self, place: NDArray[np.int64]) -> NDArray[np.float64]:
+        if not len(self):
+            return np.zeros((len(place), self.n_actions))
+        result = np.take(self._counts, place, axis=0, mode="clip") / ONE
+        result[place < 0] = 0.0
+        return result
+
+    def unseen(self, contexts: ArrayLike) -> NDArray[np.bool_]:
+        """Which contexts have no counts, (n,) bool; their mean is the unseen rate."""
+        return np.logical_not(self.counts(contexts).any(axis=1))
+
+    def probs(
+        self,
+        contexts: ArrayLike,
+        form: str = "proportion",
+        *,
+        generator: np.random.Generator | None = None,
+        beta: float = 1.0,
+        escape: float = 0.02,
+    ) -> NDArray[np.float64]:
+        """Action probabilities θ_c, (n, n_actions), rows sum to 1.
+
+        Parameters
+        ----------
+        contexts : (n,) int
+        form : {"proportion", "dirichlet", "softmax", "support", "tempered"}
+            See `FORMS`.
+        generator : numpy generator
+            Needed for ``dirichlet``: one draw for each row.
+        beta : float
+            Exponent of ``tempered``, ≥ 0; scale of the counts in ``softmax``.
+        escape : float
+            Mass in [0, 1] that ``support`` spreads over all actions, so that none is ever excluded.
+        """
+        return self._probs_of(self.counts(contexts), form, generator, beta, escape)
+
+    def _probs_of(self, counts, form, generator=None, beta=1.0, escape=0.02) -> NDArray[np.float64]:
+        if not (beta >= 0 and np.isfinite(beta)):
+            raise InputError(f"beta must be finite and at least 0, got {beta}")
+        alpha = counts + self.alpha0
+        match form:
+            case "proportion":
+                mass = alpha
+            case "dirichlet":
+                if generator is None:
+                    raise InputError("form 'dirichlet' draws: pass generator=")
+                # Gammas of a tiny shape underflow to 0; the floor keeps a row from dividing 0 by 0.
+                mass = np.maximum(generator.standard_gamma(alpha), 1e-300)
+            case "softmax":
+                mass = np.exp(beta * (counts - counts.max(axis=1, keepdims=True)))
+            case "support":
+                return self._support(counts > 0, escape)
+            case "tempered":
+                mass = np.exp(beta * np.log(alpha / alpha.max(axis=1, keepdims=True)))
+            case _:
+                raise NotFoundError(f"form must be one of {', '.join(FORMS)}, got '{form}'")
+        return mass / mass.sum(axis=1, keepdims=True)
+
+    def _support(self, counted: NDArray[np.bool_], escape: float) -> NDArray[np.float64]:
+        if not 0 <= escape <= 1:
+            raise InputError(f"escape must lie in [0, 1], got {escape}")
+        counted = counted | ~counted.any(axis=1, keepdims=True)
+        inside = counted / counted.sum(axis=1, keepdims=True)
+        return (1 - escape) * inside + escape / self.n_actions
+
+    def sample(
+        self, contexts: ArrayLike, generator: np.random.Generator, form: str = "proportion", **how: float
+    ) -> NDArray[np.int64]:
+        """One action for each context, (n,) int64, drawn from `probs`."""
+        contexts = np.asarray(contexts, np.int64).ravel()
+        if form == "proportion" and not how and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
+            return self._sample_many(contexts, generator.random(len(contexts)))
+        place = self._index.places(contexts)
+        if form == "dirichlet":
+            probs = self._probs_of(self._counts_at(place), form, generator, **how)
+            return _drawn(probs, generator.random(len(place)))
+        uniform = generator.random(len(place))
+        actions = np.empty(len(place), np.int64)
+        for first in range(0, max(1, len(place)), BLOCK):
+            rows = slice(first, first + BLOCK)
+            actions[rows] = _drawn(self._probs_of(self._counts_at(place[rows]), form, **how), uniform[rows])
+        return actions
+
+    def _sample_many(self, contexts: NDArray[np.int64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+        if len(self) < MANY or rising(contexts):
+            return draw_by_proportion(self._counts, self._index.places(contexts), 1 / ONE, self.alpha0, uniform)
+        order, in_order = sorted_order(np.ascontiguousarray(contexts))
+        actions = np.empty(len(contexts), np.int64)
+        actions[order] = self._sample_many(in_order, uniform[order])
+        return actions
+
+    def mask(self, contexts: ArrayLike, threshold: float = 0.0) -> NDArray[np.bool_]:
+        """Actions whose proportion of the counts exceeds `threshold`, (n, n_actions) bool.
+
+        All True for a context without counts or without such an action. A mask can exclude the best
+        action: measure `exclusion_rate` before relying on one.
+        """
+        counts = self.counts(contexts)
+        total = counts.sum(axis=1, keepdims=True)
+        share = np.divide(counts, total, out=np.zeros_like(counts), where=total > 0)
+        allowed = share > threshold
+        return allowed | ~allowed.any(axis=1, keepdims=True)
+
+    def exclusion_rate(self, contexts: ArrayLike, best: ArrayLike, threshold: float = 0.0) -> float:
+        """Share of contexts whose every best action `mask` excludes; `best` as in `update`."""
+        best = np.asarray(best, np.bool_)
+        counted = np.asarray(best.any(axis=1))
+        kept = np.asarray((self.mask(contexts, threshold) & best).any(axis=1))
+        return float(np.mean(~kept[counted])) if counted.any() else 0.0
+
+    def entropy(self, contexts: ArrayLike) -> NDArray[np.float64]:
+        """Entropy in nats of the counted proportions, (n,); α⁰ takes no part, log |A| where unseen."""
+        counts = self.counts(contexts)
+        total = counts.sum(axis=1, keepdims=True)
+        share = np.divide(counts, total, out=np.full_like(counts, 1 / self.n_actions), where=total > 0)
+        return entropy(share)
+
+    def marginalise(self, coarser: ArrayLike, key: str = "") -> "ActionPrior":
+        """The prior over coarser contexts: `coarser` (len(self),) gives each of `contexts` its new code."""
+        coarser = np.asarray(coarser, np.int64).ravel()
+        if len(coarser) != len(self):
+            raise InputError(f"coarser must have one code for each of {len(self)} contexts, got {len(coarser)}")
+        result = ActionPrior(self.n_actions, self.alpha0, key)
+        result._add(coarser, self._counts)
+        return result
+
+    # ---- keeping ---------------------------------------------------------------------------------
+
+    def fixed_point_counts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Contexts (n,) and counts (n, n_actions) as multiples of 1 / `ONE`: all there is, without rounding."""
+        return self._codes.copy(), self._counts.copy()
+
+    @classmethod
+    def from_fixed_point_counts(
+        cls, contexts: NDArray[np.int64], counts: NDArray[np.int64], alpha0: float = 0.1, key: str = ""
+    ) -> "ActionPrior":
+        """The prior of `fixed_point_counts`; contexts are distinct and rise, and no row of counts is all 0."""
+        prior = cls(counts.shape[1], alpha0, key)
+        prior._index, prior._counts = ContextIndex(contexts.copy()), np.ascontiguousarray(counts.copy())
+        return prior
+
+    def to_record(self, about: Mapping[str, Any] | None = None) -> Record:
+        """The counts as a record that memory adds up; α⁰ is a reader's choice and stays out."""
+        context, action = np.nonzero(self._counts)
+        slots = self._codes[context] * self.n_actions + action
+        return Record(KIND, self.key, VERSION, "add", slots, self._counts[context, action], about or {})
+
+    @classmethod
+    def from_record(cls, record: Record, n_actions: int, alpha0: float = 0.1) -> "ActionPrior":
+        """The prior that a record holds."""
+        if (record.kind, record.version) != (KIND, VERSION):
+            raise InputError(f"record must be {KIND} version {VERSION}, got {record.kind} {record.version}")
+        prior = cls(n_actions, alpha0, record.key)
+        slots, values = record.slots[record.values != 0], record.values[record.values != 0]
+        counts = np.zeros((len(slots), n_actions), np.int64)
+        counts[np.arange(len(slots)), slots % n_actions] = values
+        prior._add(slots // n_actions, counts)
+        return prior
+
+    @classmethod
+    def merged(cls, priors: Iterable["ActionPrior"]) -> "ActionPrior":
+        """A new prior with the counts of all; at least one."""
+        first, *rest = priors
+        total = cls(first.n_actions, first.alpha0, first.key)
+        for prior in (first, *rest):
+            total.merge(prior)
+        return total
+
+
+def _drawn(probs: NDArray[np.float64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
+    """The action of each row (n, n_actions) that a uniform number (n,) falls to."""
+    cum = np.ascontiguousarray(probs.T)
+    for action in range(1, len(cum)):
+        cum[action] += cum[action - 1]
+    drawn = uniform * cum[-1]
+    actions = np.zeros(len(drawn), np.int64)
+    for below in cum[:-1]:
+        actions += drawn >= below
+    return actions

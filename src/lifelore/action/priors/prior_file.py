@@ -1,0 +1,98 @@
+"""An `ActionPrior` as one npz file: two arrays and a JSON text; no pickle; equal priors give equal bytes.
+
+    contexts   (n,) int64, distinct and rising
+    counts     (n, n_actions) int64, Σ w U as multiples of 2^-20, at least 0, no row all 0
+    about      uint8, UTF-8 JSON: format, version, n_actions, alpha0, key, and under `about` what is for people
+
+Reading gives back the same bits. Other programs read it with ``numpy.load``; counts divide by 2^20.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import PackedFormat
+
+FORMAT = PackedFormat("lifelore action prior", 1, "action prior", "save_prior", 2**32)
+
+
+def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
+    """Write a prior; `about` is for people: features, actions, tasks counted, as JSON values.
+
+    Raises
+    ------
+    InputError
+        `about` holds something that is not JSON.
+    StoreError
+        The disk refuses.
+    """
+    content = prior_bytes(prior, about)
+    try:
+        with whole_file(path) as file:
+            file.write(content)
+    except OSError as error:
+        raise StoreError(f"the prior cannot be written to {path}: {error.strerror}") from None
+
+
+def load_prior(path: str | Path) -> ActionPrior:
+    """The prior that `save_prior` wrote, bit for bit.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is none of ours, newer, or damaged.
+    """
+    return prior_from_bytes(_content(path), str(path))
+
+
+def prior_about(path: str | Path) -> dict[str, Any]:
+    """What a file says of itself: format, version, n_actions, alpha0, key and `about`."""
+    return FORMAT.unpack(_content(path), str(path))[0]
+
+
+def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> bytes:
+    """The prior as the bytes of an npz file."""
+    header = {"n_actions": prior.n_actions, "alpha0": prior.alpha0, "key": prior.key, "about": dict(about or {})}
+    contexts, counts = prior.fixed_point_counts()
+    return FORMAT.pack(header, {"contexts": contexts, "counts": counts})
+
+
+def prior_from_bytes(content: bytes, where: str = "the prior") -> ActionPrior:
+    """The prior of `prior_bytes`; `where` is named when it cannot be read."""
+    header, arrays = FORMAT.unpack(content, where)
+    try:
+        contexts, counts = arrays["contexts"], arrays["counts"]
+        n_actions, alpha0, key = header["n_actions"], header["alpha0"], header["key"]
+        if type(n_actions) is not int or type(alpha0) is not float or type(key) is not str:
+            raise ValueError("n_actions, alpha0 and key must be a whole number, a number and a text")
+        _check(contexts, counts, n_actions)
+        return ActionPrior.from_fixed_point_counts(contexts, counts, alpha0, key)
+    except (KeyError, ValueError) as error:
+        raise FORMAT.damaged(where, error) from None
+
+
+def _check(contexts: NDArray[Any], counts: NDArray[Any], n_actions: int) -> None:
+    if contexts.dtype != np.int64 or counts.dtype != np.int64 or contexts.ndim != 1:
+        raise ValueError(f"contexts and counts must be int64, got {contexts.dtype} and {counts.dtype}")
+    if counts.shape != (len(contexts), n_actions):
+        raise ValueError(f"counts must have shape ({len(contexts)}, {n_actions}), got {counts.shape}")
+    if not (contexts[1:] > contexts[:-1]).all():
+        raise ValueError("contexts must be distinct and rise")
+    largest = (2**63 - 1) // (n_actions + 1)
+    if len(contexts) and not (-largest <= contexts[0] and contexts[-1] <= largest):
+        raise ValueError(f"contexts must be of magnitude at most {largest}")
+    if not ((counts >= 0).all() and counts.any(axis=1).all()):
+        raise ValueError("counts must be at least 0, with a positive one in each row")
+
+
+def _content(path: str | Path) -> bytes:
+    try:
+        return Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"the prior {path} cannot be read: {error.strerror}") from None

@@ -1,0 +1,141 @@
+"""Depth-first search whose order of actions is a prior's list of preferences.
+
+Plain depth-first search never enters a state twice and follows the first action of the list as deep as it leads.
+Iterative deepening does the same below a limit that grows by one until it finds a way, which is then a shortest
+one; within one limit a state is entered again only nearer to the start. A prior may also prune: actions whose
+mass lies below a threshold are not tried, and the way may then be missed. Thesis: §3.8.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import TERMINAL, Tables
+
+
+class Preferences(NamedTuple):
+    """Actions in the order in which they are tried.
+
+    order : (n_states, n_actions) int32, a permutation in each row
+    n_tried : (n_states,) int32, how many of them are tried at all, at least 1
+    """
+
+    order: NDArray[np.int32]
+    n_tried: NDArray[np.int32]
+
+
+class Found(NamedTuple):
+    """A finished search: whether the end was found, nodes expanded, and the actions of the way."""
+
+    reached: bool
+    expanded: int
+    actions: NDArray[np.int32]
+
+
+def preferences(probs: NDArray[np.float64], generator: np.random.Generator, prune: float = 0.0) -> Preferences:
+    """The list of each state: likelier actions first, equals in an order drawn anew for every state.
+
+    Parameters
+    ----------
+    probs : (n_states, n_actions) float
+        Action probabilities, e.g. ``ActionPrior.probs`` of the states' contexts; uniform rows give the
+        search without a prior, in random order.
+    generator : numpy generator
+    prune : float
+        In [0, 1]: actions of less mass are left out, but never the likeliest.
+    """
+    probs = np.asarray(probs, np.float64)
+    if probs.ndim != 2 or not probs.shape[1]:
+        raise InputError(f"probs must be (n_states, n_actions), got shape {probs.shape}")
+    if not 0 <= prune <= 1:
+        raise InputError(f"prune must lie in [0, 1], got {prune}")
+    order = np.lexsort((generator.random(probs.shape), -probs), axis=1)
+    kept = (np.take_along_axis(probs, order, axis=1) >= prune).sum(axis=1)
+    return Preferences(order.astype(np.int32), np.maximum(kept, 1).astype(np.int32))
+
+
+def depth_first(tables: Tables, start: int, liked: Preferences) -> Found:
+    """Search from `start` for a terminal move, never entering a state twice.
+
+    A node is expanded when its actions begin to be tried.
+
+    Raises
+    ------
+    InputError
+        The world is not deterministic, or `start` or `liked` do not fit it.
+    """
+    _check(tables, start, liked)
+    return _found(tables, int(start), liked, tables.n_states, shortest=False)
+
+
+def iterative_deepening(tables: Tables, start: int, liked: Preferences, max_depth: int | None = None) -> Found:
+    """Depth-first search below limits of 1, 2, … moves; nodes expanded are summed over all limits.
+
+    Parameters
+    ----------
+    tables, start, liked
+        As in `depth_first`.
+    max_depth : int, optional
+        Last limit tried; default: the number of states, beyond which no shortest way reaches.
+    """
+    _check(tables, start, liked)
+    most = tables.n_states if max_depth is None else max_depth
+    if most < 1:
+        raise InputError(f"max_depth must be at least 1, got {max_depth}")
+    expanded = 0
+    for limit in range(1, most + 1):
+        found = _found(tables, int(start), liked, limit, shortest=True)
+        expanded += found.expanded
+        if found.reached:
+            return found._replace(expanded=expanded)
+    return Found(False, expanded, np.empty(0, np.int32))
+
+
+def _check(tables: Tables, start: int, liked: Preferences) -> None:
+    if tables.outcome_cum.size != 1:
+        raise InputError("depth-first search needs a deterministic world; use tree_search for one of chance")
+    if not 0 <= start < tables.n_states:
+        raise InputError(f"start must lie in [0, {tables.n_states}), got {start}")
+    shape = (tables.n_states, tables.n_actions)
+    if liked.order.shape != shape:
+        raise InputError(f"liked must have an order of shape {shape}, got {liked.order.shape}")
+
+
+def _found(tables: Tables, start: int, liked: Preferences, limit: int, shortest: bool) -> Found:
+    entered = np.full(tables.n_states, limit + 1, np.int64)
+    path = np.empty(limit, np.int32)
+    reached, expanded, length = _descend(
+        tables.next_state, tables.event, liked.order, liked.n_tried, start, limit, shortest, entered, path
+    )
+    return Found(bool(reached), int(expanded), path[:length].copy())
+
+
+@kernel
+def _descend(next_state, event, order, n_tried, start, limit, shortest, entered, path):
+    """Depth-first below `limit` moves; `entered` holds the least depth at which each state was entered."""
+    states = np.empty(limit + 1, np.int64)
+    at = np.zeros(limit + 1, np.int64)
+    states[0], entered[start] = start, 0
+    depth, expanded = 0, 1
+    while depth >= 0:
+        state = states[depth]
+        if at[depth] == n_tried[state] or depth == limit:
+            depth -= 1
+            continue
+        action = order[state, at[depth]]
+        at[depth] += 1
+        path[depth] = action
+        if event[state, action, 0] & TERMINAL:
+            return True, expanded, depth + 1
+        following = next_state[state, action, 0]
+        # Plain search enters once; below a limit, a nearer entrance may reach farther.
+        unseen = entered[following] == limit + 1
+        if unseen or (shortest and depth + 1 < entered[following]):
+            entered[following] = depth + 1
+            depth += 1
+            states[depth], at[depth] = following, 0
+            expanded += depth < limit
+    return False, expanded, 0

@@ -1,0 +1,182 @@
+"""The verb `advise`: steps of agents with unknown goals in, advice out, line by line.
+
+What experts did in the same world says where people go and how; thesis §3.7.
+"""
+
+import os
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from lifelore.action.advice.advice import Watch
+from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
+from lifelore.action.advice.behaviour_models import Behaviour, Tabulated
+from lifelore.action.advice.goal_model import Purpose, Trajectory, stitched
+from lifelore.agent.advise.expert_trajectories import after, goals_of_ends, purposes, trajectories
+from lifelore.agent.advise.step_lines import NO_ACTION, StepLine, read_objects, read_steps, state_number
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
+from lifelore.domains.grids.grid_world import MOVES, GridWorld
+from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
+
+METHODS = ("better", "thesis")
+
+
+@dataclass(frozen=True)
+class AdviseSettings:
+    """Where, by whose example, and how often to advise.
+
+    Parameters
+    ----------
+    world : str
+        A ROS map (YAML), or a world's name and seed, ``"advice:3"``.
+    experts : str
+        File of JSON lines, see `step_lines`.
+    goals : str, optional
+        File of JSON lines ``{"state": …}``; default: where experts' walks ended, near ends taken as one.
+    method : {"better", "thesis"}
+        One goal at a time, dropping those seen; or one prior over all goals (§3.7.1).
+    kappa : float
+        κ in nats.
+    window : int
+        Steps of an agent that are looked back over.
+    share : float, optional
+        Most advised steps of an agent, as a share; default 0.4, and no limit for ``thesis``.
+    cell, robot_radius : float, optional
+        Metres, for maps: 0.5 and 0.2.
+    """
+
+    world: str
+    experts: str
+    goals: str | None = None
+    method: str = "better"
+    kappa: float = 0.5
+    window: int = 300
+    share: float | None = None
+    cell: float | None = None
+    robot_radius: float | None = None
+
+    def __post_init__(self) -> None:
+        if self.method not in METHODS:
+            raise NotFoundError(f"method must be one of {', '.join(METHODS)}, got '{self.method}'")
+
+
+class AdviceDesk:
+    """Answers step by step, for any number of agents at a time.
+
+    Parameters
+    ----------
+    settings : AdviseSettings
+
+    Attributes
+    ----------
+    world : GridWorld
+    goals : list of int
+        States that agents are led to.
+    n_experts : int
+        Walks learnt from.
+    """
+
+    def __init__(self, settings: AdviseSettings) -> None:
+        self.world = world_of(settings)
+        walks = trajectories(read_steps(_lines_of(settings.experts), self.world, settings.experts), self.world)
+        if not walks:
+            raise InputError(f"{settings.experts} must hold at least one step with an action, got none")
+        self.n_experts = len(walks)
+        self.goals = _goals(settings, walks, self.world)
+        self.advisor = _advisor(settings, walks, self.goals, self.world)
+        self._watched: dict[str | int, tuple[Watch, bool]] = {}
+
+    def answer(self, step: StepLine) -> dict[str, Any]:
+        """What to tell the agent where its step has led it; see `advise`."""
+        watch, advised = self._watched.get(step.agent) or (self.advisor.watch(), False)
+        if step.action != NO_ACTION:
+            self.advisor.observe(watch, step.state, step.action, advised)
+        advice = self.advisor.consider(watch, after(self.world, step))
+        self._watched[step.agent] = (watch, advice.advise)
+        return {
+            "agent": step.agent,
+            "advise": advice.advise,
+            "theta": advice.theta.tolist() if advice.theta.any() else None,
+            "p_normal": advice.p_normal,
+            "gain": advice.gain,
+        }
+
+
+def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
+    """Advice for each line ``{"agent", "state", "action"}``, as it comes.
+
+    Yields
+    ------
+    dict
+        ``agent``; ``advise``, whether it should be told now; ``theta``, the probabilities of the moves to tell it
+        where it is after its step (north, south, east, west), None where no expert ever was; ``p_normal``,
+        P(M | H) of the experts' models; ``gain`` in nats.
+
+    Raises
+    ------
+    InputError
+        A file or line breaks its rule: the message says which line.
+    NotFoundError
+        The world or a file does not exist.
+    """
+    desk = AdviceDesk(settings)
+    for step in read_steps(lines, desk.world, name):
+        yield desk.answer(step)
+
+
+def world_of(settings: AdviseSettings) -> GridWorld:
+    """The world of a map, or of a name and a seed."""
+    if settings.world.endswith((".yaml", ".yml")) or os.sep in settings.world:
+        return world_from_settings(WorldSettings("building", settings.world, settings.cell, settings.robot_radius))
+    domain, _, seed = settings.world.partition(":")
+    if not seed.isdecimal() and ":" in settings.world:
+        raise InputError(f"world must be a map's YAML, or NAME:SEED with a whole number, got '{settings.world}'")
+    if domain not in domain_names():
+        raise NotFoundError(f"world must be a map's YAML or one of {', '.join(domain_names())}, got '{domain}'")
+    return world_from_settings(
+        WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
+    )
+
+
+def _lines_of(path: str) -> Iterator[str]:
+    if not Path(path).is_file():
+        raise NotFoundError(f"file '{path}' does not exist; give a file of JSON lines")
+    try:
+        with open(path, encoding="utf-8") as file:
+            yield from file
+    except OSError as error:
+        raise StoreError(f"cannot read {path}: {error.strerror}") from None
+
+
+def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) -> list[int]:
+    if settings.goals is None:
+        return goals_of_ends(walks, world)
+    goals = []
+    for number, document in read_objects(_lines_of(settings.goals), settings.goals):
+        try:
+            goals.append(state_number(document, world))
+        except InputError as error:
+            raise InputError(f"{settings.goals} line {number}: {error}") from None
+    if not goals:
+        raise InputError(f"{settings.goals} must name at least one goal, got none")
+    return sorted(set(goals))
+
+
+def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int], world: GridWorld) -> Advisor:
+    if settings.method == "thesis":
+        chosen = AdviceSettings(
+            settings.kappa, settings.window, share=1.0 if settings.share is None else settings.share
+        )
+        return Advisor([Purpose.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
+    share = BETTER.share if settings.share is None else settings.share
+    chosen = replace(BETTER, kappa=settings.kappa, window=settings.window, share=share)
+    ways = stitched(purposes(walks, goals, world), world.neighbour)
+    return Advisor(ways, lost_people(world, [way.goals[0] for way in ways]), chosen)
+
+
+def lost_people(world: GridWorld, goals: list[int]) -> list[Behaviour | list[Behaviour]]:
+    """Models of who does not know the way: the explorers, and a bug for each of the goals."""
+    aimless = [Tabulated(explorer_probs(world, explorer)) for explorer in EXPLORERS if explorer != "bug"]
+    return [*aimless, [Tabulated(explorer_probs(world, "bug", goal)) for goal in goals]]

@@ -1,0 +1,100 @@
+"""Steps of agents as JSON lines: ``{"agent": …, "state": …, "action": …}``, one a line.
+
+``state`` is a state's number or its cell ``[row, column]``; ``action`` a number or a name of the world's moves,
+tried in that state; null: the agent is there and tries nothing (the end of its errand, or the wish for advice).
+"""
+
+import json
+from collections.abc import Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
+
+NO_ACTION = -1
+
+
+class StepLine(NamedTuple):
+    """An agent tried an action in a state; action -1: none."""
+
+    agent: str | int
+    state: int
+    action: int
+
+
+def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[StepLine]:
+    """The steps, as they come; empty lines are passed over.
+
+    Raises
+    ------
+    InputError
+        A line is no such object; the message says `name` and which line.
+    """
+    for number, document in read_objects(lines, name):
+        try:
+            yield StepLine(_agent(document), state_number(document, world), _action(document))
+        except InputError as error:
+            raise InputError(f"{name} line {number}: {error}") from None
+
+
+def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[str, Any]]]:
+    """Line numbers from 1 and the objects in them."""
+    for number, line in enumerate(_decoded(lines, name), 1):
+        if not line.strip():
+            continue
+        try:
+            document = json.loads(line)
+        except ValueError:
+            raise InputError(
+                f"{name} line {number}: not JSON, got {line.strip()[:60]!r}; one object a line"
+            ) from None
+        if not isinstance(document, dict):
+            raise InputError(f"{name} line {number}: must be an object {{…}}, got {line.strip()[:60]!r}")
+        yield number, document
+
+
+def _decoded(lines: Iterable[str], name: str) -> Iterator[str]:
+    # A file is decoded by the block, so that the line of a wrong byte is not known.
+    try:
+        yield from lines
+    except UnicodeDecodeError:
+        raise InputError(f"{name} must be JSON lines in UTF-8, got bytes that are not") from None
+
+
+def _agent(document: dict[str, Any]) -> str | int:
+    agent = document.get("agent")
+    if isinstance(agent, bool) or not isinstance(agent, (str, int)):
+        raise InputError(f"agent must be a name or a number, got {agent!r}")
+    return agent
+
+
+def state_number(document: dict[str, Any], world: GridWorld) -> int:
+    """The state that an object speaks of."""
+    state = document.get("state")
+    if _is_whole(state) and 0 <= state < world.n_states:  # type: ignore[operator]
+        return int(state)  # type: ignore[arg-type]
+    if isinstance(state, list) and len(state) == 2 and all(map(_is_whole, state)):
+        row, column = state
+        if 0 <= row < world.shape[0] and 0 <= column < world.shape[1] and world.state_of[row, column] >= 0:
+            return int(world.state_of[row, column])
+    raise InputError(
+        f"state must be a number in [0, {world.n_states}) or a free cell [row, column] of this world "
+        f"({world.shape[0]} rows, {world.shape[1]} columns), got {state!r}"
+    )
+
+
+def _action(document: dict[str, Any]) -> int:
+    action = document.get("action")
+    if action is None and "action" in document:
+        return NO_ACTION
+    if isinstance(action, str) and action in MOVE_NAMES:
+        return MOVE_NAMES.index(action)
+    if _is_whole(action) and 0 <= action < len(MOVE_NAMES):  # type: ignore[operator]
+        return int(action)  # type: ignore[arg-type]
+    raise InputError(f"action must be 0 to 3, {', '.join(MOVE_NAMES)}, or null, got {action!r}")
+
+
+def _is_whole(value: Any) -> bool:
+    return isinstance(value, (int, np.integer)) and not isinstance(value, bool)

@@ -1,0 +1,272 @@
+"""`live_in`: the agent lives in a world of the user's own, met only through the `World` protocol."""
+
+import hashlib
+import os
+import time
+import uuid
+from collections.abc import Hashable
+from contextlib import nullcontext
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from threading import Event
+
+import numpy as np
+
+from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
+from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
+from lifelore.agent.external_world.task import ForeignLearner, ForeignTask, Guidance
+from lifelore.agent.live.summary import plain, third
+from lifelore.agent.live.task_result import Stopped
+from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.metrics import mean_estimate
+from lifelore.core.protocols import Progress, Record, World
+from lifelore.core.streams import stream
+from lifelore.memory import Memory, open_memory
+
+AGENTS = ("lore", "scratch")
+MEASURES = ("first_return", "mean_return", "final_return")
+
+
+def live_in(
+    world: World,
+    *,
+    tasks: int = 20,
+    episodes: int = 200,
+    max_steps: int = 1000,
+    memory: str | Path | None = None,
+    robot: str = "robot",
+    key: str | None = None,
+    seed: int = 0,
+    discount: float = 0.95,
+    learning_rate: float = 0.5,
+    epsilon: float = 1.0,
+    epsilon_decay: float = 0.98,
+    epsilon_floor: float = 0.01,
+    alpha0: float = 0.1,
+    weight: float = 1.0,
+    form: str = "proportion",
+    ties: str = "uniform",
+    progress: Progress | None = None,
+    stop: Event | None = None,
+) -> dict:
+    """Live through `tasks` tasks of a world, `scratch` beside on the same random streams; keep what was learnt.
+
+    Two agents learn each task by ε-greedy Q-learning from nothing (Q = 0). `scratch` explores uniformly; `lore`
+    by the action prior that its life has taught it so far: after each task the learnt policy's best actions
+    in the states that it holds to be worth something (value > 0) are counted by context. So a world whose
+    rewards are never positive teaches nothing (``n_contexts`` stays 0): shift them.
+
+    Parameters
+    ----------
+    world : World
+        ``lifelore.bridges.gymnasium_world.GymnasiumWorld``, or an object of your own; it is not closed.
+    tasks, episodes, max_steps : int
+        Tasks to live through now, episodes of each, steps of an episode at most; ≥ 1.
+    memory : str or Path, optional
+        SQLite file or ``postgresql://`` URL in which to go on from earlier lives and to keep this one, one
+        transaction a task. None keeps nothing on disk and starts from nothing, other than in `live`.
+    robot : str
+        Name under which memory keeps this life.
+    key : str, optional
+        What the contexts mean; lives with one key and number of actions share their lore. Default:
+        ``world.context_key``; `GymnasiumWorld` has one, and its documentation says what that cannot see.
+        Not needed without a memory.
+    seed : int
+        Episodes' seeds and the agents' choices.
+    discount : float
+        γ in [0, 1].
+    learning_rate, epsilon, epsilon_decay, epsilon_floor : float
+        As in `QLearning`.
+    alpha0, weight, form, ties : float, float, str, str
+        As in `LifeSettings`.
+    progress : callable, optional
+        Called as ``progress(done, total, label)`` after each task.
+    stop : threading.Event, optional
+        Set it to end early: the task in progress is given up, all finished ones are kept.
+
+    Returns
+    -------
+    dict
+        The JSON document of `live`, with null for what a foreign world does not tell (map, goals, optimum,
+        collisions, steps and episodes to 80 %). Returns are discounted; ``final_return`` is the mean of
+        a task's last tenth of episodes, ``mean_return`` of all; ``reached``: an episode was ever terminated with a
+        positive reward. ``summary`` compares over the last third of the tasks; ``n_contexts``: contexts that
+        the prior knows at the end.
+
+    Raises
+    ------
+    InputError
+        A setting breaks its rule; a reward that is not finite; a context without a stable code (see
+        `lifelore.agent.external_world.context_code.context_code`); no key for a memory.
+    StoreError
+        Memory refuses; what was learnt before stays in it.
+    """
+    began = time.perf_counter()
+    _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
+    _check_world(world)
+    learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
+    key = _key_of(world, key, needed=memory is not None)
+    settings = _Settings(tasks, robot, key, seed, discount, learning, Guidance(alpha0, weight, form, ties))
+    with open_memory(memory) if memory is not None else nullcontext() as kept:
+        life = _ForeignLife(world, settings, kept)
+        life.run(progress, stop or Event())
+        return life.report(time.perf_counter() - began)
+
+
+@dataclass(frozen=True)
+class _Settings:
+    """What a life is told, checked; the whole numbers are checked before `QLearning` takes two of them."""
+
+    tasks: int
+    robot: str
+    key: str | None
+    seed: int
+    discount: float
+    learning: QLearning
+    guidance: Guidance
+
+    def __post_init__(self) -> None:
+        if not 0 <= self.discount <= 1:
+            raise InputError(f"discount must lie in [0, 1], got {self.discount}")
+        if not self.robot.strip():
+            raise InputError("robot must have a name, got an empty one")
+
+    def to_dict(self) -> dict:
+        own = {name: getattr(self, name) for name in ("tasks", "robot", "key", "discount")}
+        return own | asdict(self.learning) | asdict(self.guidance)
+
+
+def _check_whole(**settings: int) -> None:
+    for name, value in settings.items():
+        if not isinstance(value, int) or not 1 <= value <= 10**9:
+            raise InputError(f"{name} must be a whole number from 1 to 10^9, got {value}")
+
+
+def _check_world(world: World) -> None:
+    if not isinstance(world, World):
+        raise InputError(
+            "world must have n_actions, reset, step and context (lifelore.core.protocols.World), got "
+            f"{type(world).__name__}; wrap an environment of Gymnasium in GymnasiumWorld"
+        )
+    if not 1 <= world.n_actions <= MOST_ACTIONS:
+        raise InputError(f"world.n_actions must lie in [1, {MOST_ACTIONS}], got {world.n_actions}")
+
+
+def _key_of(world: World, key: str | None, needed: bool) -> str | None:
+    if key is None and needed:
+        key = getattr(world, "context_key", None)
+        if not key:
+            raise InputError(
+                f"key must say what the contexts of {type(world).__name__} mean before a memory keeps them, "
+                'got none; pass key="..."'
+            )
+    elif key is not None and not key.strip():
+        raise InputError("key must say what the contexts mean, got an empty one; leave it out for the world's own")
+    return key
+
+
+class _ForeignLife:
+    """The life under way: what it has learnt, and the memory that keeps it."""
+
+    def __init__(self, world: World, settings: _Settings, memory: Memory | None) -> None:
+        self.world, self.settings, self.memory = world, settings, memory
+        self.name = str(getattr(world, "name", type(world).__name__))
+        self.prior = _recalled(world.n_actions, settings, memory)
+        self.tasks_before = memory.tasks(settings.robot) if memory else 0
+        self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
+        self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
+
+    def run(self, progress: Progress | None, stop: Event) -> None:
+        total = self.settings.tasks
+        for done in range(total):
+            index = self.tasks_before + done
+            try:
+                self._live_task(index, done, stop)
+            except Stopped:
+                break
+            if progress:
+                progress(done + 1, total, f"task {index}")
+
+    def _live_task(self, index: int, seq: int, stop: Event) -> None:
+        task = self._task(index, stop)
+        learners = {name: self._learner(name, index) for name in AGENTS}
+        agents = {name: task.live(learner) for name, learner in learners.items()}
+        news = self._learn(learners["lore"])
+        if self.memory:
+            about = {"index": index, "world": self.name}
+            records = [news] if len(news.slots) else []
+            self.memory.contribute(self.settings.robot, records, process=self.process, seq=seq, task=about)
+        for learner in learners.values():
+            self.states.update(learner.q)
+        self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})
+
+    def _task(self, index: int, stop: Event) -> ForeignTask:
+        learning, discount = self.settings.learning, self.settings.discount
+        drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episodes)
+        return ForeignTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
+
+    def _learner(self, name: str, index: int) -> ForeignLearner:
+        # Equal streams of their own choices make the comparison of the two a paired one.
+        own = stream(self.settings.seed, "task", index, "own")
+        prior = self.prior if name == "lore" else None
+        return ForeignLearner(self.world.n_actions, prior, self.settings.guidance, own)
+
+    def _learn(self, learner: ForeignLearner) -> Record:
+        """Count a finished task's policy (Eq. 3.5, 3.7); the contribution."""
+        news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.prior.key)
+        news.update(*learner.best(), self.settings.guidance.weight)
+        self.prior.merge(news)
+        return news.to_record({"prior": "foreign", "world": self.name, "means": self.settings.key})
+
+    def report(self, seconds: float) -> dict:
+        location = self.memory.location if self.memory else None
+        return {
+            "domain": self.name,
+            "map": None,
+            "n_states": len(self.states),
+            "n_contexts": len(self.prior),
+            "seed": self.settings.seed,
+            "settings": self.settings.to_dict() | {"memory": location},
+            "tasks": self.finished,
+            "summary": _summarise(self.finished) if self.finished else {},
+            "memory": {"tasks_before": self.tasks_before, "tasks_after": self.tasks_before + len(self.finished)},
+            "seconds": round(seconds, 3),
+        }
+
+
+def _recalled(n_actions: int, settings: _Settings, memory: Memory | None) -> ActionPrior:
+    """What memory holds of these contexts and as many actions, or nothing yet."""
+    scope = hashlib.sha256(repr(("foreign", settings.key, n_actions)).encode()).hexdigest()[:32]
+    known = memory.recall(PRIOR_KIND, scope, PRIOR_VERSION) if memory else None
+    if known is None:
+        return ActionPrior(n_actions, settings.guidance.alpha0, scope)
+    return ActionPrior.from_record(known, n_actions, settings.guidance.alpha0)
+
+
+def _summarise(tasks: list[dict]) -> dict:
+    last = third(tasks, "last")
+    return {
+        "lore_vs_scratch": {
+            "jumpstart": _difference(last, "first_return"),
+            "mean_return_difference": _difference(last, "mean_return"),
+            "final_return_difference": _difference(last, "final_return"),
+            "never_reached": {who: sum(not t["agents"][who]["reached"] for t in last) for who in AGENTS},
+        },
+        "agents": {
+            name: {which: _means(third(tasks, which), name) for which in ("first", "last")} for name in AGENTS
+        },
+    }
+
+
+def _difference(tasks: list[dict], measure: str) -> dict:
+    """The paired difference of lore and scratch, with their means beside."""
+    values = np.array([[task["agents"][name][measure] for name in AGENTS] for task in tasks], float)
+    raw = dict(zip(AGENTS, values.mean(axis=0).tolist(), strict=True))
+    return plain(mean_estimate(values[:, 0] - values[:, 1])) | {"raw": raw}
+
+
+def _means(tasks: list[dict], name: str) -> dict:
+    return {m: plain(mean_estimate([task["agents"][name][m] for task in tasks])) for m in MEASURES}

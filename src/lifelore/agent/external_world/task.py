@@ -1,0 +1,148 @@
+"""One task lived in a foreign world: the Q-learning of `lifelore.core.learning.q_learning`, step by step.
+
+Nothing is known of such a world but what happens in it, so states and contexts get their rows as they are met,
+and returns are observed, not computed.
+"""
+
+import math
+from collections import defaultdict
+from collections.abc import Hashable
+from dataclasses import dataclass
+from threading import Event
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import FORMS, ActionPrior
+from lifelore.action.priors.exploration import TIES, TRACE
+from lifelore.agent.external_world.context_code import ContextCodes
+from lifelore.agent.live.task_result import Stopped
+from lifelore.core.compiled.random_state import random_state
+from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.learning.q_learning import choose, cumulative
+from lifelore.core.planning.planning import learnt_best_actions
+from lifelore.core.protocols import World
+
+LOOK_EVERY = 200
+"""Steps between looks at the stop sign."""
+
+
+@dataclass(frozen=True)
+class Guidance:
+    """How counts guide exploration: α⁰, w(π), the form of the prior, and how the greedy step breaks ties."""
+
+    alpha0: float = 0.1
+    weight: float = 1.0
+    form: str = "proportion"
+    ties: str = "uniform"
+
+    def __post_init__(self) -> None:
+        for name, known in {"form": FORMS, "ties": TIES}.items():
+            if getattr(self, name) not in known:
+                raise InputError(f"{name} must be one of {', '.join(known)}, got '{getattr(self, name)}'")
+        # The prior has the rules for its own numbers.
+        ActionPrior(1, self.alpha0).update([], np.empty((0, 1)), self.weight)
+
+
+class ForeignLearner:
+    """One agent on one task: Q and the prior's rows for what it has met.
+
+    q : state to (1, n_actions) values, 0 at first
+    visited : the (state, context code) pairs in which it acted, in the order met
+    """
+
+    def __init__(self, n_actions: int, prior: ActionPrior | None, guidance: Guidance, own: np.random.Generator):
+        self.n_actions, self.prior, self.guidance, self.generator = n_actions, prior, guidance, own
+        self.random = random_state(own)
+        self.q: dict[Hashable, NDArray[np.float64]] = defaultdict(lambda: np.zeros((1, n_actions)))
+        self.visited: dict[tuple[Hashable, int], None] = {}
+        self._rows: dict[int, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
+
+    def act(self, state: Hashable, code: int, epsilon: float) -> int:
+        """The ε-greedy action (Alg. 2 line 5)."""
+        if code not in self._rows:
+            self._rows[code] = self._rows_of(code)
+        explore, ties = self._rows[code]
+        self.visited[state, code] = None
+        return choose(self.q[state], 0, explore, ties, 0, epsilon, self.random)
+
+    def _rows_of(self, code: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Cumulative exploration probabilities and tie weights, both (1, n_actions)."""
+        probs = np.full((1, self.n_actions), 1 / self.n_actions)
+        if self.prior is not None:
+            probs = self.prior.probs([code], self.guidance.form, generator=self.generator)
+        ties = np.maximum(probs, TRACE) if self.guidance.ties == "prior" else np.ones_like(probs)
+        return cumulative(probs), ties
+
+    def value(self, state: Hashable) -> float:
+        """max_a Q(s, a)."""
+        return float(self.q[state].max())
+
+    def best(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Contexts (n,) of the states visited, and the best actions there; rows not worth anything are False."""
+        codes = np.array([code for _, code in self.visited], np.int64)
+        q = np.array([self.q[state][0] for state, _ in self.visited]).reshape(-1, self.n_actions)
+        return codes, learnt_best_actions(q)
+
+
+@dataclass(frozen=True)
+class ForeignTask:
+    """One task that both agents are given, with the same seeds of its episodes, one for each."""
+
+    world: World
+    codes: ContextCodes
+    learning: QLearning
+    discount: float
+    index: int
+    seeds: list[int]
+    stop: Event
+
+    def live(self, learner: ForeignLearner) -> dict:
+        """Learn the task; its numbers as plain data.
+
+        Raises
+        ------
+        InputError
+            A reward that is not finite, a context without a code.
+        Stopped
+            The stop sign is set.
+        """
+        epsilons = self.learning.schedule(self.discount).epsilon.tolist()
+        episodes = [
+            self._episode(learner, seed, epsilon) for seed, epsilon in zip(self.seeds, epsilons, strict=True)
+        ]
+        returns = [value for value, _ in episodes]
+        last = returns[-max(1, len(returns) // 10) :]
+        return {
+            "first_return": returns[0],
+            "reached": any(reached for _, reached in episodes),
+            "final_return": sum(last) / len(last),
+            "mean_return": sum(returns) / len(returns),
+            **dict.fromkeys(("collisions", "steps_to_80", "episodes_to_80")),
+        }
+
+    def _episode(self, learner: ForeignLearner, seed: int, epsilon: float) -> tuple[float, bool]:
+        """One episode: its discounted return, and whether it was terminated with a positive reward."""
+        state, reward, total, factor = self.world.reset(self.index, seed), 0.0, 0.0, 1.0
+        for step in range(self.learning.max_steps):
+            if step % LOOK_EVERY == 0 and self.stop.is_set():
+                raise Stopped
+            code = self.codes[self.world.context(state, reward)]
+            action = learner.act(state, code, epsilon)
+            following, reward, terminated, truncated = self.world.step(action)
+            self._check_reward(reward, action)
+            future = 0.0 if terminated else self.discount * learner.value(following)
+            q = learner.q[state]
+            q[0, action] += self.learning.learning_rate * (reward + future - q[0, action])
+            total, factor, state = total + factor * reward, factor * self.discount, following
+            if terminated or truncated:
+                return total, terminated and reward > 0
+        return total, False
+
+    def _check_reward(self, reward: float, action: int) -> None:
+        if not math.isfinite(reward):
+            raise InputError(
+                f"reward must be a finite number, got {reward} for action {action} in task {self.index}; "
+                "mend the world's step"
+            )

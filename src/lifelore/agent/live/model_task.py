@@ -1,0 +1,63 @@
+"""One task lived by the model-based learner."""
+
+from threading import Event
+
+import numpy as np
+
+from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
+from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
+from lifelore.core.learning.known_value import KnownValue
+from lifelore.core.learning.known_world import Model, best_known_actions, known_policy
+from lifelore.core.learning.model_learning import Explorer, Manner, Perceived, check_deterministic, explore
+from lifelore.core.mdp import Tables
+
+NEAR = 1e-9
+"""Share of the optimal return within which the exact value decides about the threshold; far more than rounding
+can move the value that is kept up to date."""
+
+
+def live_model_task(
+    tables: Tables,
+    optimal: float,
+    discount: float,
+    model: Model,
+    perceived: Perceived,
+    manner: Manner,
+    explorer: Explorer,
+    episodes: int,
+    max_steps: int,
+    stop: Event,
+) -> TaskResult:
+    """Explore until the greedy policy is worth 80 % of `optimal` or the cap is met; `model` learns in place."""
+    check_deterministic(tables)
+    curve = new_curve(episodes)
+    known = KnownValue(tables, model, explorer, discount)
+    value, total, trace = 0.0, 0, []
+    while value < THRESHOLD * optimal:
+        if stop.is_set():
+            raise Stopped
+        steps = explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, CHECK_EVERY)
+        if steps == 0:
+            break
+        total += steps
+        value = known.update()
+        if abs(value - THRESHOLD * optimal) < NEAR * optimal:
+            value = known.exact()
+        trace.append((total, value / optimal))
+    reached = value >= THRESHOLD * optimal
+    episode, begun, running = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP]), explorer.running[0]
+    if begun:
+        curve.returns[episode], curve.steps[episode] = running, begun
+    return TaskResult(
+        first_return=float(curve.returns[0]),
+        collisions=int(curve.collisions.sum()),
+        steps_to_80=total if reached else episodes * max_steps,
+        episodes_to_80=episode + int(begun > 0) if reached else episodes,
+        reached=bool(reached),
+        final_return=known.exact(),
+        policy=known_policy(model, explorer.place),
+        best=best_known_actions(model, explorer.place),
+        trace=np.array(trace, float).reshape(-1, 2),
+        curve=first_episodes(curve, episode + int(begun > 0)),
+        complete=episode,
+    )

@@ -1,0 +1,81 @@
+"""A learnt model of a grid as a record of memory, and back; and the same place after it changed.
+
+Slots are cells, not state numbers, and cells are counted from the frame's lower left corner, so that a model still
+fits when a changed map numbers its states anew or its picture has grown:
+slot = cell · (actions + 1) + action holds the cell a move leads to, and action = n_actions holds the percept.
+"""
+
+import hashlib
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.learning.known_world import UNKNOWN, Model, blank_model
+from lifelore.core.protocols import Record
+from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
+
+KIND, VERSION = "transitions", 1
+COLUMN_BITS = 20
+SAME_PLACE = 0.8
+"""A remembered grid of the same frame is the same place, changed, where at least this share of its remembered
+cells still shows what it showed. Two different buildings on one frame agree in far fewer: by chance about a
+third, most of it open floor."""
+
+
+def cells_of(world: GridWorld) -> NDArray[np.int64]:
+    """One number for each state's cell, (n_states,): 2²⁰ · row from the bottom + column."""
+    return ((world.shape[0] - 1 - world.cells[:, 0].astype(np.int64)) << COLUMN_BITS) | world.cells[:, 1]
+
+
+def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
+    """The state in each of `cells`, -1 where this world has none."""
+    own = cells_of(world)
+    order = np.argsort(own)
+    place = np.minimum(np.searchsorted(own[order], cells), len(own) - 1)
+    return np.where(own[order][place] == cells, order[place], -1)
+
+
+def frame_key(world: GridWorld) -> str:
+    """Hash of all that two versions of one place share: frame, actions, settings; not the grid nor its size."""
+    parts = (world.name, world.frame, MOVE_NAMES, sorted(world.about.items()))
+    return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
+
+
+def model_table(world: GridWorld, model: Model) -> NDArray[np.int64]:
+    """(n_states, n_actions + 1): cells that moves lead to, then the percept; UNKNOWN where not known."""
+    cells = cells_of(world)
+    targets = np.where(model.target >= 0, cells[model.target], UNKNOWN)
+    return np.column_stack([targets, model.percept])
+
+
+def to_record(world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64]) -> Record:
+    """What is known otherwise than `before`, as a record in which the newest wins."""
+    width = table.shape[1]
+    state, column = np.nonzero(table != before)
+    slots = cells_of(world)[state] * width + column
+    order = np.argsort(slots)
+    about = {"world": world.name, "states": world.n_states, "frame": frame_key(world), "shape": list(world.shape)}
+    return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
+
+
+def from_record(world: GridWorld, record: Record | None) -> Model:
+    """The model that a record holds of this world; what no longer has a place in it is left out."""
+    model = blank_model(world.n_states, world.neighbour.shape[1])
+    if record is None:
+        return model
+    width = model.target.shape[1] + 1
+    state, column = states_in(world, record.slots // width), record.slots % width
+    known = (state >= 0) & (record.values >= 0)
+    moves, percepts = known & (column < width - 1), known & (column == width - 1)
+    model.target[state[moves], column[moves]] = states_in(world, record.values[moves])
+    model.percept[state[percepts]] = record.values[percepts]
+    return model
+
+
+def agreement(world: GridWorld, record: Record) -> float:
+    """Share of the record's cells that still show what they showed, in [0, 1]."""
+    width = world.neighbour.shape[1] + 1
+    percepts = (record.slots % width == width - 1) & (record.values >= 0)
+    state = states_in(world, record.slots[percepts] // width)
+    same = (state >= 0) & (world.percepts[state] == record.values[percepts])
+    return float(same.mean()) if same.size else 0.0

@@ -1,0 +1,189 @@
+"""The verb `perceive`: a cloud in, what bears on what out; as plain data, and as files for planners and people."""
+
+import os
+import time
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
+
+from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Progress
+from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception.clouds.label_rule import PARTS_NOTICE
+from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
+from lifelore.perception.relations.relation_model_file import load_model, shipped_model
+from lifelore.perception.scene_json import DIGITS, scene_document
+from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+from lifelore.perception.segmentation.table_frame import Up, to_scene
+
+Source = str | os.PathLike[str] | NDArray | PointCloud
+"""A cloud that `read_cloud` reads, or one that was read before."""
+STAGES = ("reading", "finding objects", "finding contacts and relations", "drawing conclusions", "writing")
+
+
+@dataclass(frozen=True)
+class PerceiveSettings:
+    """How a cloud is read and judged.
+
+    Parameters
+    ----------
+    up : "table", "z", or (3,) numbers
+        Where up is in the cloud's frame, see `to_scene`.
+    units : {"m", "mm"}
+    labels : {"auto", "plain", "parts"}
+        How a label field becomes objects, see `label_rule`.
+    segmentation : SegmentationSettings, optional
+        How a cloud without labels is cut, default by distance; a cloud with labels is refused where it is given.
+    model : str, optional
+        A file of ``learn-relations --out``, or the name of a model in memory; default the shipped one.
+    memory : str, optional
+        Where a named model is kept.
+
+    Raises
+    ------
+    InputError
+        `memory` is given without the name of a model in it.
+    """
+
+    up: Up = "table"
+    units: str = "m"
+    labels: str = "auto"
+    segmentation: SegmentationSettings | None = None
+    model: str | None = None
+    memory: str | None = None
+
+    def __post_init__(self) -> None:
+        if self.memory is not None and (self.model is None or is_file_name(self.model)):
+            raise InputError(
+                "memory is where a model kept under a name is looked up, and"
+                f" {'none is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
+            )
+
+
+def is_file_name(model: str) -> bool:
+    """Whether a model so called is a file, not a name in memory."""
+    return model.endswith(MODEL_SUFFIX)
+
+
+DEFAULT = PerceiveSettings()
+NO_FILES = SceneFiles()
+
+
+def perceive(
+    source: Source,
+    settings: PerceiveSettings = DEFAULT,
+    *,
+    pddl: str | None = None,
+    dot: str | None = None,
+    plot: str | None = None,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> dict[str, Any]:
+    """Perceive a scene.
+
+    Parameters
+    ----------
+    source : path, (n, 3) array or PointCloud
+        A cloud of any kind that `read_cloud` knows; one that was read already (from a rosbag, say) is taken as
+        it is.
+    settings : PerceiveSettings
+    pddl, dot, plot : str, optional
+        Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
+        a picture (``NAME.png``).
+    progress : Progress, optional
+        Called as each of the `STAGES` begins.
+    notice : callable, optional
+        Called with one line for a person where labels were guessed to be parts of objects.
+
+    Returns
+    -------
+    dict
+        The document of `scene_json`; contact points are those of pairs that bear on or stand beside each other.
+
+    Raises
+    ------
+    InputError
+        The cloud, a setting or a file name breaks its rule, or two files are one.
+    NotFoundError
+        Memory has no model of that name, or there is no memory.
+    StoreError
+        A file cannot be written.
+    """
+    files = SceneFiles(pddl, dot, plot)
+    check_scene_files(files, files_read([source], settings))
+    return perceived(source, model_of(settings), settings, files, progress, notice)
+
+
+def perceived(
+    source: Source,
+    model: RelationClassifier,
+    settings: PerceiveSettings = DEFAULT,
+    files: SceneFiles = NO_FILES,
+    progress: Progress | None = None,
+    notice: Callable[[str], None] | None = None,
+) -> dict[str, Any]:
+    """As `perceive`, with the model of `model_of` at hand and files that were checked before."""
+    began = time.perf_counter()
+    _tell(progress, 0)
+    cloud = _read(source, settings)
+    _tell(progress, 1)
+    labelled = to_scene(cloud, settings.up, settings.segmentation)
+    _tell(progress, 2)
+    # A skeleton shows where a thing is used: near pairs that do not bear on each other have no place in it.
+    scene = perceived_scene(labelled, model).bearing
+    _tell(progress, 3)
+    document = scene_document(scene)
+    document["seconds"] = round(time.perf_counter() - began, DIGITS)
+    _tell(progress, 4)
+    write_scene_files(files, scene, document)
+    if notice is not None and cloud.from_parts and settings.labels == "auto":
+        notice(f"the labels {PARTS_NOTICE}")
+    return document
+
+
+def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
+    """The files that are read, the model's among them: none of them may be written over."""
+    read = [*sources, settings.model if settings.model and is_file_name(settings.model) else None]
+    return [path for path in read if isinstance(path, str | os.PathLike)]
+
+
+def _tell(progress: Progress | None, stage: int) -> None:
+    if progress is not None:
+        progress(stage, len(STAGES), STAGES[stage])
+
+
+def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
+    if not isinstance(source, PointCloud):
+        source = read_cloud(source, units=settings.units, labels=settings.labels)
+    if settings.segmentation is not None and source.is_labelled:
+        raise InputError(
+            "segmentation (--segment) cuts a cloud without labels, and this one has some: leave it out"
+        )
+    return source
+
+
+def model_of(settings: PerceiveSettings) -> RelationClassifier:
+    """The relation model that the settings name; a memory is only looked into."""
+    if settings.model is None:
+        return shipped_model()
+    if is_file_name(settings.model):
+        return load_model(settings.model)
+    from lifelore.agent.perceive.learn_relations import recall_relations
+    from lifelore.memory import open_memory
+    from lifelore.memory.location import locate
+
+    place = locate(settings.memory)
+    if isinstance(place, Path) and not os.path.exists(place):
+        raise NotFoundError(
+            f"memory has no relation model '{settings.model}': there is no memory at {place};"
+            " `lifelore learn-relations` trains one, and a model in a file is called NAME.npz"
+        )
+    with open_memory(settings.memory, read_only=True) as memory:
+        return recall_relations(memory, settings.model)

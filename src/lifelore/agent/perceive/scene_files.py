@@ -1,0 +1,131 @@
+"""What a perceived scene is written to: a planning problem with its domain, a graph, a picture."""
+
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from lifelore.core.errors import InputError, StoreError
+from lifelore.perception.scene import Scene
+
+NAME = "{name}"
+"""In the name of a file: where the name of the cloud's own file stands."""
+
+
+@dataclass(frozen=True)
+class SceneFiles:
+    """Files to write; those left out are not.
+
+    Parameters
+    ----------
+    pddl : str, optional
+        A planning problem; its domain is written beside it, see `domain_path`.
+    dot : str, optional
+        A graph for Graphviz.
+    plot : str, optional
+        A picture, ``NAME.png``.
+    """
+
+    pddl: str | None = None
+    dot: str | None = None
+    plot: str | None = None
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """All that are written, the domain among them."""
+        domain = None if self.pddl is None else domain_path(self.pddl)
+        return tuple(path for path in (self.pddl, domain, self.dot, self.plot) if path is not None)
+
+
+def domain_path(problem: str) -> str:
+    """Where the domain of a problem file is written: beside it, as ``NAME-domain.pddl``."""
+    path = Path(problem)
+    return str(path.with_name(f"{path.stem}-domain.pddl")) if path.name else ""
+
+
+def named_files(name: str, pddl: str | None, dot: str | None, plot: str | None) -> SceneFiles:
+    """The files of one cloud: `NAME` in each is replaced by the name of the cloud's file without its suffix.
+
+    >>> named_files("clouds/cup.pcd", None, "graphs/{name}.dot", None).dot
+    'graphs/cup.dot'
+    """
+    stem = Path(name).stem
+    return SceneFiles(*(None if path is None else path.replace(NAME, stem) for path in (pddl, dot, plot)))
+
+
+def check_names(files: SceneFiles) -> None:
+    """Refuse one file for many clouds."""
+    for option, path in vars(files).items():
+        if path is not None and NAME not in path:
+            raise InputError(
+                f"{option} names one file for many clouds, '{path}': write {NAME} where each cloud's own name"
+                f" shall stand, such as --{option} {NAME}.{'png' if option == 'plot' else option}"
+            )
+
+
+def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str]]) -> None:
+    """Refuse, before the work, files that cannot be written, or would overwrite one another or the `sources`.
+
+    Raises
+    ------
+    InputError
+        Its line names the file.
+    """
+    check_files_of_scenes([files], sources)
+
+
+def check_files_of_scenes(many: Iterable[SceneFiles], sources: Sequence[str | os.PathLike[str]]) -> None:
+    """As `check_scene_files`, for the files of several scenes."""
+    many = [files for files in many if files.paths]
+    for files in many:
+        for path in files.paths:
+            _check_writable(path)
+        if files.plot is not None and not files.plot.lower().endswith(".png"):
+            raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
+    taken = {os.path.realpath(path) for path in sources if many}
+    for path in (path for files in many for path in files.paths):
+        if os.path.realpath(path) in taken:
+            raise InputError(
+                f"'{path}' would be written over: the cloud, the model, plot, dot, pddl and the domain beside it"
+                " must be different files"
+            )
+        taken.add(os.path.realpath(path))
+
+
+def _check_writable(path: str) -> None:
+    if not path or os.path.isdir(path):
+        raise InputError(f"the output must be a file, got '{path}', which is {'a folder' if path else 'empty'}")
+    folder = os.path.dirname(path) or "."
+    if not os.path.isdir(folder) or not os.access(folder, os.W_OK):
+        raise InputError(f"'{path}' cannot be written: its folder must exist and be writable")
+
+
+def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> None:
+    """Write a scene, and its document of `scene_json` for the picture.
+
+    Raises
+    ------
+    StoreError
+        The disk refuses.
+    """
+    if files.pddl is not None:
+        from lifelore.perception.reasoning.planning_problem import DOMAIN, planning_problem
+
+        _write_text(files.pddl, planning_problem(scene.relations, scene.objects))
+        _write_text(domain_path(files.pddl), DOMAIN)
+    if files.dot is not None:
+        from lifelore.perception.scene_graph import to_dot
+
+        _write_text(files.dot, to_dot(scene))
+    if files.plot is not None:
+        from lifelore.figures.scene_picture import draw_scene
+        from lifelore.figures.style import save_figure
+
+        save_figure(draw_scene(scene.cloud, document), files.plot)
+
+
+def _write_text(path: str, text: str) -> None:
+    try:
+        Path(path).write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -1,0 +1,86 @@
+"""The verb behind `lifelore scenes`: simulated scenes of things on a table, written as a folder of clouds."""
+
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.protocols import Progress
+from lifelore.core.relations import CORE_RELATIONS
+from lifelore.domains.tabletop.quota import is_missed
+from lifelore.domains.tabletop.scene_folder import SceneFolder
+from lifelore.domains.tabletop.settings import TabletopSettings
+from lifelore.domains.tabletop.tabletop import scenes
+
+
+def make_scenes(
+    n: int,
+    out: str | Path,
+    seed: int = 0,
+    *,
+    mix: Mapping[str, float] | None = None,
+    camera: str = "kinect",
+    shapes: str = "training",
+    arrangement: str = "mixed",
+    meshes: Sequence[str] = (),
+    jobs: int = 1,
+    progress: Progress | None = None,
+) -> dict[str, Any]:
+    """Draw `n` scenes and write them to the folder `out`.
+
+    Parameters
+    ----------
+    n : int
+        At least 1.
+    out : str or Path
+        A folder that holds no scenes yet.
+    seed : int
+        The same seed gives the same files, for any number of jobs.
+    mix, camera, shapes, arrangement, meshes
+        As in `TabletopSettings`.
+    jobs : int
+        Processes.
+    progress : Progress, optional
+        Called after each scene.
+
+    Returns
+    -------
+    dict
+        ``scenes``, ``out``, ``seconds``, ``attempts`` (draws, those for scenes refused for the mix included),
+        ``pairs`` (of things, by relation), ``mix`` (their shares), ``mix_missed`` (whether they are off the wanted
+        ones by more than `tabletop_quota` allows) and ``with_table`` (by relation).
+
+    Raises
+    ------
+    InputError, MissingExtraError, StoreError
+        An argument breaks its rule; MuJoCo is missing; the disk refuses.
+    """
+    if n < 1 or jobs < 1:
+        raise InputError(f"n and jobs must be at least 1, got {n} and {jobs}")
+    settings = TabletopSettings(
+        arrangement=arrangement, mix=mix, camera=camera, shapes=shapes, meshes=tuple(meshes)
+    )
+    start, folder = time.perf_counter(), SceneFolder(out)
+    pairs: Counter[str] = Counter()
+    with_table: Counter[str] = Counter()
+    attempts = 0
+    for done, scene in enumerate(scenes(n, seed, settings, jobs), start=1):
+        folder.write(scene)
+        attempts += scene.attempts
+        for label in scene.truth:
+            (with_table if label.b == TABLE else pairs)[label.relation] += 1
+        if progress is not None:
+            progress(done, n, scene.name)
+    return {
+        "scenes": n,
+        "out": str(out),
+        "seconds": round(time.perf_counter() - start, 3),
+        "attempts": attempts,
+        "pairs": {relation: pairs[relation] for relation in CORE_RELATIONS},
+        "mix": {relation: round(pairs[relation] / max(pairs.total(), 1), 4) for relation in CORE_RELATIONS},
+        "mix_missed": mix is not None and is_missed([pairs[relation] for relation in CORE_RELATIONS], mix),
+        "with_table": {relation: with_table[relation] for relation in CORE_RELATIONS},
+    }

@@ -1,0 +1,185 @@
+"""The verb `reuse fit`: a log becomes a policy library, its types named in the log or found from outcomes."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.library_from_log import TypedRows, library_of
+from lifelore.agent.reuse.log import ReuseLog, read_log
+from lifelore.agent.reuse.study import ACTIVE, KIND, PILOT, RETIRED, VERSION, Study, check_study_name
+from lifelore.agent.reuse.types_of_users import typed_rows
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.memory import Memory
+
+MODELS = ("auto", "gaussian", "student-t", "categorical")
+KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change")
+"""Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
+CONTEXT_USERS = 5.0
+"""Users of everybody's prior that are mixed into each context's."""
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """How a log becomes a study.
+
+    Parameters
+    ----------
+    name : str
+        Of the study.
+    model : {"auto", "gaussian", "student-t", "categorical"}
+        Of outcomes; ``auto``: categorical for at most 10 different values, else gaussian.
+    types : int, optional
+        How many types to look for where the log names none; default by the Bayesian criterion.
+    control, incumbent, rule, explore, change
+        As in `Study`.
+    seed : int
+        For finding types.
+    """
+
+    name: str = "default"
+    model: str = "auto"
+    types: int | None = None
+    control: float = 0.1
+    incumbent: str | None = None
+    rule: str = "information-directed"
+    explore: float = 0.0
+    change: float = 0.0
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        check_study_name(self.name)
+        if self.model not in MODELS:
+            raise NotFoundError(f"model must be one of {', '.join(MODELS)}, got '{self.model}'")
+        if self.types is not None and self.types < 1:
+            raise InputError(f"types must be at least 1, got {self.types}")
+
+
+def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | None = None) -> dict[str, Any]:
+    """Learn a study from logs and keep it in memory in place of an earlier one of its name.
+
+    Users' decisions in memory stay; beliefs follow the new library. Policies retired stay so, and those that the
+    logs no longer know are retired; a pilot that the logs know becomes active.
+
+    Parameters
+    ----------
+    paths : sequence of paths
+        See `reuse_log`.
+
+    Returns
+    -------
+    dict
+        Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log does
+        not name: their outcomes told it, or did not), ``pending``; ``users``; ``model``; ``types_found``,
+        ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy); ``policies``
+        (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs without an outcome,
+        which got the policy's outcomes on all types); ``contexts``; ``control``, ``incumbent``, ``rule``,
+        ``explore``, ``change``;
+        ``changed``: settings that are not what they were in an earlier fit, by name what they were.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        A log or setting breaks its rule; memory is as it was.
+    """
+    settings = settings or FitSettings()
+    log = read_log(paths)
+    generator = stream(settings.seed, "reuse types", settings.name)
+    typed = typed_rows(log, settings.model, settings.types, generator)
+    library, counts = library_of(log, typed, settings.model)
+    earlier = _earlier(memory, settings.name)
+    study = _study(log, library, typed, settings, dict(earlier.get("states", {})))
+    study.keep(memory)
+    return _document(study, log, typed, counts) | {"changed": _changed(study, earlier)}
+
+
+def _study(
+    log: ReuseLog, library: PolicyLibrary, typed: TypedRows, settings: FitSettings, earlier: dict[str, str]
+) -> Study:
+    known = {policy: RETIRED if earlier.get(policy) == RETIRED else ACTIVE for policy in library.policies}
+    # What the logs do not know cannot be chosen; it goes, unless it still waits for its first outcomes.
+    gone = {policy: state for policy, state in earlier.items() if policy not in known}
+    states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
+    if ACTIVE not in states.values():
+        raise InputError("the logs must hold a policy that is not retired, got none")
+    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)), "found": typed.found}
+    return Study(
+        settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
+        settings.incumbent, settings.rule, settings.explore, settings.change, fitted,
+    )  # fmt: skip
+
+
+def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """Prior over types in each context, from its users and a few of everybody's."""
+    of_user = log.of_users(log.contexts)
+    counts: dict[str, NDArray[np.float64]] = {}
+    for user, type_ in typed.users(log):
+        if user in of_user:
+            counts.setdefault(of_user[user], CONTEXT_USERS * prior)[type_] += 1
+    return {context: count / count.sum() for context, count in sorted(counts.items())}
+
+
+def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
+    """What the study was until now, empty where it is new; its library need not be readable."""
+    record = memory.recall(KIND, name, VERSION)
+    return record.about if record else {}
+
+
+def _changed(study: Study, earlier: Mapping[str, Any]) -> dict[str, Any]:
+    """Settings that are another than before, and what they were."""
+    names = [name for name in KEPT_SETTINGS if name in earlier]
+    return {name: earlier[name] for name in names if earlier[name] != getattr(study, name)}
+
+
+def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.float64]) -> dict[str, Any]:
+    library = study.library
+    mean = library.performance.mean
+    members = Counter(type_ for _, type_ in typed.users(log))
+    active = [library.index_of_policy(policy) for policy in study.active]
+    return {
+        "study": study.name,
+        "rows": len(typed.rows),
+        "pending": log.pending,
+        "guessed": typed.guessed,
+        "left_out": len(log) - len(typed.rows),
+        "users": len(set(log.users)),
+        "model": library.performance.kind,  # type: ignore[attr-defined]
+        "types_found": typed.found,
+        "criteria": list(typed.criteria),
+        "types": [
+            {
+                "name": name,
+                "users": members[number],
+                "prior": float(library.prior[number]),
+                "best": library.policies[active[int(mean[number, active].argmax())]],
+            }
+            for number, name in enumerate(library.types)
+        ],
+        "policies": [
+            {"name": policy, "state": state, "mean": _overall(study, policy)}
+            for policy, state in sorted(study.states.items())
+        ],
+        "means": mean.tolist(),
+        "outcomes": counts.astype(int).tolist(),
+        "borrowed": int((counts == 0).sum()),
+        "contexts": sorted(study.contexts),
+        "control": study.control,
+        "incumbent": study.incumbent,
+        "rule": study.rule,
+        "explore": study.explore,
+        "change": study.change,
+    }
+
+
+def _overall(study: Study, policy: str) -> float | None:
+    """Expected outcome of a policy for a user of whom nothing is known."""
+    if policy not in study.library.policies:
+        return None
+    column = study.library.performance.mean[:, study.library.index_of_policy(policy)]
+    return float(study.library.prior @ column)

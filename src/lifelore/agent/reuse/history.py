@@ -1,0 +1,169 @@
+"""What happened with one user: decisions and outcomes, as memory keeps them, and the belief that follows.
+
+Memory keeps the evidence, not the belief. A belief is worked out from the decisions in their order whenever it is
+asked for, so it is the same bit for bit however late and in which order outcomes came, whether or not a process
+died in between, and it follows a library that was fitted anew.
+"""
+
+import hashlib
+import re
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.study import Study
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Record
+from lifelore.interaction.beliefs.belief import log_prior, update
+from lifelore.interaction.reuse.evidence import surprise_of
+from lifelore.memory import Memory
+
+KIND, VERSION = "reuse_user", 1
+FIELDS = 8
+"""Slots a decision: those of `_POLICY` and after; the last one is free."""
+_POLICY, _PROBABILITY, _CONTROL, _CHOSEN, _ATTEMPT, _OUTCOME, _ENDED = range(7)
+
+
+@dataclass(frozen=True)
+class Decision:
+    """One choice for one user.
+
+    number : from 0
+    policy : str, or None where no fit or log has named it
+    probability : of the policy, at that moment
+    control : whether the user was held out then
+    chosen, ended : seconds since 1970; `ended` is None while the outcome is not known
+    attempt : tells it from a forgotten decision of the same number
+    outcome : float, or None while not known
+    """
+
+    number: int
+    policy: str | None
+    probability: float
+    control: bool
+    chosen: int
+    attempt: int
+    outcome: float | None = None
+    ended: int | None = None
+
+
+@dataclass(frozen=True)
+class History:
+    """All decisions for one user, the first one first."""
+
+    study: str
+    key: str
+    user: str
+    context: str | None
+    decisions: tuple[Decision, ...]
+
+    @property
+    def robot(self) -> str:
+        """Under which name memory keeps it; not the user's, for that name outlives forgetting."""
+        return robot_of(self.study, self.key)
+
+    def identifier(self, decision: Decision) -> str:
+        """What the outcome is given by later: ``KEY-NUMBER``, or ``KEY-NUMBER.ATTEMPT``."""
+        return f"{self.key}-{decision.number}" + (f".{decision.attempt}" if decision.attempt else "")
+
+    def record_of(self, decision: Decision) -> Record:
+        """What a choice adds."""
+        fields = {
+            _POLICY: policy_number(decision.policy or ""), _PROBABILITY: _bits(decision.probability),
+            _CONTROL: int(decision.control), _CHOSEN: decision.chosen, _ATTEMPT: decision.attempt,
+        }  # fmt: skip
+        return self._record(decision.number, fields)
+
+    def outcome_record(self, decision: Decision, outcome: float, ended: int) -> Record:
+        """What an outcome adds."""
+        return self._record(decision.number, {_OUTCOME: _bits(outcome), _ENDED: ended})
+
+    def _record(self, number: int, fields: dict[int, int]) -> Record:
+        slots = np.array([FIELDS * number + field for field in fields], np.int64)
+        values = np.array(list(fields.values()), np.int64)
+        about = {"study": self.study, "user": self.user, "context": self.context}
+        return Record(KIND, f"{self.study}/{self.key}", VERSION, "newest", slots, values, about)
+
+
+def robot_of(study: str, key: str) -> str:
+    """The contributor's name of a user."""
+    return f"reuse {study}: {key}"
+
+
+def user_key(study: str, user: str) -> str:
+    """16 hexadecimal digits that stand for a user of a study."""
+    return hashlib.sha256(f"{study}\x1f{user}".encode()).hexdigest()[:16]
+
+
+def policy_number(policy: str) -> int:
+    """A number that stands for a policy's name in records, the same in every memory."""
+    return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
+
+
+def parse_identifier(identifier: str) -> tuple[str, int, int]:
+    """Key, number and attempt of a decision's identifier; InputError where it is none."""
+    found = re.fullmatch(r"([0-9a-f]{16})-(\d{1,9})(?:\.(\d{1,9}))?", identifier)
+    if not found:
+        raise InputError(f"decision must be what `reuse choose` printed (KEY-NUMBER), got {identifier[:60]!r}")
+    return found[1], int(found[2]), int(found[3] or 0)
+
+
+def open_history(memory: Memory, study: Study, key: str, user: str = "") -> History:
+    """What memory holds of a user, empty where it knows nothing; `user` is believed only then."""
+    record = memory.recall(KIND, f"{study.name}/{key}", VERSION)
+    if record is None or not record.slots.size:
+        return History(study.name, key, user, None, ())
+    names = {policy_number(policy): policy for policy in study.states}
+    cells = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
+    numbers = sorted({slot // FIELDS for slot in cells})
+    decisions = (_decision(number, cells, names) for number in numbers if FIELDS * number + _POLICY in cells)
+    about = record.about
+    return History(study.name, key, about["user"], about.get("context"), tuple(decisions))
+
+
+def histories(memory: Memory, study: Study) -> list[History]:
+    """All users of a study that had a decision, sorted by name."""
+    start = f"{study.name}/"
+    keys = [key.removeprefix(start) for key, version, _ in memory.keys(KIND) if key.startswith(start)]
+    return sorted((open_history(memory, study, key) for key in keys), key=lambda one: one.user)
+
+
+def log_belief(study: Study, history: History) -> tuple[NDArray[np.float64], float]:
+    """The user's belief before the next decision, (n_types,) logs, and its surprise, see `evidence`.
+
+    A decision without an outcome, or with a policy the library does not know, says nothing; types may change
+    after it all the same.
+    """
+    belief, surprise = log_prior(study.prior_of(history.context)), 0.0
+    index = {policy: number for number, policy in enumerate(study.library.policies)}
+    for decision in history.decisions:
+        if decision.outcome is not None and decision.policy in index:
+            likelihood = study.library.signal.log_likelihood(index[decision.policy], decision.outcome)
+            belief, evidence = update(belief, likelihood)
+            surprise += surprise_of(float(evidence))
+        belief = study.dynamics.step(belief)
+    return belief, surprise
+
+
+def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Decision:
+    said = {field: cells.get(FIELDS * number + field) for field in range(7)}
+    outcome = said[_OUTCOME]
+    return Decision(
+        number,
+        names.get(said[_POLICY] or 0),
+        _number(said[_PROBABILITY] or 0),
+        bool(said[_CONTROL]),
+        said[_CHOSEN] or 0,
+        said[_ATTEMPT] or 0,
+        None if outcome is None else _number(outcome),
+        said[_ENDED],
+    )
+
+
+def _bits(number: float) -> int:
+    return int(np.float64(number).view(np.int64))
+
+
+def _number(bits: int) -> float:
+    return float(np.int64(bits).view(np.float64))

@@ -1,0 +1,199 @@
+"""The verb `reuse report`: what choosing by belief is worth, against those held out, as numbers, picture and log.
+
+The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
+Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (the normal
+one from more than `MANY` users on).
+"""
+
+import csv
+import io
+import json
+import warnings
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lifelore.agent.reuse.history import Decision, History, histories, log_belief
+from lifelore.agent.reuse.study import Study
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import StoreError
+from lifelore.core.metrics import mean_estimate
+from lifelore.memory import Memory
+
+COLUMNS = (
+    "user", "policy", "outcome", "context", "time", "probability", "group", "decision", "number", "outcome_time",
+)  # fmt: skip
+"""Of the log of decisions, which `reuse fit` reads again."""
+LONGEST_CURVE = 60
+MANY = 1000
+"""Users up to which means are resampled; of more the normal interval says the same, and memory stays small."""
+LEAST_USERS = 3
+"""Users behind a point of a curve, or it is left out."""
+
+
+def report(
+    memory: Memory, study: Study, out: str | Path | None = None, log: str | Path | None = None
+) -> dict[str, Any]:
+    """Compare those chosen for by belief with those held out.
+
+    Parameters
+    ----------
+    out : folder, optional
+        Gets ``report.json`` and ``report.png``.
+    log : file, optional
+        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty.
+
+    Returns
+    -------
+    dict
+        ``study``; ``decisions``, ``pending``; ``personal`` and ``control``: users and mean outcome (None without a
+        user) each as {"value", "median", "ci95", "n"}; ``uplift``: {"value", "ci95", "n"}, personal less control;
+        ``policies``: in the control group each policy's mean outcome over users, fair where it draws at random;
+        ``regret``: what the policy of the largest expectation under the user's last belief would have brought
+        more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome at each
+        decision.
+
+    Raises
+    ------
+    StoreError
+        The disk refuses.
+    """
+    known = [history for history in histories(memory, study) if history.decisions]
+    document = _document(study, known)
+    if log is not None:
+        _write(Path(log), _log_text(study, known))
+    if out is not None:
+        _write_folder(Path(out), document)
+    return document
+
+
+def _document(study: Study, known: list[History]) -> dict[str, Any]:
+    decisions = [decision for history in known for decision in history.decisions]
+    groups = {
+        name: [history for history in known if _ended(history, control)]
+        for name, control in (("personal", False), ("control", True))
+    }
+    means = {
+        name: [_mean(_ended(history, name == "control")) for history in group] for name, group in groups.items()
+    }
+    return {
+        "study": study.name,
+        "decisions": len(decisions),
+        "pending": sum(decision.outcome is None for decision in decisions),
+        "personal": _estimate(means["personal"]),
+        "control": _estimate(means["control"]),
+        "control_gets": study.incumbent or "each policy alike",
+        "uplift": _difference(means["personal"], means["control"]),
+        "policies": _policies(study, groups["control"]),
+        "regret": {
+            name: _estimate([_regret(study, history, name == "control") for history in group])
+            for name, group in groups.items()
+        },
+        "by_decision": _by_decision(groups),
+    }
+
+
+def _ended(history: History, control: bool) -> list[Decision]:
+    """Decisions of one group whose outcome is known; a new share of control may move a user between groups."""
+    return [one for one in history.decisions if one.outcome is not None and one.control == control]
+
+
+def _mean(decisions: Iterable[Decision]) -> float:
+    return float(np.mean([one.outcome for one in decisions if one.outcome is not None]))
+
+
+def _estimate(values: Sequence[float]) -> dict[str, Any] | None:
+    if not len(values):
+        return None
+    if len(values) <= MANY:
+        return mean_estimate(values).to_dict()
+    mean, half = float(np.mean(values)), 1.96 * float(np.std(values, ddof=1)) / len(values) ** 0.5
+    ci95 = [mean - half, mean + half] if np.ptp(values) > 0 else None
+    return {"value": mean, "median": float(np.median(values)), "ci95": ci95, "n": len(values)}
+
+
+def _difference(first: Sequence[float], second: Sequence[float]) -> dict[str, Any] | None:
+    """Difference of means with Welch's interval, if there are users and spread enough for one."""
+    if not first or not second:
+        return None
+    ci95 = None
+    if min(len(first), len(second)) >= LEAST_USERS and np.ptp(first) + np.ptp(second) > 0:
+        from scipy.stats import ttest_ind
+
+        interval = ttest_ind(first, second, equal_var=False).confidence_interval(0.95)  # type: ignore[attr-defined]
+        ci95 = [float(interval.low), float(interval.high)]
+    return {"value": float(np.mean(first) - np.mean(second)), "ci95": ci95, "n": [len(first), len(second)]}
+
+
+def _policies(study: Study, control: list[History]) -> list[dict[str, Any]]:
+    rows = []
+    for policy in sorted(study.states):
+        met = [[one for one in _ended(history, True) if one.policy == policy] for history in control]
+        means = [_mean(decisions) for decisions in met if decisions]
+        rows.append({"name": policy, "state": study.states[policy], "outcome": _estimate(means)})
+    return rows
+
+
+def _regret(study: Study, history: History, control: bool) -> float:
+    """Mean over decisions of what the best policy under the last belief is expected to bring more."""
+    belief = np.exp(log_belief(study, history)[0])
+    expected = dict(zip(study.library.policies, belief @ study.library.performance.mean, strict=True))
+    best = max(expected[policy] for policy in study.active)
+    lost = [best - expected[one.policy] for one in _ended(history, control) if one.policy in expected]
+    return float(np.mean(lost)) if lost else 0.0
+
+
+def _by_decision(groups: dict[str, list[History]]) -> list[dict[str, Any]]:
+    points = []
+    for number in range(LONGEST_CURVE):
+        point: dict[str, Any] = {"decision": number + 1}
+        for name, group in groups.items():
+            ended = [
+                one.outcome for history in group for one in _ended(history, name == "control")
+                if one.number == number
+            ]  # fmt: skip
+            point[name] = _estimate(ended) if len(ended) >= LEAST_USERS else None  # type: ignore[arg-type]
+        if point["personal"] or point["control"]:
+            points.append(point)
+    return points
+
+
+def _log_text(study: Study, known: list[History]) -> str:
+    text = io.StringIO()
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(COLUMNS)
+    for history in known:
+        for one in history.decisions:
+            outcome = "" if one.outcome is None else repr(one.outcome)
+            group = "control" if one.control else "personal"
+            writer.writerow([
+                history.user, one.policy or "", outcome, history.context or "", one.chosen, repr(one.probability),
+                group, history.identifier(one), one.number, "" if one.ended is None else one.ended,
+            ])  # fmt: skip
+    return text.getvalue()
+
+
+def _write_folder(folder: Path, document: dict[str, Any]) -> None:
+    from lifelore.figures.reuse_report import draw_reuse_report
+    from lifelore.figures.style import save_figure
+
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise StoreError(f"cannot write {folder}: {error.strerror}; choose another place") from None
+    _write(folder / "report.json", json.dumps(document, indent=2, allow_nan=False) + "\n")
+    with warnings.catch_warnings():
+        # Names may be of any script; what the font lacks is drawn as a box, and report.json has it.
+        warnings.filterwarnings("ignore", "Glyph .* missing from")
+        save_figure(draw_reuse_report(document), folder / "report.png")
+
+
+def _write(path: Path, text: str) -> None:
+    """The whole file or none."""
+    try:
+        with whole_file(path) as file:
+            file.write(text.encode())
+    except OSError as error:
+        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -1,0 +1,241 @@
+"""A study: the policy library learnt from a log, how to choose from it, and who is held out; as memory keeps it.
+
+The library travels as the bytes of its file, packed into a record's integers, so it comes back bit for bit. The
+signal table of the policies in use travels behind it, so that a choice does not make the table again. The newest
+fit counts. Nothing of any single user is in here.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, NoReturn
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.log import check_word
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.protocols import Record
+from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import SelectionRule, rule_named
+from lifelore.memory import Memory
+
+KIND, VERSION = "reuse_study", 1
+ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
+"""A policy is chosen from; or given to the control group alone, till a fit knows it; or given to nobody."""
+LONGEST_NAME = 60
+LARGEST_TABLE = 1 << 16
+"""Numbers of the largest signal table that is stored; reading a larger one costs more than making it."""
+
+
+@dataclass(frozen=True, eq=False)
+class Study:
+    """Everything that a choice needs and that is no user's own.
+
+    Parameters
+    ----------
+    name : str
+    library : PolicyLibrary
+        Of all policies the log has outcomes of, retired ones too: they are evidence.
+    states : dict of str to str
+        What each policy is: ``active``, ``pilot`` or ``retired``.
+    contexts : dict of str to (n_types,) float64
+        Prior over types of users of a context.
+    control : float
+        Share of users held out, in [0, 1).
+    incumbent : str, optional
+        What the held out get; default each policy with equal probability.
+    rule : str
+        Name of the selection rule.
+    explore : float
+        Share of the others' choices that are any active policy, in [0, 1].
+    change : float
+        Probability that a user's type is another at the next choice, in [0, 1].
+    fitted : dict
+        What it was learnt from, plain data.
+    tables : dict of int to SignalTable
+        Signal tables of the active policies, by number of bins, as far as memory has them.
+    """
+
+    name: str
+    library: PolicyLibrary
+    states: dict[str, str]
+    contexts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
+    control: float = 0.1
+    incumbent: str | None = None
+    rule: str = "information-directed"
+    explore: float = 0.0
+    change: float = 0.0
+    fitted: dict[str, Any] = field(default_factory=dict)
+    tables: dict[int, SignalTable] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        check_study_name(self.name)
+        _check_share("control", self.control, below_one=True)
+        _check_share("explore", self.explore)
+        _check_share("change", self.change)
+        rule_named(self.rule)
+        if self.incumbent is not None and self.states.get(self.incumbent) != ACTIVE:
+            raise NotFoundError(
+                f"incumbent must be a policy in use, got '{self.incumbent}'; there are {', '.join(self.active)}"
+            )
+
+    @property
+    def robot(self) -> str:
+        """Under which name memory keeps it."""
+        return f"reuse {self.name}"
+
+    @property
+    def active(self) -> list[str]:
+        """Policies chosen from, in the library's order."""
+        return [policy for policy in self.library.policies if self.states[policy] == ACTIVE]
+
+    @property
+    def pilots(self) -> list[str]:
+        """Policies that the control group alone gets, by name."""
+        return sorted(policy for policy, state in self.states.items() if state == PILOT)
+
+    @cached_property
+    def choice_of(self) -> PolicyLibrary:
+        """The library of the active policies."""
+        chosen = self.library.take(policies=[self.library.index_of_policy(policy) for policy in self.active])
+        for n_bins, table in self.tables.items():
+            chosen.keep_table(n_bins, table)
+        return chosen
+
+    @cached_property
+    def selection(self) -> SelectionRule:
+        """The selection rule."""
+        return rule_named(self.rule)
+
+    @cached_property
+    def dynamics(self) -> TypeDynamics:
+        """How types change."""
+        return TypeDynamics.hazard(self.change, self.library.prior) if self.change else TypeDynamics.static()
+
+    def prior_of(self, context: str | None) -> NDArray[np.float64]:
+        """Prior over types, (n_types,): that of a known context, else everybody's."""
+        return self.contexts.get(context or "", self.library.prior)
+
+    def holds_out(self, user: str) -> bool:
+        """Whether a user is of the control group: decided by the two names, so the same for ever and everywhere.
+
+        A larger share holds out the same users and more.
+        """
+        return bool(stream(0, "reuse control", self.name, user).random() < self.control)
+
+    def with_state(self, policy: str, state: str) -> "Study":
+        """The study with another state of one policy."""
+        return replace(self, states={**self.states, policy: state}, tables={})
+
+    def to_record(self) -> Record:
+        """What memory keeps."""
+        packed = library_bytes(self.library)
+        values = np.frombuffer(packed + bytes(-len(packed) % 8), "<i8").astype(np.int64)
+        table = self._stored_table()
+        about = {
+            "study": self.name,
+            "bytes": len(packed),
+            "table": None if table is None else [self.selection.n_bins, *table.probs.shape],  # pyright: ignore
+            "states": self.states,
+            "contexts": {context: prior.tolist() for context, prior in self.contexts.items()},
+            "control": self.control,
+            "incumbent": self.incumbent,
+            "rule": self.rule,
+            "explore": self.explore,
+            "change": self.change,
+            "fitted": self.fitted,
+        }
+        if table is not None:
+            values = np.concatenate([values, table.probs.astype(np.float64).ravel().view(np.int64)])
+        return Record(KIND, self.name, VERSION, "newest", np.arange(len(values)), values, about)
+
+    def _stored_table(self) -> SignalTable | None:
+        """The signal table that the rule reads; None where it reads none, or one too large to store."""
+        n_bins = getattr(self.selection, "n_bins", None)
+        if n_bins is None or len(self.active) * self.library.n_types * n_bins > LARGEST_TABLE:
+            return None
+        return self.choice_of.table(n_bins)
+
+    def keep(self, memory: Memory) -> None:
+        """Make it the newest in memory."""
+        # Whoever else writes at the same moment takes the next number.
+        seq = memory.tasks(self.robot)
+        while not memory.contribute(self.robot, [self.to_record()], process="study", seq=seq, task=_task(self)):
+            seq += 1
+
+
+def open_study(memory: Memory, name: str = "default") -> Study:
+    """The study of that name.
+
+    Raises
+    ------
+    NotFoundError
+        There is none; the message names those there are.
+    StoreError
+        It was kept by a newer Lifelore, or is damaged.
+    """
+    check_study_name(name)
+    record = memory.recall(KIND, name, VERSION)
+    if record is None:
+        _refuse_unknown(memory, name)
+    about: Mapping[str, Any] = record.about
+    # Cells beyond those of the library and its table are an earlier, larger study's.
+    length = -(-about["bytes"] // 8)
+    packed = record.values[:length].astype("<i8").tobytes()[: about["bytes"]]
+    try:
+        library = library_from_bytes(packed, f"study '{name}'")
+        tables = _tables(record.values[length:], about.get("table"))
+    except InputError as error:
+        raise StoreError(f"{error}; fit the study anew") from None
+    contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
+    settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
+    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables)
+
+
+def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, SignalTable]:
+    """The signal tables behind the library; none in a study of an earlier Lifelore."""
+    if stored is None:
+        return {}
+    n_bins, *shape = stored
+    size = int(np.prod(shape))
+    if len(cells) < size:
+        raise InputError(f"the study's signal table must have {size} numbers, got {len(cells)}")
+    return {n_bins: SignalTable.restored(cells[:size].view(np.float64).reshape(shape))}
+
+
+def study_names(memory: Memory) -> list[str]:
+    """Names of the studies in memory, sorted."""
+    return sorted(key for key, version, _ in memory.keys(KIND) if version == VERSION)
+
+
+def check_study_name(name: str) -> str:
+    """`name` itself, if it can name a study."""
+    check_word("name", name)
+    if len(name) > LONGEST_NAME or "/" in name:
+        raise InputError(f"name must be at most {LONGEST_NAME} characters without '/', got {name[:80]!r}")
+    return name
+
+
+def _refuse_unknown(memory: Memory, name: str) -> NoReturn:
+    newer = [version for key, version, _ in memory.keys(KIND) if key == name and version > VERSION]
+    if newer:
+        raise StoreError(f"study '{name}' was kept by a newer Lifelore (version {newer[-1]}); update this one")
+    known = ", ".join(study_names(memory))
+    other = ", or say which with --name" if known else ""
+    raise NotFoundError(
+        f"no study '{name}' in {memory.location}; known: {known or 'none'}. Begin with 'lifelore reuse fit'{other}"
+    )
+
+
+def _check_share(name: str, share: float, below_one: bool = False) -> None:
+    if not 0 <= share <= 1 or (below_one and share == 1):
+        raise InputError(f"{name} must lie between 0 and 1{', 1 left out' if below_one else ''}, got {share}")
+
+
+def _task(study: Study) -> dict[str, Any]:
+    return {"study": study.name, "policies": len(study.states), "types": study.library.n_types}

@@ -1,0 +1,78 @@
+"""Who is of which type: as a log names it, as outcomes suggest, or by types found among the users."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.library_from_log import TypedRows, library_of, model_of
+from lifelore.agent.reuse.log import ReuseLog
+from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.belief import log_prior, update
+from lifelore.interaction.library.user_types import user_types
+from lifelore.interaction.outcomes.outcome_families import UserRows
+
+CERTAIN = 0.9
+"""Belief from which a user's type, which the log does not name, is taken to be known."""
+
+
+def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
+    """The rows whose user's type is named, suggested by outcomes, or found.
+
+    Raises
+    ------
+    InputError
+        The log names types and `n_types` is given, or there are more types than users.
+    """
+    if not log.says_types:
+        return _found(log, model, n_types, generator)
+    if n_types is not None:
+        raise InputError("types must be left out where the log has a column 'type'; it names them")
+    return _with_guessed(log, _named(log), model)
+
+
+def _named(log: ReuseLog) -> TypedRows:
+    """Rows that name a type, and those of users whose type other rows name."""
+    of_user = log.of_users(log.types)
+    said = [name or of_user.get(user, "") for user, name in zip(log.users, log.types, strict=True)]
+    names = sorted(set(said) - {""})
+    place = {name: number for number, name in enumerate(names)}
+    rows = np.array([row for row, name in enumerate(said) if name], np.int64)
+    return TypedRows(rows, np.array([place[said[row]] for row in rows], np.int64), tuple(names))
+
+
+def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
+    """Also the rows of users of whom nobody says the type, and whose outcomes leave little doubt of it."""
+    known = set(named.rows.tolist())
+    waiting: dict[str, list[int]] = {}
+    for row, user in enumerate(log.users):
+        if row not in known:
+            waiting.setdefault(user, []).append(row)
+    rows, types = named.rows.tolist(), named.types.tolist()
+    if waiting:
+        library, _ = library_of(log, named, model)
+        index = {policy: number for number, policy in enumerate(library.policies)}
+        for own in waiting.values():
+            belief = log_prior(library.prior)
+            for row in own:
+                if log.policies[row] in index:
+                    said = library.performance.log_density(index[log.policies[row]], log.outcomes[row])
+                    belief, _ = update(belief, said)
+            if np.exp(belief.max()) >= CERTAIN:
+                rows += own
+                types += [int(belief.argmax())] * len(own)
+    return named._replace(
+        rows=np.array(rows, np.int64), types=np.array(types, np.int64), guessed=len(rows) - len(named.rows)
+    )
+
+
+def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
+    """Types found among users by their outcomes."""
+    users, of_user = np.unique(log.users, return_inverse=True)
+    if n_types is not None and n_types > len(users):
+        raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
+    policies, of_policy = np.unique(log.policies, return_inverse=True)
+    rows = UserRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
+    family = "categorical" if model_of(log, model) == "categorical" else "gaussian"
+    found = user_types(rows, generator, family=family, n_types=n_types)
+    names = tuple(f"type {number + 1}" for number in range(found.n_types))
+    every: NDArray[np.int64] = np.arange(len(log))
+    return TypedRows(every, found.labels[of_user], names, 0, True, found.criteria)

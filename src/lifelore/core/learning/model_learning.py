@@ -1,0 +1,247 @@
+"""Model-based learning for worlds whose moves are certain: learn transitions, plan the search on them.
+
+What belongs to the domain, the transitions T, may be remembered from earlier tasks; what belongs to the task,
+where the goal lies, never is. Within a task every planned learner follows one rule: walk to the cheapest of
+
+* a place not yet looked at in this task, at the steps to it,
+* a move not yet tried, at the steps to it and a cost of trying that the caller sets per context and action
+  (an action prior makes unlikely moves dear: an order, never a mask),
+* the goal, once seen, at the steps to it,
+
+and so stay optimistic about what is unknown. What was remembered is not believed blindly: a transition
+observed otherwise is overwritten, a state whose percept has changed is forgotten, and when nothing is left to
+look at, remembered refusals are doubted.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.compiled.random_state import one_of, random_state
+from lifelore.core.errors import InputError
+from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN
+from lifelore.core.learning.search_plan import plan_search
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+
+MOST_ACTIONS = np.iinfo(np.int8).max
+"""Plans are kept as int8."""
+MOST_NEWS = 1024
+"""Learnt moves that an explorer lists between two looks; after more of them whoever looks must look at all."""
+ALL_NEW = -1
+
+
+class Manner(NamedTuple):
+    """How to look for the goal.
+
+    planned : plan the search; else always the least-tried move of the state one is in
+    exhaustive : while any unknown can be reached, prefer it to the goal (R-max's optimism)
+    senses : a visit to a place reveals where all its moves lead (frontier search of robots)
+    """
+
+    planned: bool = True
+    exhaustive: bool = False
+    senses: bool = False
+
+
+class Perceived(NamedTuple):
+    """What a state shows, and what trying an unknown move there costs.
+
+    percept : (n_states,) int64
+    cost_row : (n_states,) int32, row of `try_cost`
+    try_cost : (n_contexts, n_actions) float64, in steps, at least 0
+    """
+
+    percept: NDArray[np.int64]
+    cost_row: NDArray[np.int32]
+    try_cost: NDArray[np.float64]
+
+
+class Explorer(NamedTuple):
+    """Everything one task's learner carries between calls of `explore`; changed in place.
+
+    place : (n_states,) int8, NOT_LOOKED | LOOKED | DEAD_END | GOAL
+    tried : (n_states, n_actions) int64, how often each move was made in this task
+    plan : (n_states + 1,) int8, actions still to do, the next one last
+    queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`, where
+        `parent` is UNKNOWN between calls
+    news : (MOST_NEWS,) int64, moves learnt since whoever follows the model last looked: state · n_actions + action
+    world_random, own_random : (2,) uint64
+    cursor : (7,) int64, episode, step in it, state, length of plan, total steps, places known as goals, and how
+        many `news` there are; ALL_NEW where something that was known has changed or they are too many
+    running : (2,) float64, return so far and the discount it has reached
+    """
+
+    place: NDArray[np.int8]
+    tried: NDArray[np.int64]
+    plan: NDArray[np.int8]
+    queue: NDArray[np.int32]
+    parent: NDArray[np.int32]
+    parent_action: NDArray[np.int8]
+    news: NDArray[np.int64]
+    world_random: NDArray[np.uint64]
+    own_random: NDArray[np.uint64]
+    cursor: NDArray[np.int64]
+    running: NDArray[np.float64]
+
+
+def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
+    """A learner at the start of a task; `world` and `own` are numpy generators."""
+    if not 1 <= n_actions <= MOST_ACTIONS:
+        raise InputError(f"n_actions must lie in [1, {MOST_ACTIONS}], got {n_actions}: learn by Q-learning")
+
+    return Explorer(
+        np.zeros(n_states, np.int8),
+        np.zeros((n_states, n_actions), np.int64),
+        np.zeros(n_states + 1, np.int8),
+        np.zeros(n_states, np.int32),
+        np.full(n_states, UNKNOWN, np.int32),
+        np.zeros(n_states, np.int8),
+        np.zeros(MOST_NEWS, np.int64),
+        random_state(world),
+        random_state(own),
+        np.array([0, 0, 0, 0, 0, 0, ALL_NEW]),
+        np.zeros(2),
+    )
+
+
+@kernel(allocates=False)
+def explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, budget):
+    """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
+
+    The tables must be deterministic (one outcome). Episodes end at a terminal event or after `max_steps`.
+    """
+    next_state, reward_of, event_of, _, starts = tables
+    target, seen = model
+    percept, cost_row, try_cost = perceived
+    planned, exhaustive, senses = manner
+    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = explorer
+    returns, rewards, steps, collisions, reached = curve
+    n_actions = target.shape[1]
+    episode, step = cursor[0], cursor[1]
+    state, left = cursor[2], cursor[3]
+    goals, n_news = cursor[5], cursor[6]
+    ret, reach = running[0], running[1]
+    done_steps = 0
+    while done_steps < budget and episode < returns.size:
+        if step == 0:
+            state = np.int64(starts[one_of(world, starts.size)])
+            left, ret, reach = 0, 0.0, 1.0
+        if place[state] == NOT_LOOKED:
+            place[state] = LOOKED
+            if _arrive(state, target, seen, percept, tried):
+                n_news = ALL_NEW
+            if senses:
+                for move in range(n_actions):
+                    target[state, move] = next_state[state, move, 0]
+                left, n_news = 0, ALL_NEW
+        if planned:
+            if left == 0:
+                left = plan_search(
+                    state,
+                    target,
+                    place,
+                    goals > 0,
+                    cost_row,
+                    try_cost,
+                    exhaustive,
+                    plan,
+                    queue,
+                    parent,
+                    parent_action,
+                    own,
+                )
+            if left == 0:
+                _doubt(target, tried)
+                plan[0] = one_of(own, n_actions)
+                left = 1
+            left -= 1
+            a = np.int64(plan[left])
+        else:
+            a = _least_tried(tried, state, own)
+        following = np.int64(next_state[state, a, 0])
+        reward = reward_of[state, a, 0]
+        event = event_of[state, a, 0]
+        tried[state, a] += 1
+        if target[state, a] != following:
+            if target[state, a] != UNKNOWN or n_news == news.size:
+                n_news = ALL_NEW
+            elif n_news != ALL_NEW:
+                news[n_news] = state * n_actions + a
+                n_news += 1
+            target[state, a] = following
+            left = 0
+        ret += reach * reward
+        reach *= discount
+        rewards[episode] += reward
+        if event & COLLISION:
+            collisions[episode] += 1
+        if event & TERMINAL:
+            found = GOAL if reward > 0 else DEAD_END
+            if place[following] != found:
+                if found == GOAL:
+                    goals += 1
+                elif place[following] == GOAL:
+                    goals -= 1
+                place[following], n_news = found, ALL_NEW
+        state = following
+        step += 1
+        done_steps += 1
+        if event & TERMINAL or step >= max_steps:
+            returns[episode] = ret
+            steps[episode] = step
+            reached[episode] = event & TERMINAL > 0 and reward > 0
+            episode += 1
+            step = 0
+            left = 0
+    cursor[0], cursor[1] = episode, step
+    cursor[2], cursor[3] = state, left
+    cursor[4] += done_steps
+    cursor[5], cursor[6] = goals, n_news
+    running[0], running[1] = ret, reach
+    return done_steps
+
+
+@inlined
+def _arrive(state, target, seen, percept, tried):
+    """Forget what was remembered of a place whose percept has changed; whether that was anything."""
+    forgot = False
+    if seen[state] != percept[state]:
+        for a in range(target.shape[1]):
+            if tried[state, a] == 0:
+                forgot |= target[state, a] != UNKNOWN
+                target[state, a] = UNKNOWN
+        seen[state] = percept[state]
+    return forgot
+
+
+@inlined
+def _least_tried(tried, state, random):
+    best, ties = 0, 0
+    for a in range(tried.shape[1]):
+        if tried[state, a] < tried[state, best]:
+            best, ties = a, 1
+        elif tried[state, a] == tried[state, best]:
+            ties += 1
+            if one_of(random, ties) == 0:
+                best = a
+    return np.int64(best)
+
+
+@kernel(allocates=False)
+def _doubt(target, tried):
+    """Nothing is left to look at: remembered refusals that this task has not met may be out of date."""
+    for s in range(target.shape[0]):
+        for a in range(target.shape[1]):
+            if target[s, a] == s and tried[s, a] == 0:
+                target[s, a] = UNKNOWN
+
+
+def check_deterministic(tables: Tables) -> None:
+    """Raise unless each move has one outcome, which is what this learner can plan with."""
+    if tables.outcome_cum.size != 1:
+        raise InputError(
+            f"tables must have one outcome a move to be planned with, got {tables.outcome_cum.size}: "
+            "learn them by Q-learning"
+        )

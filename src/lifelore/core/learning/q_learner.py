@@ -1,0 +1,184 @@
+"""`QLearning`: the settings of ε-greedy Q-learning, and runs of one learner or of many on tables in chunks."""
+
+import os
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import EPISODE, Curve, new_curve
+from lifelore.core.learning.q_learning import (
+    Learner,
+    Rows,
+    Schedule,
+    learn,
+    learn_each,
+    new_learner,
+    new_learners,
+    uniform_rows,
+)
+from lifelore.core.mdp import Tables
+
+CHUNK = 1_000_000
+"""Steps between two looks at the outside world: well under 0.2 s, so Ctrl-C is heard."""
+
+
+def _cores() -> int:
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@dataclass(frozen=True)
+class QLearning:
+    """ε-greedy Q-learning; with rows from an action prior it is ε-QSAP or ε-QPAP (Alg. 2, 4).
+
+    Parameters
+    ----------
+    episodes, max_steps : int
+        Episodes of a task, and steps of an episode at most; ≥ 1.
+    learning_rate : float
+        α in [0, 1], constant.
+    epsilon, epsilon_decay, epsilon_floor : float
+        ε = max(floor, epsilon · decay^episode), all in [0, 1].
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from lifelore.domains import make_world
+    >>> task = make_world("lattice", size=7).task(goal=0)
+    >>> tables, random = task.tables(), np.random.default_rng(1)
+    >>> learner, curve = QLearning(episodes=200).learn(tables, 0.95, world=random, own=random)
+    >>> bool(curve.returns[-20:].mean() > curve.returns[:20].mean())
+    True
+    """
+
+    episodes: int = 1000
+    max_steps: int = 1000
+    learning_rate: float = 0.5
+    epsilon: float = 1.0
+    epsilon_decay: float = 0.98
+    epsilon_floor: float = 0.01
+
+    def __post_init__(self) -> None:
+        for name in ("episodes", "max_steps"):
+            if getattr(self, name) < 1:
+                raise InputError(f"{name} must be at least 1, got {getattr(self, name)}")
+        for name in ("learning_rate", "epsilon", "epsilon_decay", "epsilon_floor"):
+            if not 0 <= getattr(self, name) <= 1:
+                raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
+
+    def schedule(self, discount: float) -> Schedule:
+        """ε and α of each episode, as the kernel takes them."""
+        decayed = self.epsilon * self.epsilon_decay ** np.arange(self.episodes)
+        return Schedule(
+            np.maximum(self.epsilon_floor, decayed),
+            np.full(self.episodes, float(self.learning_rate)),
+            self.max_steps,
+            float(discount),
+        )
+
+    def learn(
+        self,
+        tables: Tables,
+        discount: float,
+        *,
+        world: np.random.Generator,
+        own: np.random.Generator,
+        rows: Rows | None = None,
+        watch: Callable[[Learner, Curve], bool] | None = None,
+    ) -> tuple[Learner, Curve]:
+        """Learn one task.
+
+        Parameters
+        ----------
+        tables : Tables
+        discount : float
+            γ in [0, 1).
+        world, own : numpy generators
+            Where episodes start and outcomes fall; the learner's own choices. Methods that are compared
+            share the world's.
+        rows : Rows, optional
+            What exploration and ties follow; default uniform.
+        watch : callable, optional
+            Called between chunks; a true answer ends learning early.
+
+        Returns
+        -------
+        learner, curve : Learner, Curve
+        """
+        rows = rows or uniform_rows(tables)
+        learner = new_learner(int(rows.q_row.max()) + 1, tables.n_actions, world, own)
+        curve, schedule = new_curve(self.episodes), self.schedule(discount)
+        while learn(tables, rows, schedule, learner, curve, CHUNK):
+            if watch and watch(learner, curve):
+                break
+        return learner, curve
+
+    def learn_many(
+        self,
+        tables: Tables,
+        discount: float,
+        *,
+        worlds: Sequence[np.random.Generator],
+        owns: Sequence[np.random.Generator],
+        rows: Rows | None = None,
+        threads: int | None = None,
+        chunk: int = CHUNK,
+        watch: Callable[[Learner, Curve], bool] | None = None,
+    ) -> tuple[Learner, Curve]:
+        """Learn one task by many learners at once; each learns to the bit what it would learn alone.
+
+        Parameters
+        ----------
+        tables, discount, rows
+            As for `learn`; the same for all.
+        worlds, owns : sequences of numpy generators
+            One of each a learner.
+        threads : int, optional
+            Default one a core; results do not depend on it.
+        chunk : int
+            Steps of each learner between two calls of `watch`, ≥ 1. Many learners do not fit into the processor's
+            caches: without a `watch`, a large chunk is quickest.
+        watch : callable, optional
+            Called between chunks with all learners and curves; a true answer ends learning early.
+
+        Returns
+        -------
+        learners, curves : Learner, Curve
+            Every array has the learners as its first axis: ``q`` is (n_learners, n_rows, n_actions), ``returns``
+            (n_learners, n_episodes).
+
+        Raises
+        ------
+        InputError
+            There is no learner, `worlds` and `owns` differ in number, `threads` or `chunk` is below 1.
+        """
+        n = len(worlds)
+        if not n or n != len(owns):
+            raise InputError(f"worlds and owns must hold one generator a learner, got {n} and {len(owns)}")
+        if threads is not None and threads < 1:
+            raise InputError(f"threads must be at least 1, got {threads}")
+        if chunk < 1:
+            raise InputError(f"chunk must be at least 1, got {chunk}")
+        threads = threads or _cores()
+        chunk = chunk if watch else min(chunk, CHUNK)
+        rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
+        learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
+        curves = new_curve((n, self.episodes))
+        # No thread is left alone with the rest, and none runs long without a look at the outside world.
+        batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episodes * self.max_steps)))
+        pool = ThreadPoolExecutor(threads)
+        try:
+            while (learners.cursor[:, EPISODE] < self.episodes).any():
+                futures = [
+                    pool.submit(learn_each, tables, rows, schedule, learners, curves, chunk, i, min(i + batch, n))
+                    for i in range(0, n, batch)
+                ]
+                for future in futures:
+                    future.result()
+                if watch and watch(learners, curves):
+                    break
+        finally:
+            pool.shutdown(cancel_futures=True)
+        return learners, curves

@@ -1,0 +1,277 @@
+"""ε-greedy Q-learning over tables: one kernel for every domain, prior-guided or not.
+
+    Q(s, a) ← Q(s, a) + α [r + γ max_a' Q(s', a') - Q(s, a)]
+
+The kernel knows no prior: it sees one row of exploration probabilities and one row of tie weights for each
+context, and which row is read where (`Rows`). The row of Q and the row of the context are looked up apart,
+so a learner may see less than the world's state (a hidden state), and a context may include the class of the
+last reward. Learning is resumable: `learn` runs a bounded number of steps and leaves everything it needs to
+go on in `Learner`. Thesis: §3.2.2.3, Alg. 2 and 4.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.compiled.random_state import next_uniform, random_state
+from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import Curve
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+
+
+class Rows(NamedTuple):
+    """Which row of Q and of the prior a state reads, and the prior itself.
+
+    q_row : (n_states,) int32, row of Q that the learner reads in a state
+    context_row : (n_states, n_reward_classes) int32, row of the two arrays below
+    reward_class : (n_states, n_actions, n_outcomes) uint8, class of the reward just received
+    explore_cum : (n_contexts, n_actions) float64, cumulative exploration probabilities
+    tie_weight : (n_contexts, n_actions) float64, positive; relative odds among tied best actions
+    """
+
+    q_row: NDArray[np.int32]
+    context_row: NDArray[np.int32]
+    reward_class: NDArray[np.uint8]
+    explore_cum: NDArray[np.float64]
+    tie_weight: NDArray[np.float64]
+
+
+class Schedule(NamedTuple):
+    """Per episode: exploration ε and learning rate α, both (n_episodes,) in [0, 1]; and the step cap."""
+
+    epsilon: NDArray[np.float64]
+    alpha: NDArray[np.float64]
+    max_steps: int
+    discount: float
+
+
+class Learner(NamedTuple):
+    """Everything a learner carries from one call of `learn` to the next; changed in place.
+
+    q : (n_q_rows, n_actions) float64
+    visits : (n_q_rows, n_actions) int64
+    world_random, own_random : (2,) uint64, the world's stream (starts, outcomes) and the learner's own
+    cursor : (5,) int64, episode, step in it, state, reward class, total steps
+    running : (2,) float64, return so far and the discount it has reached
+    """
+
+    q: NDArray[np.float64]
+    visits: NDArray[np.int64]
+    world_random: NDArray[np.uint64]
+    own_random: NDArray[np.uint64]
+    cursor: NDArray[np.int64]
+    running: NDArray[np.float64]
+
+
+def uniform_rows(tables: Tables, explore=None, ties=None, context_row=None) -> Rows:
+    """Rows for a learner that sees the state and whose context ignores rewards.
+
+    Parameters
+    ----------
+    tables : Tables
+    explore : (n_contexts, n_actions) float, optional
+        Exploration probabilities, rows sum to 1; default uniform.
+    ties : (n_contexts, n_actions) float, optional
+        Positive tie weights; default uniform.
+    context_row : (n_states,) int, optional
+        Row of `explore` and `ties` read in each state; default: the state's own number if `explore` has
+        one row a state, else row 0.
+    """
+    n_states, n_actions = tables.n_states, tables.n_actions
+    explore = np.full((1, n_actions), 1 / n_actions) if explore is None else np.asarray(explore, float)
+    ties = np.ones_like(explore) if ties is None else np.asarray(ties, float)
+    if context_row is None:
+        context_row = np.arange(n_states) if len(explore) == n_states else np.zeros(n_states)
+    context_row = np.ascontiguousarray(context_row, dtype=np.int32)
+    _check_rows(explore, ties, n_actions)
+    _check_context_row(context_row, n_states, len(explore))
+    return Rows(
+        np.arange(n_states, dtype=np.int32),
+        context_row[:, None],
+        np.zeros(tables.next_state.shape, np.uint8),
+        cumulative(explore),
+        np.ascontiguousarray(ties),
+    )
+
+
+def cumulative(probs: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Row-wise cumulative sums whose last entry is exactly 1."""
+    cum = np.cumsum(probs, axis=1)
+    cum[:, -1] = 1.0
+    return np.ascontiguousarray(cum)
+
+
+def _check_rows(explore: NDArray[np.float64], ties: NDArray[np.float64], n_actions: int) -> None:
+    if explore.ndim != 2 or explore.shape[1] != n_actions:
+        raise InputError(f"explore must have {n_actions} columns, one an action, got shape {explore.shape}")
+    if explore.shape != ties.shape:
+        raise InputError(f"explore and ties must agree in shape, got {explore.shape} and {ties.shape}")
+    if not np.allclose(explore.sum(axis=1), 1, atol=1e-9) or (explore < 0).any():
+        raise InputError("explore must hold probabilities: non-negative rows that sum to 1")
+    if not (ties > 0).all():
+        raise InputError("ties must be positive: an action of weight 0 could never be chosen among equals")
+
+
+def _check_context_row(row: NDArray[np.int32], n_states: int, n_contexts: int) -> None:
+    # A row out of range would read foreign memory inside the kernel.
+    if row.shape != (n_states,) or row.min() < 0 or row.max() >= n_contexts:
+        raise InputError(
+            f"context_row must give each of {n_states} states a row in [0, {n_contexts}), "
+            f"got shape {row.shape}, {row.min(initial=0)}..{row.max(initial=0)}"
+        )
+
+
+def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:
+    """A learner at the start of its first episode, Q = 0; `world` and `own` are numpy generators."""
+    return Learner(
+        np.zeros((n_q_rows, n_actions)),
+        np.zeros((n_q_rows, n_actions), np.int64),
+        random_state(world),
+        random_state(own),
+        np.zeros(5, np.int64),
+        np.zeros(2),
+    )
+
+
+def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
+    """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
+    n = len(worlds)
+    drawn = [(random_state(world), random_state(own)) for world, own in zip(worlds, owns, strict=True)]
+    return Learner(
+        np.zeros((n, n_q_rows, n_actions)),
+        np.zeros((n, n_q_rows, n_actions), np.int64),
+        np.stack([world for world, _ in drawn]),
+        np.stack([own for _, own in drawn]),
+        np.zeros((n, 5), np.int64),
+        np.zeros((n, 2)),
+    )
+
+
+@inlined
+def choose(q, row, explore_cum, tie_weight, context, epsilon, random):
+    """ε-greedy action (Alg. 2 line 5): explore by the prior, else the best, ties by weight."""
+    n_actions = q.shape[1]
+    if epsilon > 0.0 and next_uniform(random) < epsilon:
+        u = next_uniform(random)
+        a = 0
+        while u >= explore_cum[context, a]:
+            a += 1
+        return a
+    best_value = q[row, 0]
+    best, tied = 0, 1
+    for a in range(1, n_actions):
+        value = q[row, a]
+        if value > best_value:
+            best, best_value, tied = a, value, 1
+        elif value == best_value:
+            tied += 1
+    if tied > 1:
+        best = _break_tie(q, row, tie_weight, context, best, random)
+    return best
+
+
+@inlined
+def _break_tie(q, row, tie_weight, context, first, random):
+    """One of the actions as good as `first`, the first of them, drawn by its tie weight."""
+    best_value = q[row, first]
+    total = 0.0
+    for a in range(first, q.shape[1]):
+        if q[row, a] == best_value:
+            total += tie_weight[context, a]
+    left = next_uniform(random) * total
+    chosen = first
+    for a in range(first, q.shape[1]):
+        if q[row, a] == best_value:
+            chosen = a
+            left -= tie_weight[context, a]
+            if left < 0.0:
+                break
+    return chosen
+
+
+@kernel(allocates=False)
+def learn(tables, rows, schedule, learner, curve, budget):
+    """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
+    # Unpacked once: reading a tuple's array inside the loop would count references at every step.
+    next_state, reward_of, event_of, outcome_cum, starts = tables
+    q_row, context_row, class_of, explore_cum, tie_weight = rows
+    epsilons, alphas, max_steps, gamma = schedule
+    q, visits, world, own, cursor, running = learner
+    returns, rewards, steps, collisions, reached = curve
+    # Unsigned, because Numba asks of every signed index whether it counts from the end.
+    episode, step, state, reward_class = cursor[0], cursor[1], np.uint64(cursor[2]), np.uint64(cursor[3])
+    ret, discount = running[0], running[1]
+    done_steps = 0
+    while done_steps < budget and episode < epsilons.size:
+        if step == 0:
+            state = np.uint64(starts[np.int64(next_uniform(world) * starts.size)])
+            reward_class, ret, discount = np.uint64(0), 0.0, 1.0
+        row = np.uint64(q_row[state])
+        context = np.uint64(context_row[state, reward_class])
+        a = choose(q, row, explore_cum, tie_weight, context, epsilons[episode], own)
+        k = 0
+        if outcome_cum.size > 1:
+            u = next_uniform(world)
+            while u >= outcome_cum[k]:
+                k += 1
+        following = np.uint64(next_state[state, a, k])
+        reward = reward_of[state, a, k]
+        event = event_of[state, a, k]
+        target = reward
+        if not event & TERMINAL:
+            target += gamma * _best_value(q, np.uint64(q_row[following]))
+        q[row, a] += alphas[episode] * (target - q[row, a])
+        visits[row, a] += 1
+        ret += discount * reward
+        discount *= gamma
+        rewards[episode] += reward
+        if event & COLLISION:
+            collisions[episode] += 1
+        reward_class = np.uint64(class_of[state, a, k])
+        state = following
+        step += 1
+        done_steps += 1
+        if event & TERMINAL or step >= max_steps:
+            returns[episode] = ret
+            steps[episode] = step
+            reached[episode] = event & TERMINAL > 0
+            episode += 1
+            step = 0
+    cursor[0], cursor[1], cursor[2], cursor[3] = episode, step, state, reward_class
+    cursor[4] += done_steps
+    running[0], running[1] = ret, discount
+    return done_steps
+
+
+@inlined
+def _best_value(q, row):
+    best = q[row, 0]
+    for a in range(1, q.shape[1]):
+        if q[row, a] > best:
+            best = q[row, a]
+    return best
+
+
+@kernel(allocates=False)
+def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
+    """`learn` for the learners `first` … `last` - 1 of a stack, one after the other; returns the steps of all.
+
+    Every array of `learners` and `curves` has the learners as its first axis.
+    """
+    done_steps = 0
+    for i in range(first, last):
+        learner = Learner(
+            learners.q[i],
+            learners.visits[i],
+            learners.world_random[i],
+            learners.own_random[i],
+            learners.cursor[i],
+            learners.running[i],
+        )
+        curve = Curve(
+            curves.returns[i], curves.rewards[i], curves.steps[i], curves.collisions[i], curves.reached[i]
+        )
+        done_steps += learn(tables, rows, schedule, learner, curve, budget)
+    return done_steps

@@ -1,0 +1,89 @@
+"""Planned search: the cheapest thing to do next in a world known in part."""
+
+import numpy as np
+
+from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.compiled.random_state import one_of
+from lifelore.core.learning.known_world import DEAD_END, GOAL, NOT_LOOKED, UNKNOWN
+
+NO_CRUMBS = 0.2
+"""Among places equally near, first those with fewest others not looked at beside them (Warnsdorff's rule).
+Measured on three buildings: the mean search falls from 0.67 to 0.59 of the number of places, where 0.5 is the
+least any searcher can need that must enter a place to see whether the goal is there. At most 1 / (moves + 1), so
+that a nearer place always comes first: with more than four moves a crumb weighs less."""
+
+
+@kernel(allocates=False)
+def plan_search(
+    start, target, place, goal_known, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random
+):
+    """Breadth-first search for the cheapest thing to do next; fills `plan`, returns its length or 0.
+
+    All of `parent` must be UNKNOWN, and is again afterwards: only the states that the search reached are reset,
+    so a search near its start costs the same in a world of any size.
+    """
+    n_actions = target.shape[1]
+    crumb = 1.0 / (n_actions + 1)
+    if crumb > NO_CRUMBS:
+        crumb = NO_CRUMBS
+    best_cost, ties = np.inf, 0
+    best_state, best_action = -1, 0
+    goal_state, goal_action = -1, 0
+    head, tail = 0, 1
+    queue[0] = start
+    parent[start] = start
+    level_end, depth = 1, 1.0
+    while head < tail and depth <= best_cost:
+        s = queue[head]
+        head += 1
+        for a in range(n_actions):
+            t = target[s, a]
+            cost = np.inf
+            if t == UNKNOWN:
+                cost = depth + try_cost[cost_row[s], a]
+            elif place[t] == GOAL:
+                if exhaustive:
+                    if goal_state < 0:
+                        goal_state, goal_action = s, a
+                else:
+                    cost = depth
+            elif place[t] == NOT_LOOKED and not goal_known:
+                cost = depth + crumb * _not_looked_around(t, target, place)
+            elif place[t] != DEAD_END and parent[t] == UNKNOWN:
+                parent[t] = s
+                parent_action[t] = a
+                queue[tail] = t
+                tail += 1
+            if cost < best_cost:
+                best_cost, ties = cost, 1
+                best_state, best_action = s, a
+            elif cost == best_cost and cost < np.inf:
+                ties += 1
+                if one_of(random, ties) == 0:
+                    best_state, best_action = s, a
+        if head == level_end:
+            level_end = tail
+            depth += 1.0
+    if best_state < 0:
+        best_state, best_action = goal_state, goal_action
+    length, s = 0, best_state
+    if best_state >= 0:
+        plan[0] = best_action
+        length = 1
+        while s != start:
+            plan[length] = parent_action[s]
+            length += 1
+            s = parent[s]
+    for i in range(tail):
+        parent[queue[i]] = UNKNOWN
+    return np.int64(length)
+
+
+@inlined
+def _not_looked_around(s, target, place):
+    count = 0
+    for a in range(target.shape[1]):
+        t = target[s, a]
+        if t >= 0 and t != s and place[t] == NOT_LOOKED:
+            count += 1
+    return count

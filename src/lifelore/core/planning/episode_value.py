@@ -1,0 +1,118 @@
+"""Exact value of a policy over whole episodes that end by themselves or are cut, discounted or not.
+
+Policies are over observations: each hidden state of the tables reads one row. Without a discount an infinite
+horizon has no value where a policy may wander for ever; up to the cap it always has one.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+from lifelore.core.mdp import TERMINAL, Tables
+
+
+def return_moments(
+    tables: Tables, row_of: NDArray[np.int32], probs: NDArray[np.float64], max_steps: int, discount: float = 1.0
+) -> tuple[float, float]:
+    """Mean and standard deviation of an episode's return: probability pushed forward from the starts.
+
+    Parameters
+    ----------
+    tables : Tables
+    row_of : (n_states,) int32
+        Row of `probs` that the policy reads in a state.
+    probs : (n_rows, n_actions) float64
+        The policy; rows sum to 1.
+    max_steps : int
+        Steps after which an episode is cut.
+    discount : float
+        γ in [0, 1].
+    """
+    first, second = _moments(tables, row_of, probs, max_steps, discount)
+    return float(first), float(np.sqrt(max(second - first**2, 0.0)))
+
+
+def best_episode_value(tables: Tables, max_steps: int, discount: float = 1.0) -> float:
+    """Mean return of the best policy that sees the state and the time: no policy over observations exceeds it."""
+    return float(_best(tables, max_steps, discount)[tables.starts].mean())
+
+
+@kernel
+def _moments(tables, row_of, probs, max_steps, discount):
+    """First and second moment of the return; touches only the states that can be reached so far."""
+    next_state, reward_of, event_of, outcome_cum, starts = tables
+    n_states, n_actions, n_outcomes = next_state.shape
+    # By state: probability of being there, and that times the return so far and its square.
+    here, there = np.zeros((n_states, 3)), np.zeros((n_states, 3))
+    active, found = np.empty(n_states, np.int64), np.empty(n_states, np.int64)
+    listed = np.full(n_states, -1, np.int64)
+    n_active, first, second, weight_of_step = 0, 0.0, 0.0, 1.0
+    for s in starts:
+        if here[s, 0] == 0.0:
+            active[n_active] = s
+            n_active += 1
+        here[s, 0] += 1.0 / starts.size
+    for step in range(max_steps):
+        n_found = 0
+        for i in range(n_active):
+            s = active[i]
+            mass, sum1, sum2 = here[s, 0], here[s, 1], here[s, 2]
+            here[s, :] = 0.0
+            for a in range(n_actions):
+                chosen = probs[row_of[s], a]
+                if chosen == 0.0:
+                    continue
+                below = 0.0
+                for k in range(n_outcomes):
+                    # Outcomes in a row that are the same are one: a third of the work where many are.
+                    again = k + 1 < n_outcomes and next_state[s, a, k + 1] == next_state[s, a, k]
+                    again = again and reward_of[s, a, k + 1] == reward_of[s, a, k]
+                    if again and event_of[s, a, k + 1] == event_of[s, a, k]:
+                        continue
+                    w = chosen * (outcome_cum[k] - below)
+                    below = outcome_cum[k]
+                    r = weight_of_step * reward_of[s, a, k]
+                    gained1, gained2 = w * (sum1 + r * mass), w * (sum2 + 2.0 * r * sum1 + r * r * mass)
+                    if event_of[s, a, k] & TERMINAL:
+                        first += gained1
+                        second += gained2
+                        continue
+                    s2 = next_state[s, a, k]
+                    if listed[s2] != step:
+                        listed[s2] = step
+                        found[n_found] = s2
+                        n_found += 1
+                    there[s2, 0] += w * mass
+                    there[s2, 1] += gained1
+                    there[s2, 2] += gained2
+        here, there = there, here
+        active, found = found, active
+        n_active = n_found
+        weight_of_step *= discount
+    for i in range(n_active):
+        first += here[active[i], 1]
+        second += here[active[i], 2]
+    return first, second
+
+
+@kernel
+def _best(tables, max_steps, discount):
+    next_state, reward_of, event_of, outcome_cum, _ = tables
+    n_states, n_actions, n_outcomes = next_state.shape
+    value = np.zeros(n_states)
+    for _ in range(max_steps):
+        now = np.zeros(n_states)
+        for s in range(n_states):
+            best = -np.inf
+            for a in range(n_actions):
+                total, below = 0.0, 0.0
+                for k in range(n_outcomes):
+                    gain = reward_of[s, a, k]
+                    if not event_of[s, a, k] & TERMINAL:
+                        gain += discount * value[next_state[s, a, k]]
+                    total += (outcome_cum[k] - below) * gain
+                    below = outcome_cum[k]
+                best = max(best, total)
+            now[s] = best
+        value = now
+    return value

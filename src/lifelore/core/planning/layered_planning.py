@@ -1,0 +1,221 @@
+"""Exact solutions of tasks whose states lie in layers that only lead onwards.
+
+Where something is gathered, built or used up for good (the items of a factory), the configurations form a
+directed graph without cycles: numbered so that none leads to a smaller number, each is a layer of equally many
+places. A layer is then a small problem of its own, whose exits have known values, and the work is one small
+value iteration a layer instead of sweeps over all of them. Each iteration starts from below: the value of a
+place whose best path ends or leaves is exact, and final, as soon as that path has been walked back, so
+the number of sweeps does not grow with 1 / (1 - γ). Layers that cannot be reached from where one asks are never
+looked at. Thesis: Eq. 3.1, §3.4.2.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import best_actions
+
+LAST_MOVE = 1e-12
+"""Sweeps end when no value moves by more than this share of the largest reward."""
+
+
+def layered_q(
+    tables: Tables, layer_size: int, discount: float, tolerance: float = LAST_MOVE
+) -> NDArray[np.float64]:
+    """Optimal action values of a task in layers, (n_states, n_actions); as `planning.optimal_q` finds them.
+
+    Parameters
+    ----------
+    tables : Tables
+    layer_size : int
+        Places of a layer: state s lies in layer s // layer_size.
+    discount : float
+        γ in [0, 1).
+    tolerance : float
+        See `LAST_MOVE`.
+
+    Raises
+    ------
+    InputError
+        The layers do not divide the states, or a state leads to an earlier layer.
+    """
+    if layer_size < 1 or tables.n_states % layer_size:
+        raise InputError(f"layer_size must divide the {tables.n_states} states, got {layer_size}")
+    value = np.zeros(tables.n_states)
+    q = np.empty((tables.n_states, tables.n_actions))
+    scale = tolerance * max(1.0, float(np.abs(tables.reward).max()))
+    wrong = _solve_all(tables, layer_size, float(discount), scale, value, q)
+    if wrong >= 0:
+        raise _leads_back(wrong)
+    return q
+
+
+class LayeredPlan:
+    """Exact values of a task in layers, found when they are asked for and kept.
+
+    Parameters
+    ----------
+    rows_of : callable
+        ``rows_of(layer) -> Tables`` of the states of one layer; `next_state` in numbers of the whole task.
+    n_layers, layer_size : int
+    discount : float
+        γ in [0, 1).
+
+    Notes
+    -----
+    To know a layer, all that it can lead to must be known, and nothing else is solved. Values take eight bytes
+    a state of the layers solved; action values are made anew at each call.
+    """
+
+    def __init__(self, rows_of: Callable[[int], Tables], n_layers: int, layer_size: int, discount: float) -> None:
+        self._rows_of, self.layer_size, self._discount = rows_of, layer_size, float(discount)
+        # Pages of zeros are not taken from the machine before they are written to.
+        self._value = np.zeros(n_layers * layer_size)
+        self.solved = np.zeros(n_layers, np.bool_)
+        """(n_layers,) bool: whose values are known by now."""
+
+    def values(self, layer: int) -> NDArray[np.float64]:
+        """Optimal values of the places of one layer, (layer_size,)."""
+        self._solve(layer)
+        return self._value[layer * self.layer_size : (layer + 1) * self.layer_size].copy()
+
+    def q(self, layer: int) -> NDArray[np.float64]:
+        """Optimal action values of the places of one layer, (layer_size, n_actions)."""
+        self._solve(layer)
+        rows = self._rows_of(layer)
+        q = np.empty((self.layer_size, rows.n_actions))
+        _back_up(rows, self._discount, self._value, q)
+        return q
+
+    def best_actions(self, layer: int) -> NDArray[np.bool_]:
+        """Which actions are best or tied best in each place of one layer (Eq. 3.1)."""
+        return best_actions(self.q(layer))
+
+    def _solve(self, layer: int) -> None:
+        if not 0 <= layer < len(self.solved):
+            raise InputError(f"layer must lie in [0, {len(self.solved)}), got {layer}")
+        waiting = [layer]
+        while waiting:
+            rows = self._rows_of(waiting[-1])
+            missing = [] if self.solved[waiting[-1]] else self._missing(rows, waiting[-1])
+            if missing:
+                waiting += missing
+                continue
+            here = waiting.pop()
+            if not self.solved[here]:
+                scale = LAST_MOVE * max(1.0, float(np.abs(rows.reward).max()))
+                _solve_layer(rows, here * self.layer_size, self._discount, scale, self._value)
+                self.solved[here] = True
+
+    def _missing(self, rows: Tables, layer: int) -> list[int]:
+        """The layers that `layer` leads to and that are not solved yet."""
+        follows = _layers_after(rows, self.layer_size, np.zeros(len(self.solved), np.bool_))
+        if follows.size and follows.min() < layer:
+            raise _leads_back(layer)
+        return [int(other) for other in follows if other != layer and not self.solved[other]]
+
+
+def _leads_back(layer: int) -> InputError:
+    return InputError(f"layers must only lead onwards, got a state of layer {layer} that leads to an earlier one")
+
+
+@kernel
+def _layers_after(rows, layer_size, seen):
+    """The layers that the states of `rows` lead to, each once; `seen` is scratch."""
+    found = np.empty(seen.size, np.int64)
+    n = 0
+    for s in range(rows.next_state.shape[0]):
+        for a in range(rows.next_state.shape[1]):
+            for k in range(rows.next_state.shape[2]):
+                if not rows.event[s, a, k] & TERMINAL:
+                    layer = rows.next_state[s, a, k] // layer_size
+                    if not seen[layer]:
+                        seen[layer] = True
+                        found[n] = layer
+                        n += 1
+    return found[:n].copy()
+
+
+@kernel
+def _solve_all(tables, layer_size, discount, tolerance, value, q):
+    """Every layer, the last first; the number of a layer that leads back, else -1."""
+    next_state, reward, event, outcome_cum, starts = tables
+    for layer in range(value.size // layer_size - 1, -1, -1):
+        first = layer * layer_size
+        last = first + layer_size
+        rows = Tables(next_state[first:last], reward[first:last], event[first:last], outcome_cum, starts)
+        if _leads_before(rows, first):
+            return layer
+        _solve_layer(rows, first, discount, tolerance, value)
+        _back_up(rows, discount, value, q[first:last])
+    return -1
+
+
+@inlined
+def _leads_before(rows, first):
+    found = False
+    for s in range(rows.next_state.shape[0]):
+        for a in range(rows.next_state.shape[1]):
+            for k in range(rows.next_state.shape[2]):
+                if rows.next_state[s, a, k] < first and not rows.event[s, a, k] & TERMINAL:
+                    found = True
+    return found
+
+
+@kernel
+def _solve_layer(rows, first, discount, tolerance, value):
+    """Value iteration from below over the states from `first` on; what they lead to beyond is known."""
+    n_places, n_actions = rows.next_state.shape[0], rows.next_state.shape[1]
+    value[first : first + n_places] = _floor(rows, first, discount, value)
+    moved = tolerance + 1.0
+    forwards = True
+    while moved > tolerance:
+        moved = 0.0
+        for i in range(n_places):
+            s = i if forwards else n_places - 1 - i
+            best = _worth(rows, s, 0, discount, value)
+            for a in range(1, n_actions):
+                best = max(best, _worth(rows, s, a, discount, value))
+            moved = max(moved, abs(best - value[first + s]))
+            value[first + s] = best
+        forwards = not forwards
+
+
+@inlined
+def _floor(rows, first, discount, value):
+    """A value that no policy falls below: the worst reward for ever, the worst exit, or the end."""
+    worst, lowest = 0.0, 0.0
+    last = first + rows.next_state.shape[0]
+    for s in range(rows.next_state.shape[0]):
+        for a in range(rows.next_state.shape[1]):
+            for k in range(rows.next_state.shape[2]):
+                worst = min(worst, rows.reward[s, a, k])
+                following = rows.next_state[s, a, k]
+                if following >= last and not rows.event[s, a, k] & TERMINAL:
+                    lowest = min(lowest, value[following])
+    return min(lowest, worst / (1.0 - discount))
+
+
+@kernel
+def _back_up(rows, discount, value, q):
+    """Action values from the values of all that follows, into `q`."""
+    for s in range(q.shape[0]):
+        for a in range(q.shape[1]):
+            q[s, a] = _worth(rows, s, a, discount, value)
+
+
+@inlined
+def _worth(rows, s, a, discount, value):
+    """Expected reward and discounted value of what follows (the Bellman backup)."""
+    total, before = 0.0, 0.0
+    for k in range(rows.outcome_cum.size):
+        worth = rows.reward[s, a, k]
+        if not rows.event[s, a, k] & TERMINAL:
+            worth += discount * value[rows.next_state[s, a, k]]
+        total += (rows.outcome_cum[k] - before) * worth
+        before = rows.outcome_cum[k]
+    return total

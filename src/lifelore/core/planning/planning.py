@@ -1,0 +1,159 @@
+"""Exact solutions on tables: values, all tied-optimal actions, and the value of a given policy."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import inlined, kernel
+from lifelore.core.mdp import TERMINAL, Tables
+
+TIE_TOLERANCE = 1e-9
+"""Actions whose values differ by no more than this, relative to the row's best, are tied."""
+TIE_FLOOR = 1e-12
+"""Nor are they told apart below this, relative to the largest value of all: exact values are known no better."""
+
+
+def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
+    """Optimal action values by value iteration, (n_states, n_actions).
+
+    Sweeps in place until no value moves by more than `tolerance` times the largest reward. Where every
+    reward but a terminal one is zero or a loss, values settle exactly after as many sweeps as the longest
+    shortest path.
+    """
+    q, value = np.zeros((tables.n_states, tables.n_actions)), np.zeros(tables.n_states)
+    _sweep(tables, q, value, float(discount), tolerance * max(1.0, float(np.abs(tables.reward).max())))
+    return q
+
+
+@kernel(allocates=False)
+def _sweep(tables, q, value, discount, tolerance):
+    n_states, n_actions = q.shape
+    moved = tolerance + 1.0
+    forwards = True
+    while moved > tolerance:
+        moved = 0.0
+        for i in range(n_states):
+            s = i if forwards else n_states - 1 - i
+            best = q[s, 0] = _backup(tables, s, 0, discount, value)
+            for a in range(1, n_actions):
+                q[s, a] = _backup(tables, s, a, discount, value)
+                if q[s, a] > best:
+                    best = q[s, a]
+            if abs(best - value[s]) > moved:
+                moved = abs(best - value[s])
+            value[s] = best
+        forwards = not forwards
+
+
+@inlined
+def _backup(tables, s, a, discount, value):
+    """Expected reward and discounted value of what follows (the Bellman backup)."""
+    next_state, reward, event, outcome_cum, _ = tables
+    total, before = 0.0, 0.0
+    for k in range(outcome_cum.size):
+        worth = reward[s, a, k]
+        if not event[s, a, k] & TERMINAL:
+            worth += discount * value[next_state[s, a, k]]
+        total += (outcome_cum[k] - before) * worth
+        before = outcome_cum[k]
+    return total
+
+
+def best_actions(
+    q: NDArray[np.float64], tolerance: float = TIE_TOLERANCE, floor: float = TIE_FLOOR
+) -> NDArray[np.bool_]:
+    """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool.
+
+    Tied are those within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
+    whichever is more: where the best is worth nothing, rounding alone must not choose. Not finite means not there.
+    """
+    best = q.max(axis=1, keepdims=True)
+    largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
+    return q >= best - np.maximum(tolerance * np.abs(best), floor * largest)
+
+
+def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """`best_actions` of a learnt Q; rows that promise nothing above zero are all False: it has no policy there.
+
+    What a learner has just heard of may be worth very little yet, so there is no floor.
+    """
+    return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) > 0)
+
+
+def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
+    """The first best action where some action promises something; -1 where none does.
+
+    A learner that values nothing above zero in a state has no policy there yet. It counts as standing
+    still, for every learner alike: worth 0.
+    """
+    return np.where(q.max(axis=1) > 0, q.argmax(axis=1), -1).astype(np.int32)
+
+
+def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) -> NDArray[np.float64]:
+    """Exact value of following `policy` from every state, (n_states,).
+
+    Parameters
+    ----------
+    tables : Tables
+    policy : (n_states,) int
+        Action of each state; -1: stand still, worth 0.
+    discount : float
+        γ in [0, 1).
+    """
+    policy = np.ascontiguousarray(policy, dtype=np.int32)
+    n_states = tables.n_states
+    value = np.zeros(n_states)
+    if tables.outcome_cum.size == 1:
+        # 0 new, -1 done, else 1 + place on the path under way
+        mark, path = np.zeros(n_states, np.int64), np.empty(n_states, np.int64)
+        _follow(tables.next_state, tables.reward, tables.event, policy, float(discount), value, mark, path)
+    else:
+        _iterate(tables, policy, float(discount), 1e-12 * max(1.0, float(np.abs(tables.reward).max())), value)
+    return value
+
+
+@kernel(allocates=False)
+def _follow(next_state, reward, event, policy, discount, value, mark, path):
+    """Deterministic world: walk each path once; a cycle's value has a closed form."""
+    for start in range(policy.size):
+        length, s = 0, start
+        ended = False
+        while not ended and mark[s] == 0:
+            if policy[s] < 0:
+                mark[s] = -1
+                break
+            path[length] = s
+            length += 1
+            mark[s] = length
+            ended = event[s, policy[s], 0] & TERMINAL > 0
+            s = next_state[s, policy[s], 0]
+        after = 0.0 if ended else value[s]
+        if not ended and mark[s] > 0:
+            first = mark[s] - 1
+            once, shrunk = 0.0, 1.0
+            for i in range(length - 1, first - 1, -1):
+                once = reward[path[i], policy[path[i]], 0] + discount * once
+                shrunk *= discount
+            after = once / (1.0 - shrunk)
+        for i in range(length - 1, -1, -1):
+            after = reward[path[i], policy[path[i]], 0] + discount * after
+            value[path[i]] = after
+            mark[path[i]] = -1
+
+
+@kernel(allocates=False)
+def _iterate(tables, policy, discount, tolerance, value):
+    moved = tolerance + 1.0
+    while moved > tolerance:
+        moved = 0.0
+        for s in range(policy.size):
+            if policy[s] < 0:
+                continue
+            total = _backup(tables, s, policy[s], discount, value)
+            if abs(total - value[s]) > moved:
+                moved = abs(total - value[s])
+            value[s] = total
+
+
+def mean_start_value(tables: Tables, values: NDArray[np.float64]) -> float:
+    """A value function averaged over the initial states S₀."""
+    return float(values[tables.starts].mean())

@@ -1,0 +1,146 @@
+"""The ball game as a Gymnasium environment; `lifelore.domains` registers it."""
+
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.domains.ball_game.ball_game import (
+    HEADINGS,
+    SIDE,
+    SIGMA_RANGE,
+    LossScale,
+    ball_game,
+    check_place,
+    step,
+)
+from lifelore.domains.ball_game.picture import draw_ball_game
+from lifelore.domains.ball_game.simulated_player import choose_heading
+
+ROLES = ("player", "interface")
+
+
+class BallGameEnvironment(gymnasium.Env):
+    """The thesis's ball game (§4.8.5.1): a ball is steered to a goal, at a speed that an interface sets.
+
+    ## Action Space
+    As player ``Discrete(4)``: north, south, east, west. As interface ``Discrete(5)``: the number of the speed for
+    the next step; the simulated player steers.
+
+    ## Observation Space
+    ``Box(0, 1000, (2,), int64)``: the place (x, y) of the ball's centre, y downwards.
+
+    ## Rewards
+    Minus the loss when the goal is reached, steps / 400 + collisions / 20; else 0.
+
+    ## Starting State
+    The layout's start; ``reset(options={"place": (x, y)})`` starts elsewhere, ``{"sigma": s}`` fixes the noise of
+    the episode, which is else drawn from [0.3, 8].
+
+    ## Episode End
+    The ball's centre comes into the goal; truncated after 400 steps.
+
+    ## Arguments
+    `layout`: a name, ``"s-maze 160"``. `size`: of the ball, one of 2, 5, 10, 20, 40, 60. `speed`: in force at the
+    start, one of 30, 40, 50, 60, 70; `set_speed` changes it. `role`: ``"player"`` or ``"interface"``.
+    `radius_share`: radius of the ball as a share of its size, 0.5. `blocked`: a ball whose move would touch an
+    obstacle ``"slides"`` up to it, or ``"stays"`` where it is. `scale`: a `LossScale`. `render_mode`: None or
+    ``"rgb_array"``.
+
+    ``info`` has ``"collision"``, ``"speed"`` in force, the ``"heading"`` commanded last, or None, and ``"sigma"``.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012
+
+    def __init__(
+        self,
+        layout: str = "s-maze 160",
+        size: int = 20,
+        speed: int = 50,
+        role: str = "player",
+        radius_share: float = 0.5,
+        blocked: str = "slides",
+        scale: LossScale | None = None,
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise InputError(f"render_mode must be None or one of: rgb_array; got {render_mode!r}")
+        if role not in ROLES:
+            raise InputError(f"role must be one of {', '.join(ROLES)}, got {role!r}")
+        self.render_mode, self.role = render_mode, role
+        self.game = ball_game(layout, radius_share, blocked=blocked)
+        self.kind = _number(self.game.sizes, size, "size")
+        self.scale = scale or LossScale()
+        self.set_speed(speed)
+        n_actions = len(HEADINGS) if role == "player" else self.game.n_speeds
+        self.action_space = spaces.Discrete(n_actions)
+        self.observation_space = spaces.Box(0, SIDE, (2,), np.int64)
+        self._place: tuple[int, int] | None = None
+        self._trail: list[tuple[int, int]] = []
+
+    def set_speed(self, speed: int) -> None:
+        """Put another speed in force, from the next step on."""
+        self._speed = _number(self.game.speeds, speed, "speed")
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
+        """Start an episode; see the class for ``options``."""
+        super().reset(seed=seed)
+        options = options or {}
+        drawn = float(self.np_random.uniform(*SIGMA_RANGE))
+        self._sigma = float(options.get("sigma", drawn))
+        if not 0 <= self._sigma < np.inf:
+            raise InputError(f"options['sigma'] must be finite and at least 0, got {self._sigma}")
+        x, y = options.get("place", self.game.layout.start)
+        check_place(self.game, self.kind, int(x), int(y))
+        self._place = (int(x), int(y))
+        self._trail = [self._place]
+        self._steps = self._hits = 0
+        return self._observation(), self._info(False, None)
+
+    def step(self, action: Any):
+        """One move; gymnasium's five values."""
+        if self._place is None:
+            raise InputError("reset() must be called before step(), got no episode in progress")
+        if not self.action_space.contains(action):
+            raise InputError(f"action must lie in [0, {self.action_space.n}), got {action!r}")  # pyright: ignore
+        field, heading = self.game.field, int(action)
+        if self.role == "interface":
+            self._speed = int(action)
+            heading = choose_heading(field, self.kind, *self._place, field.speeds[self._speed])
+        x, y, hit, reached = step(
+            field,
+            self.kind,
+            *self._place,
+            heading,
+            field.speeds[self._speed],
+            self._sigma,
+            *self.np_random.random(3),
+        )
+        self._place = (int(x), int(y))
+        self._trail.append(self._place)
+        self._steps += 1
+        self._hits += bool(hit)
+        reward = -float(self.scale.loss(self._steps, self._hits)) if reached else 0.0
+        return self._observation(), reward, bool(reached), False, self._info(bool(hit), HEADINGS[heading])
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The field, the ball and where it has been, (501, 501, 3) uint8; None without a render mode."""
+        if self.render_mode is None:
+            return None
+        return draw_ball_game(self.game, self.kind, self._place, self._trail)
+
+    def _observation(self) -> NDArray[np.int64]:
+        return np.array(self._place, np.int64)
+
+    def _info(self, hit: bool, heading: str | None) -> dict[str, Any]:
+        speed = self.game.speeds[self._speed]
+        return {"collision": hit, "speed": speed, "heading": heading, "sigma": self._sigma}
+
+
+def _number(known: tuple[int, ...], value: int, what: str) -> int:
+    if value not in known:
+        raise InputError(f"{what} must be one of {', '.join(map(str, known))}, got {value!r}")
+    return known.index(value)

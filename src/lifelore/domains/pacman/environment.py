@@ -1,0 +1,114 @@
+"""Pacman as a Gymnasium environment; `lifelore.domains` registers it."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import gymnasium
+import numpy as np
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import COLLISION, TERMINAL
+from lifelore.core.streams import stream
+from lifelore.domains.pacman.pacman import N_ACTIONS, STRATEGIES, PacmanMaze, PacmanTask, step
+from lifelore.domains.pacman.picture import draw_pacman
+
+
+class PacmanEnvironment(gymnasium.Env):
+    """The thesis's Pacman (§4.6.3): four items of food, and a ghost seen only in line of sight.
+
+    One uniform number is drawn for each reset and each step, so a rollout equals one through the task's tables
+    under the same numbers, bit for bit.
+
+    ## Action Space
+    ``Discrete(4)``: north, south, east, west; into a wall is to stay.
+
+    ## Observation Space
+    ``Discrete(n)``: the number of own cell, foods left, and the ghost's cell if it is in line of sight.
+
+    ## Rewards
+    10 for a food, 100 more for the last, -100 for meeting the ghost.
+
+    ## Starting State
+    Pacman in the centre, all foods there, the ghost anywhere else on its way, each place as likely;
+    ``reset(options={"state": s})`` starts in hidden state s.
+
+    ## Episode End
+    All foods are eaten, or the ghost is met; truncated after 200 steps.
+
+    ## Arguments
+    `strategy`: of the ghost, ``"top row"``, ``"clockwise"``, ``"anticlockwise"`` or ``"random"``; None draws one
+    from `seed`. `rows`, `columns`: of the maze, odd, 7. `foods`: four cells' numbers; None draws them from `seed`.
+    `seed`: of the task. `render_mode`: None or ``"rgb_array"``.
+
+    ``info`` has ``"state"``, the hidden state, which a player must not look at, and ``"collision"``, whether the
+    last move was into a wall.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": 6}  # noqa: RUF012
+
+    def __init__(
+        self,
+        strategy: str | None = None,
+        rows: int = 7,
+        columns: int = 7,
+        foods: Sequence[int] | None = None,
+        seed: int = 0,
+        render_mode: str | None = None,
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise InputError(f"render_mode must be None or one of: rgb_array; got {render_mode!r}")
+        maze = PacmanMaze(rows, columns)
+        foods = maze.draw_foods(stream(seed, "foods")) if foods is None else tuple(foods)
+        strategy = str(stream(seed, "strategy").choice(STRATEGIES)) if strategy is None else strategy
+        self.render_mode = render_mode
+        self.task = PacmanTask(maze, foods, strategy)
+        self.action_space = spaces.Discrete(N_ACTIONS)
+        self.observation_space = spaces.Discrete(self.task.n_observations)
+        # The plain function: one call from Python costs less than entering compiled code.
+        self._step = getattr(step, "py_func", step)
+        self._state: int | None = None
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None):
+        """Start an episode; see the class for ``options``."""
+        super().reset(seed=seed)
+        starts = self.task.starts
+        drawn = int(starts[int(self.np_random.random() * len(starts))])
+        chosen = (options or {}).get("state")
+        self._state = drawn if chosen is None else self._check_state(chosen)
+        return self._observed(), self._info(0)
+
+    def step(self, action: Any):
+        """One move; gymnasium's five values."""
+        if self._state is None:
+            raise InputError("reset() must be called before step(), got no episode in progress")
+        if not self.action_space.contains(action):
+            raise InputError(f"action must lie in [0, {N_ACTIONS}), got {action!r}")
+        state, reward, event = self._step(self.task.params, self._state, int(action), self.np_random.random())
+        self._state = int(state)
+        return self._observed(), float(reward), bool(event & TERMINAL), False, self._info(event)
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The picture of the maze, (height, width, 3) uint8; None without a render mode."""
+        if self.render_mode is None:
+            return None
+        if self._state is None:
+            raise InputError("reset() must be called before render(), got no episode in progress")
+        return draw_pacman(self.task, self._state)
+
+    def _observed(self) -> int:
+        return int(self.task.observation_of[self._state])
+
+    def _info(self, event: int) -> dict[str, Any]:
+        return {"state": self._state, "collision": bool(event & COLLISION)}
+
+    def _check_state(self, state: Any) -> int:
+        whole = isinstance(state, (int, np.integer)) and not isinstance(state, bool)
+        first = self.task.n_states // 16
+        if not whole or not first <= state < self.task.n_states:
+            raise InputError(
+                f"options['state'] must be a state in [{first}, {self.task.n_states}), those with food left; "
+                f"got {state!r}"
+            )
+        return int(state)

@@ -1,0 +1,98 @@
+"""`TabletopSettings`: what scenes to draw; `TabletopScene`: what comes of it."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.relations import ADJACENT_GAP, CORE_RELATIONS, PairLabel
+from lifelore.domains.tabletop.depth_camera import CAMERAS
+from lifelore.domains.tabletop.pose import Pose
+from lifelore.domains.tabletop.shapes import Shape
+from lifelore.domains.tabletop.truth import Gap
+
+
+@dataclass(frozen=True)
+class TabletopSettings:
+    """What scenes to draw.
+
+    Parameters
+    ----------
+    n_objects : (int, int)
+        Fewest and most things of a scene, at least 1; a named arrangement has its own number.
+    arrangement : str
+        A key of `tabletop_arrangements.ARRANGEMENTS`.
+    mix : mapping of str to float, optional
+        Wanted shares of *on*, *adjacent*, *both* and *none* among pairs of things, by truth; any positive scale.
+    camera : str
+        ``"kinect"`` or ``"stereo"``.
+    shapes : str
+        ``"training"``, ``"held-out"`` (no kind in common) or ``"all"``.
+    meshes : sequence of str
+        Files of the user's own shapes, metres.
+    adjacent_gap, near : float
+        Metres: largest visible gap of *adjacent*, and of a pair that gets a label.
+    separation : float
+        Metres between the two things of arrangement ``"apart"``, 0 to 1.
+
+    Raises
+    ------
+    InputError
+        A value breaks its rule.
+    """
+
+    n_objects: tuple[int, int] = (2, 7)
+    arrangement: str = "mixed"
+    mix: Mapping[str, float] | None = None
+    camera: str = "kinect"
+    shapes: str = "training"
+    meshes: tuple[str, ...] = ()
+    adjacent_gap: float = ADJACENT_GAP
+    near: float = 0.08
+    separation: float = 0.1
+
+    def __post_init__(self) -> None:
+        low, high = self.n_objects
+        if not 1 <= low <= high <= 20:
+            raise InputError(f"n_objects must be fewest and most, 1 to 20, got {low} and {high}")
+        if self.camera not in CAMERAS:
+            raise InputError(f"camera must be one of {', '.join(CAMERAS)}, got '{self.camera}'")
+        if not 0 <= self.separation <= 1:
+            raise InputError(f"separation must be 0 to 1 m, got {self.separation}")
+        if not 0 < self.adjacent_gap < self.near <= 0.5:
+            raise InputError(f"need 0 < adjacent_gap < near <= 0.5 m, got {self.adjacent_gap} and {self.near}")
+        if self.mix is not None:
+            _check_mix(self.mix)
+
+
+def _check_mix(mix: Mapping[str, float]) -> None:
+    for label, share in mix.items():
+        if label not in CORE_RELATIONS:
+            raise InputError(f"mix names {', '.join(CORE_RELATIONS)}, got '{label}'")
+        if not 0 <= share < np.inf:
+            raise InputError(f"shares of mix must be finite and not negative, got {label}={share}")
+    if not sum(mix.values()) > 0:
+        raise InputError("mix must ask for at least one relation: give one a share above 0")
+
+
+@dataclass(frozen=True, eq=False)
+class TabletopScene:
+    """A settled scene: its cloud in the table's frame, and what is true of it.
+
+    `truth` holds every near pair of things and every thing with the table (label 1); `gaps` the visible and true
+    distance of the near pairs; `shapes` and `poses` thing by thing, whose labels are 2, 3, …; `view` the camera's
+    pose (x right, y down, z forward); `clean` the cloud's points without noise; `attempts` how many draws it took.
+    """
+
+    name: str
+    cloud: LabelledCloud
+    truth: tuple[PairLabel, ...]
+    gaps: tuple[Gap, ...]
+    shapes: tuple[Shape, ...]
+    poses: tuple[Pose, ...]
+    view: Pose
+    clean: NDArray[np.float64]
+    attempts: int = 1

@@ -1,0 +1,118 @@
+"""How long one picture of two things takes on one core: labelled points in, networks and relations out.
+
+Drawn as the pairs of claims C2.1 to C2.3, but with their table. Everything compiled runs once before anything is
+timed. One picture is timed at a time, whatever the number of threads, and libraries are held to one thread. What a
+picture took is the median of some repeats. Thesis: §2.4.1.
+"""
+
+import platform
+import time
+from collections.abc import Mapping
+from functools import cache
+from pathlib import Path
+from threading import Lock
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
+from lifelore.experiments.chapter2.tabletop_pairs import MIX
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
+
+CAMERAS = ("stereo", "kinect")
+DENSE = "stereo, made dense"
+"""Some of the stereo pictures, their things' points repeated: the thesis's cameras had 26 times our pixels."""
+KINDS = (*CAMERAS, DENSE)
+JITTER = 0.0005
+"""Metres by which repeated points are moved."""
+LOT = 11
+
+_alone = Lock()
+
+
+def timing_cells(settings: Mapping) -> list[dict]:
+    """Lots of pictures, camera by camera. Settings read: ``images`` of each camera."""
+    return [
+        {"camera": camera, "first": first} for camera in CAMERAS for first in range(0, settings["images"], LOT)
+    ]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """``{"processor", "images": […]}``, an image each kind of a picture; see `timed_image`.
+
+    Settings read: ``images``, ``repeats``, ``dense_points``, ``dense_every``.
+    """
+    camera = cell["camera"]
+    drawn = TabletopSettings(arrangement="pair", mix=MIX, camera=camera, shapes="all")
+    images = []
+    with _alone, threadpool_limits(1):
+        model = shipped_model()
+        for k in range(cell["first"], min(cell["first"] + LOT, settings["images"])):
+            rng = stream(seed, "image timing", camera, k)
+            cloud = draw_scene(int(rng.integers(2**31)), k, drawn).cloud
+            if not images:
+                timed_stages(cloud, model)  # compiled and warm
+            image = timed_image(cloud, model, settings["repeats"])
+            images.append({"kind": camera, **image, "segmentation": seconds_of_segmentation(cloud)})
+            if camera == "stereo" and k % settings["dense_every"] == 0:
+                dense = made_dense(cloud, settings["dense_points"], rng)
+                images.append({"kind": DENSE, **timed_image(dense, model, settings["repeats"])})
+    return {"processor": processor(), "images": images}
+
+
+def timed_image(cloud: LabelledCloud, model: RelationClassifier, repeats: int) -> dict:
+    """What one picture took, of the repeat that took the median time.
+
+    Returns
+    -------
+    dict
+        ``points`` in all and ``points_of_things``; ``seconds`` of each of `STAGES`; ``processor_seconds`` in all
+        threads over the same.
+    """
+    rounds = []
+    for _ in range(repeats):
+        began = time.process_time()
+        stages = timed_stages(cloud, model)
+        rounds.append((sum(stages.values()), time.process_time() - began, stages))
+    rounds.sort(key=lambda one: one[0])
+    _, busy, stages = rounds[(len(rounds) - 1) // 2]
+    return {
+        "points": len(cloud.points),
+        "points_of_things": int((cloud.labels > TABLE).sum()),
+        "seconds": [round(stages[stage], 6) for stage in STAGES],
+        "processor_seconds": round(busy, 6),
+    }
+
+
+def seconds_of_segmentation(cloud: LabelledCloud) -> float:
+    """Seconds to cut the cloud into things without its labels, which is no part of the rest (§2.3.3)."""
+    began = time.perf_counter()
+    segmented(cloud.points, cloud.colours, SegmentationSettings())
+    return round(time.perf_counter() - began, 6)
+
+
+def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) -> LabelledCloud:
+    """The cloud with at least `n_points` points of things: each repeated equally often and moved a little."""
+    things, rest = np.flatnonzero(cloud.labels > TABLE), np.flatnonzero(cloud.labels <= TABLE)
+    times = max(1, -(-n_points // max(len(things), 1)))
+    rows = np.concatenate([rest, np.repeat(things, times)])
+    points = cloud.points[rows]
+    points[len(rest) :] += rng.normal(0, JITTER, (len(rows) - len(rest), 3))
+    colours = None if cloud.colours is None else cloud.colours[rows]
+    return LabelledCloud(points, cloud.labels[rows], colours, cloud.camera)
+
+
+@cache
+def processor() -> str:
+    """What the processor calls itself, as far as the system tells."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
+    return next(named, "") or platform.processor() or platform.machine()

@@ -1,0 +1,125 @@
+"""Pairs of things carried apart, gap by gap, and the separator between them; no gate of distance anywhere.
+
+A pair is photographed together, thinned to 3 mm, and one thing's points are then carried away from the other's, so
+that shape, density and noise stay and only the gap grows: straight up where it rests on the other, along the table
+where it stands beside it. Support vectors are clustered as everywhere here, with and without the thesis's rule
+that a contact has at least 7 of them. Thesis: §2.3.4, §2.4.1.
+"""
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import NONE, ON, PairLabel
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.experiments.chapter2.pair_validation import THRESHOLD
+from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.contact_points import linked
+from lifelore.perception.contacts.interface import DEFAULT
+from lifelore.perception.separation.separator import separate
+
+LOT, REAL_LOT = 4, 4
+_EXACT = 1e-4
+"""Metres to which a gap is met."""
+Points = NDArray[np.float64]
+
+
+def pair_cells(settings: Mapping) -> list[dict]:
+    """Lots of simulated pairs, then of real scenes where asked for and there; reads ``pairs`` and ``real``."""
+    lots = [{"first": k} for k in range(0, settings["pairs"], LOT)]
+    if not settings["real"] or real_scenes_folder() is None:
+        return lots
+    names = [scene.name for scene in real_scenes()]
+    return lots + [{"real": names[k : k + REAL_LOT]} for k in range(0, len(names), REAL_LOT)]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """``{"kind": "simulated" | "real", "pairs": […]}``, each pair as `parted`."""
+    if "real" in cell:
+        scenes = [(scene.cloud, scene.truth) for scene in real_scenes() if scene.name in cell["real"]]
+    else:
+        last = min(cell["first"] + LOT, settings["pairs"])
+        drawn = TabletopSettings(arrangement="pair", mix=MIX, shapes="all", camera=settings["camera"])
+        own = int(stream(seed, "parted pairs").integers(2**31))
+        scenes = [(s.cloud, s.truth) for s in (draw_scene(own, k, drawn) for k in range(cell["first"], last))]
+    found = [parted(settings, *pair) for cloud, truth in scenes for pair in bearing_pairs(cloud, truth)]
+    return {"kind": "real" if "real" in cell else "simulated", "pairs": found}
+
+
+def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[tuple[Points, Points, str]]:
+    """Points of a and b, and the relation, of each pair of things that bears one."""
+    thin = voxelised(without_table(cloud), DEFAULT.voxel).cloud
+    for label in truth:
+        if TABLE not in (label.a, label.b) and label.relation != NONE and label.confidence >= LEAST_CONFIDENCE:
+            yield thin.of(label.a), thin.of(label.b), label.relation
+
+
+def parted(settings: Mapping, a: Points, b: Points, relation: str) -> dict:
+    """The separator's yield at every gap and kernel.
+
+    Returns
+    -------
+    dict
+        ``relation``; ``size``, the diagonal of the larger thing's box, metres; ``gaps``, metres, first as seen,
+        then those of ``settings["gaps"]``, then ``settings["sizes"]`` times the size; ``found``, ``[gap, kernel,
+        support vectors of a, of b, contacts of a, of b, contacts of 7 of a, of b, violation]`` with gap and kernel
+        by number.
+    """
+    size = max(float(np.linalg.norm(np.ptp(points, axis=0))) for points in (a, b))
+    tree = KDTree(b)
+    wanted = [*settings["gaps"], *(times * size for times in settings["sizes"])]
+    way = away(a, b, relation)
+    moved = [a, *(a + shift_to(a, tree, way, gap) * way for gap in wanted)]
+    found = [
+        [number, kernel, *counts(one, b, length, cost)]
+        for number, one in enumerate(moved)
+        for kernel, (length, cost) in enumerate(kernels(settings))
+    ]
+    gaps = [round(float(tree.query(one)[0].min()), 5) for one in moved]
+    return {"relation": relation, "size": round(size, 4), "gaps": gaps, "found": found}
+
+
+def kernels(settings: Mapping) -> list[tuple[float, float]]:
+    """(length in metres, cost per point) of each kernel."""
+    return [(float(length), float(cost)) for length, cost in product(settings["lengths"], settings["costs"])]
+
+
+def away(a: Points, b: Points, relation: str) -> Points:
+    """The unit vector along which a leaves b: up from what it rests on, else along the table."""
+    if relation == ON:
+        return np.array([0.0, 0.0, 1.0])
+    apart = np.append((a.mean(axis=0) - b.mean(axis=0))[:2], 0.0)
+    length = float(np.linalg.norm(apart))
+    return apart / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+
+
+def shift_to(a: Points, tree: KDTree, way: Points, gap: float) -> float:
+    """How far a must go for `gap` metres between the two, by bisection to `_EXACT`."""
+    low, high = 0.0, 0.05
+    while _gap(a + high * way, tree) < gap:
+        low, high = high, 2 * high
+    while high - low > _EXACT:
+        middle = (low + high) / 2
+        low, high = (middle, high) if _gap(a + middle * way, tree) < gap else (low, middle)
+    return high
+
+
+def _gap(points: Points, tree: KDTree) -> float:
+    return float(tree.query(points)[0].min())
+
+
+def counts(a: Points, b: Points, length: float, cost: float) -> list:
+    """Support vectors, contacts and contacts of at least 7, each of a and of b; and the separator's violation."""
+    found = separate(a, b, length=length, cost=cost)
+    sides = [a[found.support_first], b[found.support_second]]
+    sizes = [np.bincount(linked(np.ascontiguousarray(side), DEFAULT.linkage)) for side in sides]
+    contacts = [len(one) for one in sizes]
+    strong = [int((one >= THRESHOLD).sum()) for one in sizes]
+    return [*map(len, sides), *contacts, *strong, round(found.max_violation, 5)]

@@ -1,0 +1,46 @@
+"""Seconds of each stage of `perceive` on one labelled cloud."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.interface import interface
+from lifelore.perception.contacts.near_pairs import near_pairs, split_objects
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.scene import Scene
+from lifelore.perception.scene_json import scene_document
+
+STAGES = (
+    "thin to voxels",
+    "near pairs",
+    "separators and contacts",
+    "features",
+    "relations",
+    "logic",
+    "networks and holes",
+)
+
+
+def timed_stages(cloud: LabelledCloud, model: RelationClassifier) -> dict[str, float]:
+    """Seconds of each of `STAGES`; together they are what `perceive` does with a cloud it has read."""
+    seconds: dict[str, float] = {}
+
+    def timed(stage: str, work: Callable[[], Any]) -> Any:
+        began = time.perf_counter()
+        result = work()
+        seconds[stage] = time.perf_counter() - began
+        return result
+
+    settings = model.settings
+    thin = timed(STAGES[0], lambda: voxelised(cloud, settings.voxel).cloud)
+    pairs = timed(STAGES[1], lambda: near_pairs(split_objects(thin), settings.near, settings.table_margin))
+    found = timed(STAGES[2], lambda: tuple(interface(pair, settings) for pair in pairs))
+    seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))
+    beliefs = timed(STAGES[4], lambda: model.beliefs_of(seen))
+    logic = timed(STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects))
+    timed(STAGES[6], lambda: scene_document(Scene(cloud, found, logic.relations).bearing, seconds=0.0))
+    return seconds

@@ -1,0 +1,52 @@
+"""The real scenes that numbers are quoted on: Kinect clouds with hand-made labels, found through LIFELORE_DATA."""
+
+import os
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.relations import PairLabel
+from lifelore.perception.clouds.cloud_file import read_cloud
+from lifelore.perception.relations.relation_truth import read_relations
+from lifelore.perception.segmentation.table_frame import to_scene
+
+VARIABLE = "LIFELORE_DATA"
+
+
+@dataclass(frozen=True, eq=False)
+class RealScene:
+    """A labelled cloud in the table's frame and what a person said of its pairs."""
+
+    name: str
+    cloud: LabelledCloud
+    truth: tuple[PairLabel, ...]
+
+
+def real_scenes_folder() -> Path | None:
+    """Where they lie; None where LIFELORE_DATA does not say or holds none."""
+    folder = Path(os.environ.get(VARIABLE, "")) / "osd"
+    return folder if VARIABLE in os.environ and (folder / "relations.csv").is_file() else None
+
+
+def real_scenes() -> tuple[RealScene, ...]:
+    """All of them, by name.
+
+    Raises
+    ------
+    InputError
+        They are not there, or a file is damaged.
+    """
+    folder = real_scenes_folder()
+    if folder is None:
+        raise InputError(f"{VARIABLE} must name a folder with osd/relations.csv and its clouds; set it")
+    return _read(folder)
+
+
+@lru_cache(maxsize=1)
+def _read(folder: Path) -> tuple[RealScene, ...]:
+    truths = read_relations(folder / "relations.csv")
+    return tuple(
+        RealScene(name, to_scene(read_cloud(folder / f"{name}.pcd")), truths[name]) for name in sorted(truths)
+    )

@@ -1,0 +1,82 @@
+"""A perceived scene as one row of a result, small enough to be committed, and back again for its figure."""
+
+import base64
+import zlib
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.scene import Scene
+from lifelore.perception.scene_json import scene_document
+
+MOST_POINTS = 5000
+_STEP = 0.0005
+"""Metres: places are kept to half a millimetre."""
+_AROUND = 0.05
+"""Metres of table kept around the things."""
+_FIELDS = ("objects", "relations", "holes", "contact_edges")
+
+
+def scene_row(scene: Scene, caption: str) -> dict:
+    """``{"example": caption, "camera", "cloud", "document"}``, plain data of some 30 kB."""
+    cloud = _thinned(_trimmed(scene.cloud))
+    whole = scene_document(scene)
+    document = {field: whole[field] for field in _FIELDS}
+    document["objects"] = [
+        {
+            "id": thing["id"],
+            "contact_points": [{"xyz": _short(node["xyz"])} for node in thing["contact_points"]],
+            "edges": thing["edges"],
+        }
+        for thing in document["objects"]
+    ]
+    document["holes"] = [{"outline": [_short(place) for place in hole["outline"]]} for hole in document["holes"]]
+    camera = None if cloud.camera is None else _short(cloud.camera)
+    return {"example": caption, "camera": camera, "cloud": _packed(cloud), "document": document}
+
+
+def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
+    """(cloud, document, caption), as `figures.scene_gallery` takes them."""
+    table = np.frombuffer(zlib.decompress(base64.b64decode(row["cloud"])), np.int16).reshape(4, -1)
+    camera = None if row["camera"] is None else np.array(row["camera"], float)
+    cloud = LabelledCloud(np.asarray(table[:3].T * _STEP, np.float64), table[3].astype(np.int64), None, camera)
+    return cloud, row["document"], row["example"]
+
+
+def draw_examples(result: Mapping, *, columns: int, captions: Mapping[str, str] | None = None):
+    """The gallery of a result's examples, clouds with networks; `captions` puts words for what they are called."""
+    from lifelore.experiments.chapter2.scene_gallery import draw_gallery
+
+    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
+    named = [(cloud, document, (captions or {}).get(kind, kind)) for cloud, document, kind in examples]
+    return draw_gallery(named, columns=columns, layers=("cloud", "networks"))
+
+
+def _packed(cloud: LabelledCloud) -> str:
+    places = np.round(cloud.points / _STEP)
+    order = np.lexsort((*places.T, cloud.labels))
+    table = np.column_stack([places, cloud.labels])[order].T.astype(np.int16)
+    return base64.b64encode(zlib.compress(np.ascontiguousarray(table).tobytes(), 9)).decode()
+
+
+def _trimmed(cloud: LabelledCloud) -> LabelledCloud:
+    """The objects and the table near them."""
+    things = cloud.points[cloud.labels > TABLE][:, :2]
+    low, high = things.min(axis=0) - _AROUND, things.max(axis=0) + _AROUND
+    inside = ((cloud.points[:, :2] >= low) & (cloud.points[:, :2] <= high)).all(axis=1)
+    kept = (cloud.labels > TABLE) | ((cloud.labels == TABLE) & inside)
+    return LabelledCloud(cloud.points[kept], cloud.labels[kept], None, cloud.camera)
+
+
+def _thinned(cloud: LabelledCloud) -> LabelledCloud:
+    size = 0.002
+    while len(cloud.points) > MOST_POINTS:
+        cloud, size = voxelised(cloud, size).cloud, size * 1.15
+    return cloud
+
+
+def _short(values: NDArray | list) -> list[float]:
+    return [round(float(value), 4) for value in values]

@@ -1,0 +1,141 @@
+"""Learners in the factory, with priors of several makes, on streams that they share.
+
+A run is a sequence of random tasks of so many components each. All that is compared in a task meets the same
+world and the same random numbers of its own, so differences between methods are paired. Thesis: §3.4.2, §3.4.3.
+"""
+
+from collections.abc import Iterable, Mapping
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import prior_rows
+from lifelore.core.learning.curve import Curve
+from lifelore.core.learning.q_learning import Learner, Rows, Schedule
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import best_actions, greedy_policy, policy_values
+from lifelore.core.streams import stream
+from lifelore.domains.factory.contexts import state_contexts
+from lifelore.domains.factory.factory import ACTION_NAMES, Factory, FactoryTask
+from lifelore.domains.factory.layout import factory
+from lifelore.experiments.engine.learning_run import learnt
+
+N_ACTIONS = len(ACTION_NAMES)
+
+
+class Solved(NamedTuple):
+    """A task and its exact solution.
+
+    best : (n_states, n_actions) bool, best and tied-best actions; completed rows empty, nothing is chosen there
+    way : (n_steps,) int, states in which an optimal policy acts, from the start to the end
+    optimal_return, optimal_reward : float, of that policy: discounted (the value of the start), and summed
+    """
+
+    task: FactoryTask
+    best: NDArray[np.bool_]
+    way: NDArray[np.int64]
+    optimal_return: float
+    optimal_reward: float
+
+
+class Problem(NamedTuple):
+    """A solved task as learners meet it: its tables and the names of its streams."""
+
+    solved: Solved
+    tables: Tables
+    stream: tuple
+
+
+def tasks_of(settings: Mapping, seed: int, k: int, run: int, n_tasks: int) -> list[tuple[int, ...]]:
+    """The first tasks of a run's sequence: lists of `k` components, drawn with replacement."""
+    random = stream(seed, "factory", k, run, "tasks")
+    return [floor(settings["discount"]).draw_components(random, k) for _ in range(n_tasks)]
+
+
+def problem_of(settings: Mapping, components: tuple[int, ...], stream_of: tuple) -> Problem:
+    """The problem of a list of components; `stream_of` names its streams."""
+    known = solved(components, settings["discount"])
+    return Problem(known, known.task.tables(), stream_of)
+
+
+@cache
+def floor(discount: float) -> Factory:
+    """The thesis's factory under a discount."""
+    return factory(discount=discount)
+
+
+@cache
+def solved(components: tuple[int, ...], discount: float) -> Solved:
+    """A task solved exactly; kept, since runs draw the same lists again."""
+    task = floor(discount).task(components)
+    tables = task.tables()
+    q = task.optimal_q(tables)
+    best = best_actions(q)
+    best[task.completed] = False
+    way, reward = _walk(tables, q, int(tables.starts[0]))
+    return Solved(task, best, way, float(q[tables.starts[0]].max()), reward)
+
+
+def _walk(tables: Tables, q: NDArray[np.float64], state: int) -> tuple[NDArray[np.int64], float]:
+    """The states and the summed reward of the first best actions, to the end."""
+    way, total, ended = [], 0.0, False
+    while not ended:
+        action = int(q[state].argmax())
+        way.append(state)
+        total += float(tables.reward[state, action, 0])
+        ended = bool(tables.event[state, action, 0] & TERMINAL)
+        state = int(tables.next_state[state, action, 0])
+    return np.array(way), total
+
+
+# ---- priors ------------------------------------------------------------------------------------------
+
+
+def exact_prior(known: Iterable[Solved], encoding: str, alpha0: float) -> ActionPrior:
+    """The prior over states from exact optimal policies, tied actions counted (Eq. 3.1, 3.5)."""
+    prior = ActionPrior(N_ACTIONS, alpha0)
+    for one in known:
+        prior.update(state_contexts(one.task, encoding), one.best)
+    return prior
+
+
+def hand_made_prior(advice: NDArray[np.bool_], weight: float, alpha0: float) -> ActionPrior:
+    """A person's advice (n_states, n_actions) as a prior over the states of one task.
+
+    It is held as firmly as if `weight` policies had been seen to follow it.
+    """
+    prior = ActionPrior(N_ACTIONS, alpha0)
+    prior.update(np.arange(len(advice)), advice, weight)
+    return prior
+
+
+def with_pseudo_count(prior: ActionPrior, alpha0: float) -> ActionPrior:
+    """The same counts read with another α⁰."""
+    return ActionPrior.from_fixed_point_counts(*prior.fixed_point_counts(), alpha0, prior.key)
+
+
+def learnt_rows(problem: Problem, prior: ActionPrior, encoding: str, ties: str) -> Rows:
+    """ε-QSAP's rows (Alg. 2) with a prior whose contexts are of `encoding`."""
+    return prior_rows(problem.tables, state_contexts(problem.solved.task, encoding), prior.probs, ties)
+
+
+def hand_made_rows(problem: Problem, prior: ActionPrior, ties: str) -> Rows:
+    """ε-QSAP's rows with a prior over this task's own states."""
+    return prior_rows(problem.tables, np.arange(problem.tables.n_states), prior.probs, ties)
+
+
+# ---- learning ----------------------------------------------------------------------------------------
+
+
+def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
+    """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
+    return learnt(problem.tables, problem.stream, rows, schedule)
+
+
+def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:
+    """The discounted return from the start of what has been learnt; 0 where it has no policy there."""
+    values = policy_values(problem.tables, greedy_policy(q), problem.solved.task.domain.discount)
+    return float(values[problem.tables.starts[0]])

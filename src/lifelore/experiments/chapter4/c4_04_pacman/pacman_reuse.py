@@ -1,0 +1,171 @@
+"""One layout of Pacman's foods: a library trained beforehand, then policy reuse and learners on the same tasks.
+
+A task is a layout and a ghost's strategy, which none of the methods is told. What is counted is not quite the same
+for all: reuse must last (`first_lasting`), a learner need only touch (`first_stretch`). Thesis: §4.6.3, Fig. 4.8.
+"""
+
+from collections.abc import Mapping
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.learning.q_learning import Schedule
+from lifelore.core.streams import stream
+from lifelore.domains.pacman.pacman import MAX_STEPS, STRATEGIES, PacmanMaze
+from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import (
+    GREATEST,
+    Arena,
+    arenas,
+    exact_moments,
+    falling,
+    greedy,
+    sampled_returns,
+    trained_policies,
+)
+from lifelore.experiments.engine.curve_blocks import block_means
+from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.selection.belief_sampling import BeliefSampling
+from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
+
+BPR, BPR_EI, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_more", "bpr_exact"
+"""Belief sampling; expected improvement; sampling with models of more samples; with exact means and deviations."""
+PRQ, PRQ_SCALED, Q = "prq", "prq_scaled", "q"
+"""PRQ with returns as they are; with returns in units of the greatest; Q-learning."""
+DISCOUNTED = "_discounted"
+"""Added to a learner's name where it discounts as the library's training does."""
+LEARNERS = tuple(name + extra for extra in ("", DISCOUNTED) for name in (PRQ, PRQ_SCALED, Q))
+LEAST_DEVIATION = 1e-3 * 240
+"""What never varies may still vary a little: a thousandth of the range of returns, as with learnt models."""
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One layout: its library, each type's tasks, and tasks whose foods lie elsewhere."""
+    maze, here = PacmanMaze(settings["rows"], settings["columns"]), ("pacman", cell["layout"])
+    foods = maze.draw_foods(stream(seed, *here, "foods"))
+    at_home = arenas(maze, foods)
+    policies = trained_policies(settings, at_home, (seed, *here))
+    mean, deviation = exact_moments(at_home, policies)
+    samples = sampled_returns(at_home, policies, settings["more_samples"], (seed, *here, "samples"))
+    known = {
+        "learnt": PolicyLibrary.from_samples(samples[..., : settings["samples"]], STRATEGIES, STRATEGIES),
+        "more": PolicyLibrary.from_samples(samples, STRATEGIES, STRATEGIES),
+        "exact": PolicyLibrary.from_means(mean, np.maximum(deviation, LEAST_DEVIATION), STRATEGIES, STRATEGIES),
+    }
+    tasks = [
+        _task(settings, arena, policies, mean[number], known, (seed, *here, "task", arena.task.strategy))
+        for number, arena in enumerate(at_home)
+    ]
+    elsewhere = arenas(maze, maze.draw_foods(stream(seed, *here, "other foods")))
+    moved = [
+        _moved(settings, arena, policies, known, (seed, *here, "moved", arena.task.strategy))
+        for arena in elsewhere
+    ]
+    plain = {"foods": list(foods), "mean": mean.round(2).tolist(), "deviation": deviation.round(2).tolist()}
+    return {**cell, **plain, "tasks": tasks, "moved": moved}
+
+
+def _task(settings: Mapping, arena: Arena, policies, mean, known: Mapping, stream_of: tuple) -> dict:
+    """All methods on one task: episodes needed, and their mean return in blocks of episodes."""
+    n, target = settings["episodes"], mean.max() - settings["tolerance"] * GREATEST
+    drawn = np.array(
+        [arena.returns(policy, n, (*stream_of, "reuse", number)) for number, policy in enumerate(policies)]
+    )
+    needed, first_greedy, curves = {}, {}, {}
+    for name, library, rule, episodes in (
+        (BPR, known["learnt"], BeliefSampling(), n),
+        (BPR_EI, known["learnt"], ExpectedImprovement(), settings["peer_episodes"]),
+        (BPR_MORE, known["more"], BeliefSampling(), settings["peer_episodes"]),
+        (BPR_EXACT, known["exact"], BeliefSampling(), settings["peer_episodes"]),
+    ):
+        chosen = reused(library, rule, drawn[:, :episodes], (*stream_of, name))
+        needed[name] = first_lasting(mean[chosen], target, settings["window"])
+        if name == BPR:
+            curves[name] = block_means(drawn[chosen, np.arange(n)])
+    for name in LEARNERS:
+        rewards, first_greedy[name] = _learn(settings, name, arena, policies, target, stream_of)
+        needed[name] = first_stretch(rewards, target, settings["window"])
+        if name in (PRQ, Q):
+            curves[name] = block_means(rewards)
+    curves = {name: np.round(curve, 1).tolist() for name, curve in curves.items()}
+    return {
+        "type": arena.task.strategy,
+        "best": float(mean.max()),
+        "needed": needed,
+        "greedy": first_greedy,
+        "curves": curves,
+    }
+
+
+def reused(library: PolicyLibrary, rule, returns: NDArray[np.float64], stream_of: tuple) -> NDArray[np.int64]:
+    """The policies that BPR selects, given what each would return in each episode, (n_policies, n_episodes)."""
+    agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of))
+    chosen = np.empty(returns.shape[1], np.int64)
+    for episode in range(returns.shape[1]):
+        policy = chosen[episode] = agent.select()
+        agent.update(policy, float(returns[policy, episode]))
+    return chosen
+
+
+def first_lasting(expected: NDArray[np.float64], target: float, window: int) -> int | None:
+    """First episode, counted from 1, of a stretch of `window` whose every expected return reaches the target."""
+    found = np.flatnonzero(np.convolve(expected >= target, np.ones(window), mode="valid") == window)
+    return int(found[0]) + 1 if found.size else None
+
+
+def first_stretch(returns: NDArray[np.float64], target: float, window: int) -> int | None:
+    """First episode, counted from 1, of a stretch of `window` whose *mean* return reaches the target.
+
+    Chance may lift a mean over it, and the episodes before the stretch need not be as good.
+    """
+    # Summed before divided: a hundred returns of 140 have the mean 140.
+    reached = np.flatnonzero(np.convolve(returns, np.ones(window), mode="valid") / window >= target)
+    return int(reached[0]) + 1 if reached.size else None
+
+
+def _learn(settings: Mapping, name: str, arena: Arena, policies, target: float | None, stream_of: tuple):
+    """A learner's rewards by episode, and how soon its greedy policy is as good as the target and stays so.
+
+    The greedy policy's exact value is looked at where `checkpoints` say and at the end; what is returned is the
+    checkpoint *before* the first from which all are good enough, so that no episode too many is counted; None
+    where the last is not, or without a target.
+    """
+    n = settings["episodes"]
+    discount = settings["training_discount"] if name.endswith(DISCOUNTED) else 1.0
+    plan = Schedule(falling(settings["epsilon"], n), falling(settings["rate"], n), MAX_STEPS, discount)
+    advance, q = _learner(name.removesuffix(DISCOUNTED), arena, policies, stream_of)
+    rewards: list[NDArray[np.float64]] = []
+    good_since: int | None = None
+    for begin, end in pairwise([0, *settings["checkpoints"], n]):
+        part = plan._replace(epsilon=plan.epsilon[begin:end], alpha=plan.alpha[begin:end])
+        rewards.append(advance(part).rewards)
+        good = target is not None and arena.moments(greedy(q))[0] >= target
+        good_since = (good_since or max(begin, 1)) if good else None
+    return np.concatenate(rewards), good_since
+
+
+def _learner(name: str, arena: Arena, policies, stream_of: tuple):
+    """A learner that goes on for the episodes of a schedule, and its table of values, changed in place."""
+    if name == Q:
+        learner = arena.begin(stream_of)
+        return lambda plan: arena.learn(learner, plan), learner.q
+    prq = ProbabilisticPolicyReuse(gain_unit=GREATEST if name == PRQ_SCALED else 1.0)
+    reuser = prq.begin(
+        arena.task.n_observations, policies, stream(*stream_of, "world"), stream(*stream_of, "learner")
+    )
+    return lambda plan: prq.learn(arena.tables, arena.rows, policies, plan, reuser)[0], reuser.q
+
+
+def _moved(settings: Mapping, arena: Arena, policies, known: Mapping, stream_of: tuple) -> dict:
+    """A task whose foods lie elsewhere than in training: what reuse comes to, and what learners come to."""
+    mean = np.array([arena.moments(policy)[0] for policy in policies])
+    n = settings["peer_episodes"]
+    drawn = np.array([arena.returns(p, n, (*stream_of, "reuse", number)) for number, p in enumerate(policies)])
+    chosen = reused(known["learnt"], BeliefSampling(), drawn, (*stream_of, BPR))
+    found = {"best": mean.max(), BPR: mean[chosen[-(n // 2) :]].mean()}
+    for name in LEARNERS:
+        rewards, _ = _learn(settings, name, arena, policies, None, stream_of)
+        found[name] = rewards[-settings["window"] :].mean()
+    return {"type": arena.task.strategy} | {name: round(float(value), 2) for name, value in found.items()}

@@ -1,0 +1,145 @@
+"""Policy reuse and its peers on many tasks side by side, and what is counted from their choices.
+
+All methods of a comparison meet the same tasks and the same noise: what a policy signals in an episode is fixed
+before anybody chooses. Regret is expected library regret (Definition 4.3.1): how much less the chosen policy
+pays on average than the best of the library.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
+from lifelore.core.streams import stream
+from lifelore.interaction.baselines import Baseline
+from lifelore.interaction.beliefs.belief import entropy, log_prior, update
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import SelectionRule, choose
+
+Array = NDArray[np.float64]
+Signals = Callable[[int, NDArray[np.int64]], NDArray]
+"""``signals(episode, policies)``: what the policies (n_tasks,) signal in that episode, (n_tasks,)."""
+
+SETTLED = 1e-9
+"""Regret below this is none."""
+STUCK = 5.0
+"""Mean regret over the last episodes above which a task counts as stuck."""
+LEAST = 1e-250
+"""Beliefs below this are scored as 0: subnormal numbers slow arithmetic down and have no finite inverse."""
+LAST = 10
+"""How many episodes are the last."""
+
+
+class Played(NamedTuple):
+    """What was chosen in which episode.
+
+    policies : (n_tasks, n_episodes) int64
+    entropy : (n_tasks, n_episodes + 1) float64, of the belief before each episode and after the last, nats
+    """
+
+    policies: NDArray[np.int64]
+    entropy: Array
+
+
+def play_rule(
+    rule: SelectionRule,
+    library: PolicyLibrary,
+    signals: Signals,
+    n_tasks: int,
+    n_episodes: int,
+    generator: np.random.Generator,
+    first: int | None = None,
+) -> Played:
+    """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once.
+
+    `generator` serves the rule and its ties; `first`, if given, is played in the first episode whatever the rule
+    says.
+    """
+    log_belief = np.tile(log_prior(library.prior), (n_tasks, 1))
+    policies = np.empty((n_tasks, n_episodes), np.int64)
+    entropies = np.empty((n_tasks, n_episodes + 1))
+    for t in range(n_episodes):
+        belief = np.exp(log_belief)
+        belief[belief < LEAST] = 0.0
+        entropies[:, t] = entropy(belief)
+        scores = rule.scores(library, belief, episodes_left=n_episodes - 1 - t, generator=generator)
+        chosen = np.full(n_tasks, first) if t == 0 and first is not None else np.asarray(choose(scores, generator))
+        policies[:, t] = chosen
+        likelihood = library.signal.log_likelihoods(chosen, signals(t, chosen))  # pyright: ignore
+        log_belief = update(log_belief, likelihood).log_belief
+    entropies[:, -1] = entropy(np.exp(log_belief))
+    return Played(policies, entropies)
+
+
+def play_baseline(player: Baseline, pays: Signals, n_episodes: int) -> NDArray[np.int64]:
+    """The policies, (n_tasks, n_episodes), of a peer that learns from payoffs."""
+    policies = np.empty((player.rows, n_episodes), np.int64)
+    for t in range(n_episodes):
+        policies[:, t] = player.select()
+        player.update(policies[:, t], pays(t, policies[:, t]))
+    return policies
+
+
+def converged_after(regret: Array) -> NDArray[np.int64]:
+    """First episode, from 1, from which on regret is none; one past the last where it never is; (n_tasks,)."""
+    n_episodes = regret.shape[1]
+    some = regret > SETTLED
+    last = n_episodes - some[:, ::-1].argmax(axis=1)
+    return np.where(some.any(axis=1), last, 0) + 1
+
+
+def late_regret(regret: Array) -> Array:
+    """Mean regret over the last ten episodes, (n_tasks,)."""
+    return regret[:, -LAST:].mean(axis=1)
+
+
+def grouped_mean(values: ArrayLike) -> Estimate:
+    """Mean and median of `values` (n_groups, n_each), with an interval from groups, whose members share much."""
+    values = np.asarray(values, float)
+    of_groups = mean_estimate(values.mean(axis=1))
+    return Estimate(of_groups.value, float(np.median(values)), of_groups.ci95, values.size)
+
+
+def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
+    """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
+    values = np.asarray(values, float)
+    n = len(values)
+    whole = float(np.quantile(values, q))
+    if n < 3:
+        return Estimate(whole, float(np.median(values)), None, values.size)
+    draws = stream(n, "bootstrap of a quantile").integers(0, n, size=(RESAMPLES, n))
+    found = np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1)
+    low, high = np.quantile(found, [0.025, 0.975])
+    return Estimate(whole, float(np.median(values)), (float(low), float(high)), values.size)
+
+
+def grouped_deviation(values: ArrayLike) -> Estimate:
+    """Standard deviation of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
+    values = np.asarray(values, float)
+    n, whole = len(values), float(values.std())
+    if n < 3:
+        return Estimate(whole, whole, None, values.size)
+    draws = stream(n, "bootstrap of a deviation").integers(0, n, size=(RESAMPLES, n))
+    low, high = np.quantile(values[draws].reshape(RESAMPLES, -1).std(axis=1), [0.025, 0.975])
+    return Estimate(whole, whole, (float(low), float(high)), values.size)
+
+
+def curve(values: Array, digits: int = 3) -> dict[str, list[float]]:
+    """Mean over tasks (n_tasks, n_episodes) and its standard error, episode by episode."""
+    n = len(values)
+    error = values.std(axis=0, ddof=1) / n**0.5 if n > 1 else np.zeros(values.shape[1])
+    return {"mean": values.mean(axis=0).round(digits).tolist(), "error": error.round(digits).tolist()}
+
+
+def plain(estimates: Mapping[str, Estimate]) -> dict[str, Any]:
+    """Estimates as rows keep them: value, interval and number, to four places."""
+    return {
+        name: {
+            "value": round(estimate.value, 4),
+            "ci95": None if estimate.ci95 is None else [round(bound, 4) for bound in estimate.ci95],
+            "n": estimate.n,
+        }
+        for name, estimate in estimates.items()
+    }

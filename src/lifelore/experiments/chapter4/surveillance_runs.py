@@ -1,0 +1,198 @@
+"""Policy reuse and its peers in the surveillance reserve: what C4.5 to C4.8 share.
+
+Tasks come in groups of the thesis's number, ten. A group has tasks and noise of its own and, where models are
+learnt, a library of its own; whoever is compared meets the same groups. Regret is expected library regret;
+`realised` is the regret of one draw of the chosen policy's pay against another draw of the best policy's.
+
+What each is given: the rules exact models, or models learnt from `samples` deployments a pair, and the pay of each
+deployment; peers what `surveillance_peers.GIVEN` says. Nobody is told where the poachers are.
+"""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.metrics import Estimate
+from lifelore.core.streams import stream
+from lifelore.domains.surveillance.surveillance import NOISES, Surveillance
+from lifelore.experiments.chapter4.reuse_rules import NEAR_GREEDY, RULES_SHOWN
+from lifelore.experiments.chapter4.reuse_runs import (
+    STUCK,
+    converged_after,
+    curve,
+    grouped_mean,
+    grouped_quantile,
+    late_regret,
+    play_baseline,
+    play_rule,
+)
+from lifelore.experiments.chapter4.surveillance_peers import kernel_of, make_peer, tuning_grid
+from lifelore.experiments.engine.estimates import exact_share
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.regret import library_regret
+
+Array = NDArray[np.float64]
+EXACT, LEARNT = "exact", "learnt"
+SEEN, MIXED = "seen", "with unseen"
+CASES = {
+    "headline": {"model": LEARNT, "tasks": MIXED},
+    "learnt": {"model": LEARNT, "tasks": SEEN},
+    "exact": {"model": EXACT, "tasks": SEEN},
+    "exact, with unseen": {"model": EXACT, "tasks": MIXED},
+}
+"""What is known and what is met: `MIXED` puts every second task's poachers at a cell that is no target."""
+DEFAULT_WORLD = {"layout": "X", "metric": "chebyshev", "noise": "deviation 20"}
+
+
+RULES = RULES_SHOWN | NEAR_GREEDY
+
+
+class Tasks(NamedTuple):
+    """Tasks of one group.
+
+    mean : (n_tasks, 68) float64, expected pay of each policy
+    noise : (n_tasks, n_episodes) float64, standard normal, of the pay in each episode
+    other_noise : (n_tasks, n_episodes) float64, of the best policy's pay that realised regret compares with
+    seen : (n_tasks,) bool, whether the poachers are at a target
+    """
+
+    mean: Array
+    noise: Array
+    other_noise: Array
+    seen: NDArray[np.bool_]
+
+
+def world_of(cell: Mapping) -> Surveillance:
+    """The reserve of a cell: its layout, metric and reading of the noise."""
+    return Surveillance(cell["layout"], cell["metric"], NOISES[cell["noise"]])
+
+
+def draw_tasks(world: Surveillance, kind: str, n: int, n_episodes: int, seed: int, group: int) -> Tasks:
+    """One group's tasks: the same places in the order of targets for every reserve, and the same noise."""
+    generator = stream(seed, "tasks", group)
+    cells = world.draw_cells(generator, n)
+    seen = np.ones(n, bool)
+    if kind == MIXED:
+        seen[1::2] = False
+        near = world.cells_near_hills
+        unseen = near[(near[:, None] != world.targets).any(axis=-1).all(axis=1)]
+        cells[~seen] = unseen[generator.integers(len(unseen), size=(~seen).sum())]
+    noise = stream(seed, "noise", group).standard_normal((2, n, n_episodes))
+    return Tasks(world.mean_at(cells), noise[0], noise[1], seen)
+
+
+def library_of(world: Surveillance, model: str, samples: int, seed: int, group: int) -> PolicyLibrary:
+    """Exact models, or Gaussian ones with shrunk deviations from `samples` deployments a pair."""
+    if model == EXACT:
+        return PolicyLibrary.from_means(world.mean, world.deviation)
+    training = world.training_samples(stream(seed, "training deployments", group), samples)
+    return PolicyLibrary.from_samples(training)
+
+
+def play(
+    name: str,
+    library: PolicyLibrary,
+    world: Surveillance,
+    tasks: Tasks,
+    generator: np.random.Generator,
+    tuned: Mapping[str, float] | None = None,
+    kernel: Array | None = None,
+) -> tuple[NDArray[np.int64], Array | None]:
+    """Policies that a rule or peer chooses, (n_tasks, n_episodes), and the belief's entropy where there is one."""
+    n_tasks, n_episodes = tasks.noise.shape
+    every = np.arange(n_tasks)
+
+    def pays(episode: int, policies: NDArray[np.int64]) -> Array:
+        return tasks.mean[every, policies] + world.deviation * tasks.noise[:, episode]
+
+    if name in RULES:
+        played = play_rule(RULES[name], library, pays, n_tasks, n_episodes, generator)
+        return played.policies, played.entropy
+    peer = make_peer(name, library, world, n_tasks, n_episodes, generator, kernel, **(tuned or {}))
+    return play_baseline(peer, pays, n_episodes), None
+
+
+def joined(parts: Sequence[Tasks]) -> Tasks:
+    """Several groups as one."""
+    return Tasks(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def run_method(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One rule or peer on all groups of one case and reserve.
+
+    `cell`: ``method``, ``case``, ``layout``, ``metric``, ``noise``, ``groups``. Returns ``curve`` and
+    ``entropy`` by episode; of every task ``sums``, ``ended`` and ``late``; ``at``, ``against_mean`` and
+    ``realised`` regret after the episodes of ``settings["after"]``; ``seen``; and ``tuned``, the settings of
+    least regret where there were some to choose.
+    """
+    world, case = world_of(cell), CASES[cell["case"]]
+    size, n_episodes = settings["tasks"], settings["episodes"]
+    groups = [draw_tasks(world, case["tasks"], size, n_episodes, seed, g) for g in range(cell["groups"])]
+    batches = [joined(groups)] if case["model"] == EXACT else groups
+    libraries = [library_of(world, case["model"], settings["samples"], seed, g) for g in range(len(batches))]
+    kernels = [kernel_of(cell["method"], library) for library in libraries]
+    best: dict = {}
+    for tuned in tuning_grid(cell["method"]):
+        chosen, entropies = [], []
+        for group, (library, batch) in enumerate(zip(libraries, batches, strict=True)):
+            generator = stream(seed, "chooser", cell["method"], group)
+            policies, entropy = play(cell["method"], library, world, batch, generator, tuned, kernels[group])
+            chosen.append(policies)
+            entropies.append(entropy)
+        found = _found(settings, world, joined(groups), np.concatenate(chosen), entropies)
+        if not best or np.mean(found["sums"]) < np.mean(best["sums"]):
+            best = {**found, "tuned": tuned}
+    return {**cell, **best}
+
+
+def _found(settings: Mapping, world: Surveillance, tasks: Tasks, policies: NDArray, entropies: list) -> dict:
+    regret = library_regret(tasks.mean, policies)
+    paid_less = regret - world.deviation * tasks.noise
+    realised = paid_less + world.deviation * tasks.other_noise
+    after = [k for k in settings["after"] if k <= regret.shape[1]]
+    found = {
+        "curve": curve(regret),
+        "sums": regret.sum(axis=1).round(2).tolist(),
+        "ended": converged_after(regret).tolist(),
+        "late": late_regret(regret).round(3).tolist(),
+        "at": {str(k): regret[:, k - 1].round(2).tolist() for k in after},
+        "against_mean": {str(k): paid_less[:, k - 1].round(2).tolist() for k in after},
+        "realised": {str(k): realised[:, k - 1].round(2).tolist() for k in after},
+        "seen": tasks.seen.astype(int).tolist(),
+    }
+    if entropies[0] is not None:
+        found["entropy"] = np.concatenate(entropies).mean(axis=0).round(4).tolist()
+    return found
+
+
+def by_group(result: Mapping, key: str) -> Array:
+    """Numbers of every task, (n_groups, n_tasks)."""
+    return np.array(result[key], float).reshape(result["groups"], -1)
+
+
+def summary(result: Mapping) -> dict[str, Estimate]:
+    """Sum of regret, when it ended (median and p90), regret late on (median), and the share of stuck tasks."""
+    ended, late = by_group(result, "ended"), by_group(result, "late")
+    stuck = late > STUCK
+    own_models = CASES[result["case"]]["model"] == EXACT
+    return {
+        "cumulative": grouped_mean(by_group(result, "sums")),
+        "ended_median": grouped_quantile(ended, 0.5),
+        "ended_p90": grouped_quantile(ended, 0.9),
+        "late_median": grouped_quantile(late, 0.5),
+        "stuck": exact_share(stuck.ravel().tolist()) if own_models else grouped_mean(stuck),
+    }
+
+
+def find(results: Sequence[Mapping], method: str, case: str, **world: str) -> Mapping:
+    """The result of one method in one case and reserve, the default one unless told otherwise."""
+    wanted = {"method": method, "case": case, **DEFAULT_WORLD, **world}
+    return next(r for r in results if wanted.items() <= r.items())
+
+
+def name_of(method: str, case: str) -> str:
+    """A method and a case in the name of a measure."""
+    plain = f"{method}_{case}".replace("κ", "kappa")
+    return plain.replace(", ", "_").replace(" ", "_").replace("-", "_")

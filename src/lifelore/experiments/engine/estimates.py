@@ -1,0 +1,54 @@
+"""Estimates of claims with 95 % intervals: exact shares, quantiles, and shares of a grid's cells."""
+
+from collections.abc import Iterable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.stats import beta, binom
+
+from lifelore.core.metrics import Estimate, mean_estimate
+
+UNMEASURED = Estimate(float("nan"), float("nan"), None, 0)
+"""What a run that lacks its scenes says of them."""
+
+
+def exact_share(answers: Iterable[bool]) -> Estimate:
+    """Share of true answers, each of a scene of its own; `UNMEASURED` of none."""
+    given = [bool(answer) for answer in answers]
+    n, right = len(given), sum(given)
+    if not n:
+        return UNMEASURED
+    low = float(beta.ppf(0.025, right, n - right + 1)) if right else 0.0
+    high = float(beta.ppf(0.975, right + 1, n - right)) if right < n else 1.0
+    return Estimate(right / n, float(2 * right > n) if 2 * right != n else 0.5, (low, high), n)
+
+
+def mean_or_unmeasured(values: Iterable[float]) -> Estimate:
+    """Mean with its bootstrap interval; `UNMEASURED` of no values."""
+    given = list(values)
+    return mean_estimate(given) if given else UNMEASURED
+
+
+def quantile_estimate(values: NDArray[np.float64], q: float) -> Estimate:
+    """A quantile with its distribution-free 95 % interval: order statistics at binomial ranks."""
+    n = len(values)
+    low, high = binom.ppf([0.025, 0.975], n, q).astype(int)
+    ordered = np.sort(values)
+    ends = (float(ordered[max(low - 1, 0)]), float(ordered[min(high, n - 1)]))
+    return Estimate(float(np.quantile(values, q)), float(np.median(values)), ends if n >= 3 else None, n)
+
+
+def is_above(number: Estimate, bound: float) -> bool:
+    """Whether the whole 95 % interval lies above `bound`; False where there is none."""
+    return number.ci95 is not None and number.ci95[0] > bound
+
+
+def is_below(number: Estimate, bound: float) -> bool:
+    """Whether the whole 95 % interval lies below `bound`; False where there is none."""
+    return number.ci95 is not None and number.ci95[1] < bound
+
+
+def share_of(cells: ArrayLike) -> Estimate:
+    """The share of true `cells` (n,); a count of all there are, so without an interval."""
+    cells = np.asarray(cells, float)
+    return Estimate(float(cells.mean()), float(np.median(cells)), None, len(cells))

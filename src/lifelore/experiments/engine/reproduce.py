@@ -1,0 +1,191 @@
+"""Run claims: cells on threads, finished ones kept, then numbers, verdict, ``result.json`` and ``figure.png``.
+
+Results do not depend on the number of threads, nor on whether a run was stopped and taken up again.
+"""
+
+import json
+import os
+import platform
+from collections.abc import Mapping, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from importlib.metadata import version
+from pathlib import Path
+from time import perf_counter
+from typing import Any
+
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Progress
+from lifelore.experiments.engine.cell_store import CellStore, write_atomically
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.registry import built_ids, claim_of
+from lifelore.experiments.engine.source_key import source_key
+
+RESULT_KEYS = (
+    "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "rows",
+)  # fmt: skip
+MAX_BYTES = 200_000
+"""Largest ``result.json``: results are committed."""
+
+
+def reproduce(
+    ids: Sequence[str],
+    mode: str = "quick",
+    overrides: Mapping[str, Any] | None = None,
+    jobs: int | None = None,
+    out: str | Path = "results",
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> list[dict]:
+    """Run claims and write ``<out>/<ID>/result.json`` and ``figure.png``.
+
+    Parameters
+    ----------
+    ids : sequence of str
+        Such as ``["C3.1"]``; empty: every claim that is built.
+    mode : {"quick", "full"}
+        ``quick`` is for tests; only ``full`` is evidence.
+    overrides : mapping, optional
+        Settings to change, values or texts (``--set KEY=VALUE``); each must belong to every claim named.
+    jobs : int, optional
+        Threads, at least 1; default: one a core.
+    out : path
+        Folder of the results. A quick run never takes the place of a full one: where that is there already it
+        writes into ``<out>/<ID>/quick``. Finished cells are kept in ``<out>/<ID>/cells``; a later run with the
+        same settings, seed and code takes them up.
+    seed : int
+    progress : callable, optional
+        ``progress(done, total, label)``, called from this thread as cells finish.
+
+    Returns
+    -------
+    list of dict
+        The results, each with exactly `RESULT_KEYS`; `seconds` is summed over cells, whenever they were run.
+
+    Raises
+    ------
+    NotFoundError
+        An id that is not in the ledger or not built.
+    InputError
+        A mode, setting or number of jobs that breaks its rule.
+    StoreError
+        The disk refuses.
+    KeyboardInterrupt
+        Ctrl-C; cells under way are finished and kept first.
+    """
+    jobs = _cores() if jobs is None else jobs
+    if jobs < 1:
+        raise InputError(f"jobs must be at least 1, got {jobs}")
+    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
+    chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
+    return [_run(c, mode, settings, jobs, Path(out), seed, progress) for c, settings in chosen]
+
+
+def _cores() -> int:
+    """Cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _run(claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: int, progress) -> dict:
+    code = source_key(claim.run_cell.__module__)
+    key = {"claim": claim.id, "settings": settings, "seed": seed, "code": code}
+    store = CellStore(out / claim.id / "cells", key)
+    kept = _run_cells(claim, settings, seed, store, jobs, progress or _silent)
+    result = finish(claim, mode, settings, seed, kept)
+    _write(claim, result, _folder(out / claim.id, mode))
+    return result
+
+
+def _folder(folder: Path, mode: str) -> Path:
+    """Where a result goes: evidence is never overwritten by a quick run."""
+    kept = folder / "result.json"
+    evidence = kept.is_file() and json.loads(kept.read_text())["mode"] == "full"
+    return folder / "quick" if mode == "quick" and evidence else folder
+
+
+def _silent(done: int, total: int, label: str) -> None:
+    pass
+
+
+def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: int, progress) -> list[dict]:
+    """All cells in order, stored ones read, the others run."""
+    from threadpoolctl import threadpool_limits
+
+    cells = claim.cells(settings)
+    kept = [store.get(cell) for cell in cells]
+    missing = [i for i, found in enumerate(kept) if found is None]
+    done = len(cells) - len(missing)
+    progress(done, len(cells), claim.id)
+
+    def run(i: int) -> dict:
+        began = perf_counter()
+        result = claim.run_cell(settings, cells[i], seed)
+        return store.put(cells[i], result, perf_counter() - began)
+
+    # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
+    with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
+        place: dict[Future, int] = {pool.submit(run, i): i for i in missing}
+        try:
+            for future in as_completed(place):
+                kept[place[future]] = future.result()
+                done += 1
+                progress(done, len(cells), claim.id)
+        except BaseException:
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+    return kept  # type: ignore[return-value]
+
+
+def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Mapping]) -> dict:
+    """The result of a run from its finished cells, plain data."""
+    results = [found["result"] for found in kept]
+    estimates = claim.measure(settings, results)
+    measured = {name: rounded(estimate.to_dict()) for name, estimate in estimates.items()}
+    why = claim.predicate.why(measured, claim.causes)
+    seconds = round(sum(found["seconds"] for found in kept), 1)
+    values = (
+        claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why,
+        settings, seed, versions(), seconds, rounded(claim.rows(settings, results)),
+    )  # fmt: skip
+    return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
+
+
+def rounded(data: Any) -> Any:
+    """Plain data, floats to six significant digits; what is not finite becomes None: JSON has no word for it."""
+    if isinstance(data, float):
+        return float(f"{data:.6g}") if abs(data) < float("inf") else None
+    if isinstance(data, Mapping):
+        return {key: rounded(value) for key, value in data.items()}
+    if isinstance(data, (list, tuple)):
+        return [rounded(value) for value in data]
+    return data
+
+
+def versions() -> dict[str, str]:
+    """What the numbers were made with."""
+    names = ("lifelore", "numpy", "numba", "scipy")
+    return {"python": platform.python_version(), **{name: version(name) for name in names}}
+
+
+def _write(claim: Claim, result: dict, folder: Path) -> None:
+    from lifelore.figures.style import save_figure
+
+    text = _one_row_a_line(result)
+    if len(text.encode()) > MAX_BYTES:
+        raise InputError(f"{claim.id}: result.json may hold {MAX_BYTES} bytes, got {len(text)}; compact its rows")
+    write_atomically(folder / "result.json", text)
+    save_figure(claim.draw(result), folder / "figure.png")
+
+
+def _one_row_a_line(result: dict) -> str:
+    """JSON that people and diffs can read: keys indented, each measured number and each row on a line."""
+    lines = []
+    for key, value in result.items():
+        if key == "measured":
+            inner = ",\n".join(f"  {json.dumps(k)}: {json.dumps(v)}" for k, v in value.items())
+            lines.append(f' "{key}": {{\n{inner}\n }}')
+        elif key == "rows":
+            inner = ",\n".join(f"  {json.dumps(row)}" for row in value)
+            lines.append(f' "{key}": [\n{inner}\n ]')
+        else:
+            lines.append(f" {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}")
+    return "{\n" + ",\n".join(lines) + "\n}\n"

@@ -1,0 +1,184 @@
+"""BEAT: an interface that adapts its action set to the type of its user, step by step (Algorithm 9).
+
+At every step the user's move (s, a, s') is taken in and an action set chosen anew: with probability 1 - ε the one
+of the largest expected value under the belief (Eq. 4.9), else any. It is Bayesian policy reuse whose
+policies are action sets, whose signals are single transitions and whose rule is ε-greedy. Thesis: §4.8.4.
+
+What is printed never normalises the belief and so falls below every number within an episode; here it is kept in
+logs. The printed ε falls from 0.5 by 0.1 an episode. Since every action set tells of the type, nothing is gained
+by trying others, and the default is 0.
+"""
+
+from collections.abc import Callable
+from copy import copy
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import SignalModel
+from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.belief import log_prior, update
+from lifelore.interaction.library.library_names import checked_prior
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection.choice import choose
+from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+
+Array = NDArray[np.float64]
+
+Exploration = float | str | Callable[[int, int], float]
+"""ε: a number, a name of `EPSILONS`, or a function of the step and the episode, both counted from 0."""
+
+EPSILONS: dict[str, Callable[[int, int], float]] = {
+    "1/n": lambda step, episode: 1.0 / (step + 1),
+    "by episode": lambda step, episode: max(0.5 - 0.1 * episode, 0.0),
+}
+"""The thesis's: 1/n as §4.8.4.2 says, 0.5 and 0.1 less each episode as its experiments did (§4.8.5.1)."""
+
+
+def epsilon_of(exploration: Exploration) -> Callable[[int, int], float]:
+    """ε as a function of the step and the episode.
+
+    Raises
+    ------
+    InputError
+        A number outside [0, 1], or an unknown name.
+    """
+    if callable(exploration):
+        return exploration
+    if isinstance(exploration, str):
+        if exploration not in EPSILONS:
+            raise InputError(f"epsilon must be a number or one of {', '.join(EPSILONS)}, got {exploration!r}")
+        return EPSILONS[exploration]
+    constant = EpsilonGreedy(float(exploration)).epsilon
+    return lambda step, episode: constant
+
+
+class Beat:
+    """The learner that adapts the interface to one user.
+
+    Parameters
+    ----------
+    library : PolicyLibrary
+        Types × action sets; its performance is V (§4.8.3.1), its signal model that of single transitions.
+    epsilon : float, str or callable
+        See `Exploration`.
+    prior : (n_types,) float, optional
+        β⁰; the library's unless given.
+    actions : SignalModel, optional
+        How each type acts under each action set: a second factor of the likelihood, which the thesis
+        leaves out. Its signals come as ``update(..., action=...)``.
+    lag : int
+        Steps that a user needs to adapt to a new action set: until then her actions are judged by the old one.
+        The thesis's users adapt at once.
+    seed : int or numpy generator
+
+    Attributes
+    ----------
+    log_belief : (n_types,) float64
+    step, episode : int
+        Moves taken in, and episodes finished.
+    surprises : int
+        Moves that no type explains; they leave the belief as it is.
+
+    Raises
+    ------
+    InputError
+        ε or the prior is none, the lag negative, or `actions` is over other types or action sets.
+    """
+
+    def __init__(
+        self,
+        library: PolicyLibrary,
+        *,
+        epsilon: Exploration = 0.0,
+        prior: ArrayLike | None = None,
+        actions: SignalModel | None = None,
+        lag: int = 0,
+        seed: int | np.random.Generator = 0,
+    ) -> None:
+        if lag < 0:
+            raise InputError(f"lag must be at least 0, got {lag}")
+        for axis in ("n_types", "n_policies"):
+            if (size := getattr(actions, axis, None)) not in (None, getattr(library, axis)):
+                raise InputError(f"actions has {axis} {size}, the library has {getattr(library, axis)}")
+        self.library, self.actions = library, actions
+        start = library.prior if prior is None else checked_prior(prior, library.n_types)
+        self.log_belief: Array = log_prior(start)
+        self.step = self.episode = self.surprises = 0
+        self.adaptation = Adaptation(lag)
+        self._epsilon = epsilon_of(epsilon)
+        self._generator = seed if isinstance(seed, np.random.Generator) else stream(seed, "beat")
+
+    @property
+    def belief(self) -> Array:
+        """β(τ), (n_types,); sums to 1."""
+        return np.exp(self.log_belief)
+
+    def select(self) -> int:
+        """The action set for the next step; before the first, that of Eq. 4.8."""
+        rule = EpsilonGreedy(self._epsilon(self.step, self.episode))
+        return int(choose(rule.scores(self.library, self.belief, generator=self._generator), self._generator))
+
+    def update(self, policy: str | int, signal: Any, action: Any = None) -> None:
+        """Take in one move.
+
+        Parameters
+        ----------
+        policy : str or int
+            The action set in force.
+        signal
+            The transition, as the library's signal model takes it.
+        action : optional
+            What the user did, as `actions` takes it.
+
+        Raises
+        ------
+        NotFoundError
+            No such action set.
+        InputError
+            An action without a model of actions, or a signal that its model refuses. Nothing has changed then.
+        """
+        policy = self.library.index_of_policy(policy)
+        adaptation = copy(self.adaptation)
+        adapted = adaptation.after_step(policy)
+        likelihood = self._said(self.library.signal, policy, signal)
+        if action is not None:
+            if self.actions is None:
+                raise InputError("action was given, but no model of actions; give Beat(..., actions=...)")
+            likelihood = likelihood + self._said(self.actions, adapted, action)
+        self.log_belief, evidence = update(self.log_belief, likelihood)
+        self.adaptation = adaptation
+        self.surprises += bool(np.isneginf(evidence))
+        self.step += 1
+
+    def _said(self, model: SignalModel, policy: int, signal: Any) -> Array:
+        said = np.asarray(model.log_likelihood(policy, signal), np.float64)
+        if said.shape != self.log_belief.shape:
+            raise InputError(
+                f"signal model {type(model).__name__} must give {self.log_belief.shape} log likelihoods, gave "
+                f"{said.shape}"
+            )
+        return said
+
+    def end_episode(self) -> None:
+        """The user has reached the end; she plays on, and what is believed of her stays."""
+        self.episode += 1
+
+
+class Adaptation:
+    """Which action set a user reckons with: a new one only after she has had it for `lag` steps."""
+
+    def __init__(self, lag: int) -> None:
+        self.lag, self.held, self.held_for, self.adapted = lag, -1, 0, -1
+
+    def after_step(self, policy: int) -> int:
+        """The action set reckoned with in a step for which `policy` was in force."""
+        if policy != self.held:
+            first = self.held < 0
+            self.held, self.held_for = policy, self.lag if first else 0
+        if self.held_for >= self.lag:
+            self.adapted = policy
+        self.held_for += 1
+        return self.adapted

@@ -1,0 +1,307 @@
+"""The policy library: types × policies, what each achieves on each, what it signals, and the prior over types.
+
+Thesis: §4.2 (Alg. 7's requirements), §4.3.4, §4.4.1.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import SignalModel
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
+from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel, OutcomeRows, rows_of_samples
+from lifelore.interaction.signals.return_signal import ReturnSignal
+
+Array = NDArray[np.float64]
+
+
+@dataclass(eq=False)
+class PolicyLibrary:
+    """What policy reuse knows before it meets a task.
+
+    Parameters
+    ----------
+    performance : OutcomeModel
+        P(U | type, policy).
+    signal : SignalModel, optional
+        P(signal | type, policy); the return itself unless given.
+    types, policies : sequence of str, optional
+        Distinct names; "type 0", "policy 0", … unless given.
+    prior : (n_types,) float, optional
+        G0, the probability of meeting each type; at least 0, sums to 1 to 1e-9. Uniform unless given.
+
+    Raises
+    ------
+    InputError
+        The prior is no distribution, names are not distinct, or sizes do not agree.
+
+    Examples
+    --------
+    >>> library = PolicyLibrary.from_means([[10.0, 0.0], [0.0, 10.0]], 2.0, policies=["left", "right"])
+    >>> library.index_of_policy("right"), library.prior.tolist()
+    (1, [0.5, 0.5])
+    """
+
+    performance: OutcomeModel
+    signal: SignalModel = None  # pyright: ignore[reportAssignmentType]
+    types: tuple[str, ...] = ()
+    policies: tuple[str, ...] = ()
+    prior: Array = None  # pyright: ignore[reportAssignmentType]
+    _tables: dict[int, SignalTable] = field(default_factory=dict, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        if self.signal is None:
+            self.signal = ReturnSignal(self.performance)
+        self.types = distinct_names(self.types, self.n_types, "type")
+        self.policies = distinct_names(self.policies, self.n_policies, "policy")
+        self.prior = checked_prior(self.prior, self.n_types)
+        for axis in ("n_types", "n_policies"):
+            if (size := getattr(self.signal, axis, getattr(self, axis))) not in (None, getattr(self, axis)):
+                raise InputError(f"signal has {axis} {size}, performance has {getattr(self, axis)}")
+
+    @classmethod
+    def from_samples(
+        cls,
+        samples: ArrayLike,
+        types: Sequence[str] | None = None,
+        policies: Sequence[str] | None = None,
+        model: str = "gaussian",
+        *,
+        signal: SignalModel | None = None,
+        prior: ArrayLike | None = None,
+        **options: Any,
+    ) -> Self:
+        """Fitted to outcomes `samples` (n_types, n_policies, n), NaN where missing.
+
+        Parameters
+        ----------
+        model : {"gaussian", "student-t", "histogram", "categorical"}
+        **options
+            For the model's ``from_samples``: `shrinkage`, `edges`, `pseudo_count`.
+
+        Raises
+        ------
+        InputError
+            A pair has no sample, a sample is infinite, or there is no such model.
+        """
+        return cls.from_rows(
+            rows_of_samples(samples), types, policies, model, signal=signal, prior=prior, **options
+        )
+
+    @classmethod
+    def from_rows(
+        cls,
+        rows: OutcomeRows,
+        types: Sequence[str] | None = None,
+        policies: Sequence[str] | None = None,
+        model: str = "gaussian",
+        *,
+        signal: SignalModel | None = None,
+        prior: ArrayLike | None = None,
+        **options: Any,
+    ) -> Self:
+        """Fitted to outcomes one a row; see `from_samples`."""
+        performance = outcome_kind(model).from_rows(rows, **options)
+        return cls(performance, signal, tuple(types or ()), tuple(policies or ()), prior)  # pyright: ignore
+
+    @classmethod
+    def from_means(
+        cls,
+        mean: ArrayLike,
+        deviation: ArrayLike,
+        types: Sequence[str] | None = None,
+        policies: Sequence[str] | None = None,
+        *,
+        count: ArrayLike | None = None,
+        signal: SignalModel | None = None,
+        prior: ArrayLike | None = None,
+    ) -> Self:
+        """Gaussian outcomes with means (n_types, n_policies) and deviations; see `GaussianOutcomes`."""
+        performance = GaussianOutcomes(mean, deviation, count)
+        return cls(performance, signal, tuple(types or ()), tuple(policies or ()), prior)  # pyright: ignore
+
+    @classmethod
+    def from_frame(
+        cls,
+        frame: Mapping[str, Any],
+        type: str = "type",
+        policy: str = "policy",
+        outcome: str = "outcome",
+        model: str = "gaussian",
+        **options: Any,
+    ) -> Self:
+        """Fitted to a table with one row an episode: a DataFrame, or a mapping of columns.
+
+        Parameters
+        ----------
+        frame : mapping of str to sequences of one length
+        type, policy, outcome : str
+            The columns; types and policies are named in the order in which they first come.
+        model, **options
+            As for `from_samples`; also `signal` and `prior`.
+
+        Raises
+        ------
+        InputError
+            A column is missing, lengths differ, an outcome is no finite number, or a pair has no row.
+        """
+        rows, types, policies = rows_of_columns(frame, type, policy, outcome)
+        return cls.from_rows(rows, types, policies, model, **options)
+
+    @property
+    def n_types(self) -> int:
+        return self.performance.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return self.performance.n_policies
+
+    def index_of_policy(self, policy: str | int) -> int:
+        """The number of a policy, by name or number; NotFoundError where there is none such."""
+        return index_of(policy, self.policies, "policy")
+
+    def index_of_type(self, type_: str | int) -> int:
+        """The number of a type, by name or number; NotFoundError where there is none such."""
+        return index_of(type_, self.types, "type")
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """The signal over a finite alphabet; made once for each `n_bins`, see `forget_tables`.
+
+        Raises
+        ------
+        InputError
+            The signal model has none; belief entropy, knowledge gradient and information-directed need it.
+        """
+        if n_bins not in self._tables:
+            make = getattr(self.signal, "table", None)
+            if make is None:
+                raise InputError(
+                    f"{type(self.signal).__name__} has no finite alphabet of signals; choose a rule that needs "
+                    "none (expected improvement, belief sampling), or a signal with a table"
+                )
+            self._tables[n_bins] = make(n_bins)
+        return self._tables[n_bins]
+
+    def keep_table(self, n_bins: int, table: SignalTable) -> None:
+        """Take a table that `table(n_bins)` of this library made earlier, so that it is not made again.
+
+        Raises
+        ------
+        InputError
+            The table is of another number of types or policies.
+        """
+        if (table.n_policies, table.n_types) != (self.n_policies, self.n_types):
+            raise InputError(
+                f"table must be of {self.n_policies} policies and {self.n_types} types, got one of "
+                f"{table.n_policies} and {table.n_types}"
+            )
+        self._tables[n_bins] = table
+
+    def observe(self, type_: str | int, policy: str | int, value: float) -> None:
+        """Learn from one more outcome of a known type, in place; tables are made anew when next asked for."""
+        self.performance.observe(self.index_of_type(type_), self.index_of_policy(policy), value)
+        self.forget_tables()
+
+    def forget_tables(self) -> None:
+        """To be called after the signal model has changed in place."""
+        self._tables.clear()
+
+    def with_type(
+        self,
+        samples: ArrayLike,
+        name: str | None = None,
+        *,
+        signal: SignalModel | None = None,
+        mass: float | None = None,
+    ) -> Self:
+        """A library with one type more.
+
+        Parameters
+        ----------
+        samples : (n_policies, n) float
+            Outcomes of every policy on the new type, NaN where missing.
+        name : str, optional
+        signal : SignalModel, optional
+            For the new library; needed where signals are not returns.
+        mass : float, optional
+            The new type's prior, in [0, 1); 1 / (n_types + 1) unless given. The others share the rest as before.
+        """
+        mass = 1 / (self.n_types + 1) if mass is None else float(mass)
+        if not 0 <= mass < 1:
+            raise InputError(f"mass must lie in [0, 1), got {mass}")
+        performance = self.performance.with_type(samples)
+        names = (*self.types, new_name(name, self.types, "type"))
+        prior = np.append(self.prior * (1 - mass), mass)
+        return type(self)(performance, self._signal_for(performance, signal), names, self.policies, prior)
+
+    def with_policy(
+        self, samples: ArrayLike, name: str | None = None, *, signal: SignalModel | None = None
+    ) -> Self:
+        """A library with one policy more, from its outcomes on every type, `samples` (n_types, n)."""
+        performance = self.performance.with_policy(samples)
+        names = (*self.policies, new_name(name, self.policies, "policy"))
+        return type(self)(performance, self._signal_for(performance, signal), self.types, names, self.prior)
+
+    def without_policy(self, policy: str | int) -> Self:
+        """A library without one of its policies."""
+        gone = self.index_of_policy(policy)
+        return self.take(policies=[index for index in range(self.n_policies) if index != gone])
+
+    def take(
+        self,
+        types: Sequence[int] | None = None,
+        policies: Sequence[int] | None = None,
+        prior: ArrayLike | None = None,
+    ) -> Self:
+        """A library of some types and policies; the prior is renormalised unless given.
+
+        Raises
+        ------
+        InputError
+            Nothing is left, the prior of what is left is 0, or the signal model cannot be cut down.
+        """
+        performance = self.performance.take(types, policies)
+        if isinstance(self.signal, ReturnSignal) and self.signal.outcomes is self.performance:
+            signal: Any = ReturnSignal(performance)
+        elif (cut := getattr(self.signal, "take", None)) is None:
+            raise InputError(f"{type(self.signal).__name__} cannot be cut down; build the library anew")
+        else:
+            signal = cut(types, policies)
+        kept = range(self.n_types) if types is None else types
+        left = self.prior[list(kept)]
+        if prior is None and not left.sum() > 0:
+            raise InputError("the types taken have no prior mass; give prior=")
+        names = tuple(self.types[i] for i in kept)
+        policy_names = tuple(self.policies[i] for i in (range(self.n_policies) if policies is None else policies))
+        return type(self)(
+            performance, signal, names, policy_names, left / left.sum() if prior is None else np.asarray(prior)
+        )
+
+    def save(self, path: str | Path) -> None:
+        """Write the library as one npz file; see `library_file`."""
+        from lifelore.interaction.library.library_file import save_library
+
+        save_library(self, path)
+
+    @classmethod
+    def load(cls, path: str | Path, signal: SignalModel | None = None) -> "PolicyLibrary":
+        """The library that `save` wrote, bit for bit; `signal` where its signal model was the caller's own."""
+        from lifelore.interaction.library.library_file import load_library
+
+        return load_library(path, signal)
+
+    def _signal_for(self, performance: OutcomeModel, signal: SignalModel | None) -> SignalModel:
+        if signal is not None:
+            return signal
+        if isinstance(self.signal, ReturnSignal) and self.signal.outcomes is self.performance:
+            return ReturnSignal(performance)
+        raise InputError("signals are not returns here; give the new library's signal model as signal=")

@@ -1,0 +1,180 @@
+"""Types of users found from what they achieved: a mixture of outcome models, its size by the Bayesian criterion.
+
+Each user has one hidden type; given it, outcomes are independent, with one distribution for each pair of type and
+policy. That is the model policy reuse itself believes in, so users need not have met every policy, and a user with
+many outcomes counts for more than one with few. It is fitted by expectation–maximisation from the seeds of
+k-means++ and from random starts; the number of types is the one of the least
+−2 log L + n_parameters · log n_outcomes.
+
+Two families: ``gaussian``, one deviation a policy shared by all types, and ``categorical`` for a few values; see
+`outcome_families`.
+
+Thesis: §4.3.3 assumes that the clustering is given; §4.7.2 names it as one way to choose types.
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.special import logsumexp
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFamily, UserRows
+
+Array = NDArray[np.float64]
+
+STARTS = 6
+"""Starts for each number of types, half of them k-means++."""
+STEPS, ENOUGH = 300, 1e-7
+"""Most steps of a start; and the gain in log likelihood, a share of it, below which it ends."""
+PATIENCE = 2
+"""Numbers of types tried beyond the best so far."""
+
+
+@dataclass(frozen=True, eq=False)
+class UserTypes:
+    """Types found among users, the most common one first.
+
+    Parameters
+    ----------
+    probs : (n_users, n_types) float64
+        P(type | the user's outcomes); rows sum to 1.
+    weights : (n_types,) float64
+        Share of users, descending.
+    criteria : tuple of float
+        The Bayesian criterion (smaller is better) for each number of types tried, from 1 or for the one asked for.
+    """
+
+    probs: Array
+    weights: Array
+    criteria: tuple[float, ...]
+
+    @property
+    def labels(self) -> NDArray[np.int64]:
+        """Each user's most probable type, (n_users,)."""
+        return self.probs.argmax(axis=1)
+
+    @property
+    def n_types(self) -> int:
+        """Number of types."""
+        return len(self.weights)
+
+
+def user_types(
+    rows: UserRows,
+    generator: np.random.Generator,
+    *,
+    family: str = "gaussian",
+    n_types: int | None = None,
+    most: int = 12,
+) -> UserTypes:
+    """Group users by what they achieved.
+
+    Parameters
+    ----------
+    rows : UserRows
+        Every user and every policy has a row.
+    generator : numpy generator
+        For the starts.
+    family : {"gaussian", "categorical"}
+    n_types : int, optional
+        At most so many types (one that is nobody's most probable is left out); default the number of the least
+        criterion, at most `most`.
+
+    Raises
+    ------
+    InputError
+        A user or policy has no row, there are more types than users, or no such family.
+    """
+    if family not in FAMILIES:
+        raise InputError(f"family must be one of {', '.join(FAMILIES)}, got {family!r}")
+    made = FAMILIES[family](_checked(rows))
+    n_users = rows.shape[0]
+    if n_types is not None and not 1 <= n_types <= n_users:
+        raise InputError(f"n_types must lie between 1 and the {n_users} users, got {n_types}")
+    tried: list[_Fit] = []
+    for size in range(1, min(most, n_users) + 1) if n_types is None else [n_types]:
+        tried.append(_best_start(made, rows, size, generator))
+        if size - 1 - int(np.argmin([fit.criterion for fit in tried])) >= PATIENCE and n_types is None:
+            break
+    best = min(tried, key=lambda fit: fit.criterion)
+    return _named(best, tuple(fit.criterion for fit in tried))
+
+
+class _Fit(NamedTuple):
+    probs: Array
+    weights: Array
+    criterion: float
+
+
+def _best_start(family: OutcomeFamily, rows: UserRows, size: int, generator: np.random.Generator) -> _Fit:
+    n_parameters = family.n_parameters(size)
+    fits = (_maximised(family, shares) for shares in _starts(rows, size, generator))
+    probs, weights, likelihood = max(fits, key=lambda fit: fit[2])
+    return _Fit(probs, weights, -2 * likelihood + n_parameters * np.log(len(rows.values)))
+
+
+def _starts(rows: UserRows, size: int, generator: np.random.Generator) -> Iterator[Array]:
+    """Shares (n_users, size) to start from."""
+    n_users = rows.shape[0]
+    if size == 1 or size == n_users:
+        yield np.eye(size)[np.arange(n_users) % size]
+        return
+    profiles = _profiles(rows)
+    for start in range(STARTS):
+        drawn = generator.integers(size, size=n_users)
+        near = _near_seeds(profiles, size, generator) if start % 2 == 0 else drawn
+        # Nobody is certain at the start, so that no type starts empty.
+        yield 0.9 * np.eye(size)[near] + 0.1 / size
+
+
+def _profiles(rows: UserRows) -> Array:
+    """Mean outcome of each user with each policy in deviations of that policy, 0 where there is none."""
+    number, total = rows.sums(), rows.sums(rows.values)
+    mean = np.where(number > 0, total / np.maximum(number, 1), np.nan)
+    away = mean - np.nanmean(mean, axis=0)
+    spread = np.sqrt(np.nanmean(away**2, axis=0))
+    return np.nan_to_num(away / np.where(spread > 0, spread, 1.0))
+
+
+def _near_seeds(profiles: Array, size: int, generator: np.random.Generator) -> NDArray[np.int64]:
+    """The nearest of `size` users that lie far apart, as k-means++ picks them."""
+    from sklearn.cluster import kmeans_plusplus
+
+    chosen = np.asarray(kmeans_plusplus(profiles, size, random_state=int(generator.integers(2**31)))[1])
+    away = [((profiles - profiles[one]) ** 2).sum(axis=1) for one in chosen]
+    return np.stack(away).argmin(axis=0)
+
+
+def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, float]:
+    """Shares, weights and log likelihood where expectation–maximisation from `shares` ends."""
+    likelihood, before = -np.inf, -np.inf
+    for _ in range(STEPS):
+        weights = shares.mean(axis=0)
+        with np.errstate(divide="ignore"):
+            joint = family.stats @ family.fit(shares).T + np.log(weights)
+        each = np.asarray(logsumexp(joint, axis=1, keepdims=True))
+        shares, likelihood = np.exp(joint - each), float(each.sum())
+        if likelihood - before < ENOUGH * abs(likelihood):
+            break
+        before = likelihood
+    return shares, shares.mean(axis=0), likelihood
+
+
+def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:
+    """The types that are somebody's most probable one, the most common first."""
+    kept = np.unique(fit.probs.argmax(axis=1))
+    probs = fit.probs[:, kept] / fit.probs[:, kept].sum(axis=1, keepdims=True)
+    order = np.argsort(-probs.mean(axis=0), kind="stable")
+    return UserTypes(probs[:, order], probs.mean(axis=0)[order], criteria)
+
+
+def _checked(rows: UserRows) -> UserRows:
+    if not len(rows.values) or not np.isfinite(rows.values).all():
+        raise InputError("values must be finite, at least one")
+    met = rows.sums() > 0
+    if not met.any(axis=1).all() or not met.any(axis=0).all():
+        raise InputError("every user and every policy needs a row; leave out those without")
+    return rows

@@ -1,0 +1,5 @@
+"""Outcome models: P(utility | type, policy), the performance model of the thesis (§4.3.3).
+
+Read in this order: `outcome_model` (the interface), `gaussian_outcomes`, `student_t_outcomes`,
+`histogram_outcomes`, `categorical_outcomes`; `outcome_kinds` lists them by name.
+"""

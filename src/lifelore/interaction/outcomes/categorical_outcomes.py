@@ -1,0 +1,132 @@
+"""Outcomes that take a few values only, such as 10 for a call that succeeded and 3 for one that did not.
+
+Thesis: §4.4.2.3, §4.6.2.
+"""
+
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
+from lifelore.interaction.outcomes.log_probability import checked_distributions, checked_weight
+from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
+
+Array = NDArray[np.float64]
+
+SAME = 1e-9
+"""Outcomes that differ by less, relative to the larger of 1 and their size, are one value."""
+
+
+class CategoricalOutcomes(CountedOutcomes):
+    """P(U = value | type, policy) over a list of values; densities are probabilities.
+
+    Parameters
+    ----------
+    values : (n_values,) float
+        Distinct and finite, in any order; kept in rising order.
+    probs : (n_types, n_policies, n_values) float
+        Rows over values, in the order given, sum to 1.
+    count : float, optional
+        Samples that every row stands for, so that `observe` can move it; without it they are exact.
+
+    Raises
+    ------
+    InputError
+        Values are not distinct, or a row is no distribution.
+
+    Examples
+    --------
+    >>> model = CategoricalOutcomes([10, 3], [[[1.0, 0.0]], [[0.25, 0.75]]])
+    >>> model.values.tolist(), model.mean.tolist()
+    ([3.0, 10.0], [[10.0], [4.75]])
+    """
+
+    kind: ClassVar[str] = "categorical"
+
+    def __init__(self, values: ArrayLike, probs: ArrayLike, count: float | None = None) -> None:
+        probs = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_values"))
+        values = np.array(values, np.float64)
+        if values.shape != (probs.shape[2],):
+            raise InputError(f"values must be {probs.shape[2]} numbers, one a column of probs, got {values.shape}")
+        order = np.argsort(values)
+        self._place(values[order], probs.shape[2])
+        counts = np.ascontiguousarray(probs.transpose(1, 0, 2)[:, :, order]) * checked_weight(count)
+        super().__init__(counts, 0.0 if count is None else 0.5, count is None)
+
+    @classmethod
+    def from_samples(cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
+        """Fitted to `samples` (n_types, n_policies, n), NaN where missing.
+
+        Parameters
+        ----------
+        values : (n_values,) float, optional
+            All that can occur; those that do unless given.
+        pseudo_count : float
+            Added to every value of every pair, ≥ 0.
+
+        Raises
+        ------
+        InputError
+            A pair has no sample, or a sample is none of the values.
+        """
+        return cls.from_rows(rows_of_samples(samples), values, pseudo_count)
+
+    @classmethod
+    def from_rows(cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
+        """Fitted to outcomes one a row; see `from_samples`."""
+        known = _distinct(rows.values) if values is None else np.sort(np.array(values, np.float64))
+        return cls._fitted(known, known.size, rows, pseudo_count)
+
+    def bounds(self) -> tuple[float, float]:
+        """(U^min, U^max): the least and the greatest value."""
+        return float(self.values[0]), float(self.values[-1])
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        return generator.choice(self.values, size, p=self.counts[policy, type_] / self.totals[policy, type_])
+
+    def _place(self, cells: Array, n_cells: int) -> None:
+        if cells.shape != (n_cells,) or n_cells < 1 or not np.isfinite(cells).all():
+            raise InputError(f"values must be {n_cells} finite numbers, got shape {cells.shape}")
+        if n_cells > 1 and not (np.diff(cells) > _tolerance(cells[:-1])).all():
+            raise InputError(f"values must be distinct, by more than {SAME:g} of their size")
+        self.values = cells
+
+    def _where(self) -> Array:
+        return self.values
+
+    def _extent(self) -> str:
+        return f"values {', '.join(f'{value:g}' for value in self.values[:10])}"
+
+    def _cells(self, values: Array) -> NDArray[np.int64]:
+        above = np.minimum(np.searchsorted(self.values, values), self.values.size - 1)
+        below = np.maximum(above - 1, 0)
+        nearer = np.abs(values - self.values[below]) < np.abs(values - self.values[above])
+        nearest = np.where(nearer, below, above)
+        return np.where(np.abs(values - self.values[nearest]) <= _tolerance(values), nearest, -1)
+
+    def _sizes(self) -> Array:
+        return np.ones_like(self.values)
+
+    def _means(self) -> Array:
+        return self.values
+
+    def _variances(self) -> Array:
+        return np.zeros_like(self.values)
+
+    def _above(self, threshold: Array) -> Array:
+        return (self.values > threshold).astype(np.float64)
+
+    def _excess(self, threshold: Array) -> Array:
+        return np.maximum(self.values - threshold, 0.0)
+
+
+def _tolerance(values: Array) -> Array:
+    return SAME * np.maximum(1.0, np.abs(values))
+
+
+def _distinct(values: Array) -> Array:
+    found = np.unique(values)
+    return found[np.concatenate([[True], np.diff(found) > _tolerance(found[:-1])])]

@@ -1,0 +1,210 @@
+"""What a policy achieves on a type: the shape every model of P(U | type, policy) has, and how it takes its data.
+
+One outcome (utility, return, performance) is one number, larger is better. A model covers every pair of a type and
+a policy. `GaussianOutcomes` (with shrunk deviations) is the default; `StudentTOutcomes` says more honestly how
+little a few samples tell; `HistogramOutcomes` and `CategoricalOutcomes` are for outcomes of another shape.
+Thesis: §4.3.4, Def. 4.3.4.
+"""
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple, NoReturn, Protocol, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+
+Array = NDArray[np.float64]
+
+LARGEST = 1e100
+"""Outcomes and means must be of at most this size, deviations at least `LEAST_DEVIATION`: squares stay finite."""
+LEAST_DEVIATION = 1e-50
+
+
+class OutcomeModel(Protocol):
+    """P(U | type, policy) for every pair; (T, P) is (n_types, n_policies)."""
+
+    @property
+    def n_types(self) -> int: ...
+
+    @property
+    def n_policies(self) -> int: ...
+
+    @property
+    def mean(self) -> Array:
+        """E[U | type, policy], (T, P)."""
+        ...
+
+    @property
+    def deviation(self) -> Array:
+        """Standard deviation of U, (T, P)."""
+        ...
+
+    def log_density(self, policy: int, value: float) -> Array:
+        """Log density (log probability, where outcomes are discrete) of `value` per type, (T,); -inf allowed.
+
+        Raises
+        ------
+        InputError
+            `value` is no finite number.
+        NotFoundError
+            There is no such policy.
+        """
+        ...
+
+    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
+        """`log_density` of many outcomes at once, (n,) and (n,) to (n, T); checks nothing."""
+        ...
+
+    def density(self, value: ArrayLike) -> Array:
+        """Density of `value`, a number or a batch (...,), for every pair: (..., T, P)."""
+        ...
+
+    def exceedance(self, threshold: ArrayLike) -> Array:
+        """P(U > threshold) for every pair; a batch (...,) of thresholds gives (..., T, P)."""
+        ...
+
+    def expected_excess(self, threshold: ArrayLike) -> Array:
+        """E[max(U - threshold, 0)] for every pair; a batch (...,) of thresholds gives (..., T, P)."""
+        ...
+
+    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (T, n)."""
+        ...
+
+    def bounds(self) -> tuple[float, float]:
+        """(U^min, U^max) over all pairs: the support, or four deviations around the means where it has no end."""
+        ...
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """The outcome in at most `n_bins` bins, chosen for each policy so as to tell the types apart."""
+        ...
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        ...
+
+    def observe(self, type_: int, policy: int, value: float) -> None:
+        """Learn from one more outcome of a known type, in place."""
+        ...
+
+    def with_type(self, samples: ArrayLike) -> Self:
+        """A new model with one type more, from `samples` (P, n), NaN where missing."""
+        ...
+
+    def with_policy(self, samples: ArrayLike) -> Self:
+        """A new model with one policy more, from `samples` (T, n), NaN where missing."""
+        ...
+
+    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
+        """A new model of some types and policies, in the order given; None keeps all."""
+        ...
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything the model is, as arrays; `from_arrays` gives the same bits back."""
+        ...
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> Self: ...
+
+
+class OutcomeRows(NamedTuple):
+    """Outcomes one a row: which type, which policy, how much.
+
+    types, policies : (n,) int64
+    values : (n,) float64, finite
+    shape : (n_types, n_policies)
+    """
+
+    types: NDArray[np.int64]
+    policies: NDArray[np.int64]
+    values: Array
+    shape: tuple[int, int]
+
+    @property
+    def pair(self) -> NDArray[np.int64]:
+        """Each row's pair as one number, type by type, (n,)."""
+        return self.types * self.shape[1] + self.policies
+
+    def sums(self, values: Array | None = None) -> Array:
+        """Sum of `values` (n,) over each pair's rows, or their number, (n_types, n_policies)."""
+        size = self.shape[0] * self.shape[1]
+        return np.bincount(self.pair, values, minlength=size).astype(np.float64).reshape(self.shape)
+
+
+def rows_of_samples(samples: ArrayLike) -> OutcomeRows:
+    """The outcomes of `samples` (n_types, n_policies, n), NaN where missing, every pair run at least once.
+
+    Raises
+    ------
+    InputError
+        The shape is another, a value is infinite, or a pair of type and policy has no sample.
+    """
+    try:
+        samples = np.asarray(samples, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(
+            "samples must be numbers of one shape (n_types, n_policies, n); fill up with NaN"
+        ) from None
+    if samples.ndim != 3 or not samples.size:
+        raise InputError(f"samples must be (n_types, n_policies, n) numbers, none of them 0, got {samples.shape}")
+    types, policies, place = np.nonzero(~np.isnan(samples))
+    rows = OutcomeRows(types, policies, samples[types, policies, place], samples.shape[:2])
+    return checked_rows(rows)
+
+
+def checked_rows(rows: OutcomeRows) -> OutcomeRows:
+    """The rows, once they are finite and every pair has one (§4.4.1: all policies run on all types)."""
+    if not (np.abs(rows.values) <= LARGEST).all():
+        raise InputError(
+            f"samples must be finite (NaN where one is missing) and of at most {LARGEST:g}; leave out what is not"
+        )
+    missing = np.argwhere(rows.sums() == 0)
+    if len(missing):
+        raise InputError(
+            f"every pair of type and policy needs a sample; {len(missing)} have none, the first is type "
+            f"{missing[0][0]} with policy {missing[0][1]}: run it, or leave that type or policy out"
+        )
+    return rows
+
+
+def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
+    """Say what is wrong with an outcome: the policy is unknown, or the value no finite number."""
+    check_policy(policy, n_policies)
+    raise InputError(
+        f"value must be a finite number of at most {LARGEST:g}, got {value!r:.80}; leave out what has no outcome"
+    )
+
+
+def check_policy(policy: Any, n_policies: int) -> None:
+    """Refuse a policy that is none of 0 … n_policies - 1."""
+    if not isinstance(policy, int | np.integer) or not 0 <= policy < n_policies:
+        raise NotFoundError(f"unknown policy {policy!r}; this model knows 0 to {n_policies - 1}")
+
+
+def check_type(type_: Any, n_types: int) -> None:
+    """Refuse a type that is none of 0 … n_types - 1."""
+    if not isinstance(type_, int | np.integer) or not 0 <= type_ < n_types:
+        raise NotFoundError(f"unknown type {type_!r}; this model knows 0 to {n_types - 1}")
+
+
+def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
+    """Refuse a policy that is none of the model's, and a value that is no finite number."""
+    if not is_outcome(policy, value, n_policies):
+        refuse_outcome(policy, value, n_policies)
+
+
+def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
+    """Whether `policy` is one of the model's and `value` a finite number of at most `LARGEST`."""
+    try:
+        # NaN fails the comparison.
+        known = 0 <= policy < n_policies and -LARGEST <= value <= LARGEST
+        return known and isinstance(policy, int | np.integer)
+    except (TypeError, ValueError):
+        return False
+
+
+def over_pairs(values: ArrayLike) -> Any:
+    """A number as it is, a batch (...,) as (..., 1, 1), to be set against a (T, P) array."""
+    return values if isinstance(values, float | int) else np.asarray(values, np.float64)[..., None, None]

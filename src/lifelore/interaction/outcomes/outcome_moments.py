@@ -1,0 +1,189 @@
+"""Means and variances of outcomes, pair by pair, with variances shrunk towards the one they share.
+
+A handful of samples says much about a mean and little about a deviation, and a deviation underestimated makes a
+belief sure of the wrong type. So every pair's variance starts from the pooled one, which counts as `shrinkage`
+samples. One more outcome moves the numbers exactly as if it had been there from the start (Welford's update), but
+for the pooled variance, which stays. Thesis: §4.4.1, step 4.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.outcome_model import (
+    LARGEST,
+    LEAST_DEVIATION,
+    OutcomeRows,
+    checked_rows,
+    rows_of_samples,
+)
+
+Array = NDArray[np.float64]
+
+FLOOR = 1e-3
+"""Least deviation learnt from samples, as a share of their range: what never varied may still vary a little."""
+
+
+@dataclass
+class OutcomeMoments:
+    """What is known of each pair's mean and variance; all (n_types, n_policies) float64.
+
+    mean, variance : finite; the variance positive
+    count : samples behind the mean; infinite where it is known exactly
+    freedom : degrees of freedom behind the variance, shrinkage included
+    pooled : variance from which a new pair starts
+    shrinkage : samples that it counts as
+    """
+
+    mean: Array
+    variance: Array
+    count: Array
+    freedom: Array
+    pooled: float
+    shrinkage: float
+
+    def observe(self, type_: int, policy: int, value: float) -> None:
+        """Learn from one more outcome, in place."""
+        pair = type_, policy
+        if np.isinf(self.count[pair]):
+            raise InputError(
+                f"type {type_} with policy {policy} is known exactly and learns nothing; build the model with "
+                "count= (how many samples its numbers stand for) to let it learn"
+            )
+        self.count[pair] += 1
+        self.freedom[pair] += 1
+        before = value - self.mean[pair]
+        self.mean[pair] += before / self.count[pair]
+        square = before * (value - self.mean[pair])
+        self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
+
+    def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
+        """With the types (axis 0) or policies (axis 1) of `other` after one's own."""
+        pairs = zip(self._fields(), other._fields(), strict=True)
+        return self._with([np.concatenate(pair, axis=axis) for pair in pairs])
+
+    def more(self, samples: ArrayLike, axis: int) -> "OutcomeMoments":
+        """With one type (axis 0) or policy (axis 1) more, from `samples` (number of the others, n)."""
+        rows = rows_of_more(samples, self.mean.shape[1 - axis], axis)
+        return self.joined(moments(rows, self.shrinkage, self.pooled), axis)
+
+    def take(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> "OutcomeMoments":
+        """Those of some types and policies."""
+        chosen = np.ix_(chosen_of(types, self.mean.shape[0]), chosen_of(policies, self.mean.shape[1]))
+        return self._with([field[chosen] for field in self._fields()])
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """All of it by name."""
+        return {name: np.array(value) for name, value in vars(self).items()}
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
+        """What `to_arrays` gave; refuses arrays that are no moments."""
+        fields = [np.array(arrays[name], np.float64) for name in ("mean", "variance", "count", "freedom")]
+        mean, variance, count, freedom = fields
+        found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]))
+        if found.mean.ndim != 2 or not found.mean.size or any(field.shape != found.mean.shape for field in fields):
+            raise InputError(f"mean, variance, count and freedom must share one shape, got {found.mean.shape}")
+        good = (np.abs(mean) <= LARGEST) & (variance >= LEAST_DEVIATION**2) & (variance <= LARGEST**2)
+        if not (good & (count > 0) & (freedom > 0)).all() or not found.pooled > 0:
+            raise InputError("means must be finite, variances, counts and degrees of freedom positive")
+        return found
+
+    def _with(self, fields: list[Array]) -> "OutcomeMoments":
+        mean, variance, count, freedom = fields
+        return OutcomeMoments(mean, variance, count, freedom, self.pooled, self.shrinkage)
+
+    def _fields(self) -> tuple[Array, Array, Array, Array]:
+        return self.mean, self.variance, self.count, self.freedom
+
+
+def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None = None) -> OutcomeMoments:
+    """Means and deviations given, exactly or as if from `count` samples.
+
+    Raises
+    ------
+    InputError
+        The shapes do not agree, a mean is not finite, or a deviation or count not positive.
+    """
+    mean = np.array(mean, np.float64)
+    if mean.ndim != 2 or not mean.size:
+        raise InputError(f"mean must be (n_types, n_policies) numbers, none of them 0, got {mean.shape}")
+    deviation, count = _spread_out(deviation, mean, "deviation"), _spread_out(count, mean, "count")
+    if not (np.abs(mean) <= LARGEST).all():
+        raise InputError(
+            f"mean must be finite and of at most {LARGEST:g} in every pair; leave out types or policies never run"
+        )
+    if not ((deviation >= LEAST_DEVIATION) & (deviation <= LARGEST)).all():
+        raise InputError(
+            f"deviation must be positive, {LEAST_DEVIATION:g} to {LARGEST:g}; use CategoricalOutcomes "
+            "where nothing varies"
+        )
+    if not (count > 0).all():
+        raise InputError("count must be positive")
+    variance = deviation**2
+    return OutcomeMoments(mean, variance, count, count.copy(), float(variance.mean()), 5.0)
+
+
+def moments(rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None) -> OutcomeMoments:
+    """Moments of the outcomes, variances shrunk towards `pooled` (theirs together, unless given).
+
+    Raises
+    ------
+    InputError
+        `shrinkage` is not positive and finite, a pair has no sample, or the values overflow.
+    """
+    if not (shrinkage > 0 and np.isfinite(shrinkage)):
+        raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
+    if pooled is not None and not (pooled > 0 and np.isfinite(pooled)):
+        raise InputError(f"pooled must be a positive variance, got {pooled}")
+    checked_rows(rows)
+    count = rows.sums()
+    mean = rows.sums(rows.values) / count
+    squares = rows.sums((rows.values - mean[rows.types, rows.policies]) ** 2)
+    if pooled is None:
+        pooled = max(_pooled(squares, count, mean), _least_variance(rows.values))
+    freedom = shrinkage + count - 1
+    return OutcomeMoments(mean, (shrinkage * pooled + squares) / freedom, count, freedom, pooled, shrinkage)
+
+
+def rows_of_more(samples: ArrayLike, n_others: int, axis: int) -> OutcomeRows:
+    """`samples` (n_others, n) of one type (axis 0) or one policy (axis 1) more, as rows."""
+    samples = np.asarray(samples, np.float64)
+    if samples.ndim != 2 or len(samples) != n_others:
+        others = "policies" if axis == 0 else "types"
+        raise InputError(f"samples must be ({n_others}, n), one row for each of the {others}, got {samples.shape}")
+    return rows_of_samples(np.expand_dims(samples, axis))
+
+
+def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
+    """Which of n are chosen: all where None; at least one, each of 0 … n - 1."""
+    if chosen is None:
+        return np.arange(n)
+    index = np.asarray(chosen, np.int64)
+    if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
+        raise InputError(f"what to take must be one or more of 0 to {n - 1}, got {chosen}")
+    return index
+
+
+def _spread_out(values: ArrayLike | None, mean: Array, name: str) -> Array:
+    values = np.asarray(np.inf if values is None else values, np.float64)
+    if values.ndim > 0 and values.shape != mean.shape:
+        raise InputError(f"{name} must be one number or of mean's shape {mean.shape}, got {values.shape}")
+    return np.broadcast_to(values, mean.shape).copy()
+
+
+def _pooled(squares: Array, count: Array, mean: Array) -> float:
+    """Variance within pairs, taken together; where each ran but once, that of means across types or policies."""
+    if (freedom := (count - 1).sum()) > 0:
+        return float(squares.sum() / freedom)
+    # Nothing tells noise from difference: all of it counts as noise, so that beliefs move with caution.
+    return float(mean.var(axis=0).mean()) if len(mean) > 1 else float(mean.var())
+
+
+def _least_variance(values: Array) -> float:
+    extent = float(values.max() - values.min()) or max(1.0, float(np.abs(values).max()))
+    return max(FLOOR * extent, LEAST_DEVIATION) ** 2

@@ -1,0 +1,129 @@
+"""Outcomes as Student's t: the predictive of a Gaussian whose mean and variance few samples leave open.
+
+With the reference prior on a mean and an inverse χ² on the variance (the pooled one, counting as `shrinkage`
+samples), the next outcome is t with location the sample mean, scale² = variance (1 + 1 / count) and as many
+degrees of freedom as stand behind the variance. Thesis: §4.4.1, step 4.
+"""
+
+from typing import Any, ClassVar
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
+from lifelore.interaction.outcomes.outcome_moments import known_moments
+from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
+
+Array = NDArray[np.float64]
+
+
+class StudentTOutcomes(MomentOutcomes):
+    """P(U | type, policy) = t(freedom) around a location, in units of a scale.
+
+    Parameters
+    ----------
+    mean : (n_types, n_policies) float
+        Sample means.
+    deviation : float or (n_types, n_policies) float
+        Sample deviations, positive.
+    count : float or (n_types, n_policies) float
+        Samples that they stand for, more than 2.
+
+    Raises
+    ------
+    InputError
+        As for `GaussianOutcomes`, or fewer than three degrees of freedom would leave no deviation.
+    """
+
+    kind: ClassVar[str] = "student-t"
+
+    def __init__(self, mean: ArrayLike, deviation: ArrayLike, count: ArrayLike) -> None:
+        super().__init__(known_moments(mean, deviation, count))
+
+    @property
+    def freedom(self) -> Array:
+        """Degrees of freedom, (n_types, n_policies)."""
+        return self.moments.freedom
+
+    def log_density(self, policy: int, value: float) -> Array:
+        """Log density of `value` per type, (n_types,).
+
+        Raises
+        ------
+        InputError
+            `value` is no finite number.
+        NotFoundError
+            There is no such policy.
+        """
+        if not is_outcome(policy, value, self._centre.shape[0]):
+            refuse_outcome(policy, value, self.n_policies)
+        z = (value - self._centre[policy]) * self._narrow[policy]
+        z *= z
+        np.log1p(z, out=z)
+        z *= self._power[policy]
+        z += self._log_height[policy]
+        return z
+
+    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
+        """`log_density` of many outcomes at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        z = (np.asarray(values, np.float64)[:, None] - self._centre[policies]) * self._narrow[policies]
+        return self._log_height[policies] + self._power[policies] * np.log1p(z * z)
+
+    def density(self, value: ArrayLike) -> Array:
+        """Density of `value` for every pair, (..., n_types, n_policies)."""
+        return self._unit_density((over_pairs(value) - self.mean) / self.scale) / self.scale
+
+    def exceedance(self, threshold: ArrayLike) -> Array:
+        """P(U > threshold) for every pair, (..., n_types, n_policies)."""
+        return stdtr(self.freedom, (self.mean - over_pairs(threshold)) / self.scale)
+
+    def expected_excess(self, threshold: ArrayLike) -> Array:
+        """E[max(U - threshold, 0)] for every pair, (..., n_types, n_policies).
+
+        With z = (mean - threshold) / s, and f and F the density and distribution of t with ν degrees of freedom:
+        s (f(z) (ν + z²) / (ν - 1) + z F(z)).
+        """
+        z = (self.mean - over_pairs(threshold)) / self.scale
+        peak = self._unit_density(z) * (self.freedom + z * z) / (self.freedom - 1)
+        # Far below the threshold the two terms cancel, and rounding may leave less than nothing.
+        return np.maximum(self.scale * (peak + z * stdtr(self.freedom, z)), 0.0)
+
+    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
+        z = (values - self.mean[types, policy][:, None]) / self.scale[types, policy][:, None]
+        return stdtr(self.freedom[types, policy][:, None], z)
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        drawn = generator.standard_t(self.freedom[type_, policy], size)
+        return self.mean[type_, policy] + self.scale[type_, policy] * drawn
+
+    def _unit_density(self, z: Array) -> Array:
+        return np.exp(self._unit_height - 0.5 * (self.freedom + 1) * np.log1p(z * z / self.freedom))
+
+    def _prepare(self) -> None:
+        if not ((self.freedom > 2) & np.isfinite(self.freedom)).all():
+            raise InputError(
+                "every pair needs more than 2 and finitely many degrees of freedom (shrinkage + samples - 1, or "
+                "count); raise shrinkage, or use GaussianOutcomes for what is known exactly"
+            )
+        self.scale: Array = np.sqrt(self.moments.variance * (1 + 1 / self.moments.count))
+        self.deviation = self.scale * np.sqrt(self.freedom / (self.freedom - 2))
+        half = 0.5 * self.freedom
+        self._unit_height = gammaln(half + 0.5) - gammaln(half) - 0.5 * np.log(np.pi * self.freedom)
+        # Policy first: an update reads one policy's row.
+        self._centre = np.ascontiguousarray(self.mean.T)
+        self._narrow = np.ascontiguousarray(1 / (self.scale * np.sqrt(self.freedom)).T)
+        self._power = np.ascontiguousarray(-half.T - 0.5)
+        self._log_height = np.ascontiguousarray((self._unit_height - np.log(self.scale)).T)
+
+    def _renew(self, type_: int, policy: int) -> None:
+        # One pair's worth of `_prepare`, through the same formulas so that the bits agree.
+        one = self.take([type_], [policy])
+        pair, turned = (type_, policy), (policy, type_)
+        self.scale[pair], self.deviation[pair] = one.scale[0, 0], one.deviation[0, 0]
+        self._unit_height[pair] = one._unit_height[0, 0]
+        self._centre[turned], self._narrow[turned] = one._centre[0, 0], one._narrow[0, 0]
+        self._power[turned], self._log_height[turned] = one._power[0, 0], one._log_height[0, 0]

@@ -1,0 +1,135 @@
+"""A `BayesianPolicyReuse` agent as one npz file: it goes on as if it had never stopped, to the last bit.
+
+about            uint8, UTF-8 JSON: format, version, rule, dynamics, horizon, counters, random generator
+library          uint8, the library's own file (`library_file`)
+log_belief       (n_types,) float64
+law              the dynamics' prior or matrix, where they have one
+scores           (n_policies,) float64 of the last selection, where there was one
+log_likelihood   (n, n_types) float64 of the signals kept; evidence_policy and log_evidence (n,) beside it
+"""
+
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import Arrays, PackedFormat
+from lifelore.core.protocols import SignalModel
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.evidence import Evidence
+from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
+from lifelore.interaction.selection import RULES, rule_named
+
+FORMAT = PackedFormat("lifelore policy reuse session", 1, "session", "save_session")
+
+
+def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
+    """Write an agent.
+
+    Raises
+    ------
+    InputError
+        Its rule is none of ours, or a setting is no plain value.
+    StoreError
+        The disk refuses.
+    """
+    content = session_bytes(agent)
+    try:
+        with whole_file(path) as file:
+            file.write(content)
+    except OSError as error:
+        raise StoreError(f"the session cannot be written to {path}: {error.strerror}") from None
+
+
+def load_session(path: str | Path, signal: SignalModel | None = None) -> BayesianPolicyReuse:
+    """The agent that `save_session` wrote; it selects and learns as the one saved would have.
+
+    Parameters
+    ----------
+    signal : SignalModel, optional
+        Needed where the library's signal model is the caller's own function.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is none of ours, newer, or damaged.
+    """
+    try:
+        content = Path(path).read_bytes()
+    except OSError as error:
+        raise InputError(f"the session {path} cannot be read: {error.strerror}") from None
+    return session_from_bytes(content, str(path), signal)
+
+
+def session_bytes(agent: BayesianPolicyReuse) -> bytes:
+    """The agent as the bytes of an npz file; equal agents give equal bytes."""
+    if RULES.get(getattr(agent.rule, "name", "")) is not type(agent.rule):
+        raise InputError(f"rule must be one of {', '.join(RULES)} to be saved, got {type(agent.rule).__name__}")
+    header = {
+        "rule": agent.rule.name,
+        "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
+        "dynamics": agent.dynamics.kind,
+        "rate": agent.dynamics.rate,
+        "horizon": agent.horizon,
+        "episode": agent.episode,
+        "surprise": agent.surprise,
+        "unexplained": agent.unexplained,
+        "selected": None if agent._selected is None else agent._selected[0],
+        "generator": generator_state(agent.generator),
+    }
+    return FORMAT.pack(header, _arrays(agent))
+
+
+def session_from_bytes(
+    content: bytes, where: str = "the session", signal: SignalModel | None = None
+) -> BayesianPolicyReuse:
+    """The agent of `session_bytes`; `where` is named when it cannot be read."""
+    header, arrays = FORMAT.unpack(content, where)
+    try:
+        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
+        dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
+        rule = rule_named(header["rule"], **header["settings"])
+        generator = generator_from_state(header["generator"])
+        agent = BayesianPolicyReuse(library, rule, None, dynamics, header["horizon"], generator)
+        _restore(agent, header, arrays)
+    except InputError:
+        raise
+    except (LookupError, ValueError, TypeError, AttributeError) as error:
+        raise FORMAT.damaged(where, error) from None
+    return agent
+
+
+def _arrays(agent: BayesianPolicyReuse) -> Arrays:
+    kept = list(agent._evidence)
+    arrays: Arrays = {
+        "library": np.frombuffer(library_bytes(agent.library), np.uint8),
+        "log_belief": agent.log_belief,
+        "evidence_policy": np.array([one.policy for one in kept], np.int64),
+        "log_evidence": np.array([one.log_evidence for one in kept], np.float64),
+        "log_likelihood": np.array([one.log_likelihood for one in kept]).reshape(-1, agent.library.n_types),
+    }
+    if agent.dynamics.law is not None:
+        arrays["law"] = agent.dynamics.law
+    if agent._selected is not None:
+        arrays["scores"] = agent._selected[1]
+    return arrays
+
+
+def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays) -> None:
+    log_belief = arrays["log_belief"]
+    if log_belief.shape != (agent.library.n_types,) or log_belief.dtype != np.float64:
+        raise ValueError(f"log_belief has shape {log_belief.shape}")
+    if not ((log_belief <= 0).all() and abs(np.exp(log_belief).sum() - 1) < 1e-9):
+        raise ValueError("log_belief is no belief")
+    agent._log_belief = log_belief
+    agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
+    agent.surprise = float(header["surprise"])
+    kept = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
+    agent._evidence.extend(Evidence(int(policy), said, float(evidence)) for policy, said, evidence in kept)
+    if header["selected"] is not None:
+        agent._selected = int(header["selected"]), arrays["scores"]

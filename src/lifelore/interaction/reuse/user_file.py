@@ -1,0 +1,86 @@
+"""`UserBeliefs` as one npz file: beliefs, library and random generator, to the bit; a million users take seconds.
+
+about            uint8, UTF-8 JSON: format, version, dtype, dynamics, random generator
+library          uint8, the library's own file (`library_file`)
+log_belief       (n_users, n_types) float32 or float64
+log_prior        (n_types,) of the same, what a user who is forgotten starts from
+law              the dynamics' prior or matrix, where they have one
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import InputError, StoreError
+from lifelore.core.packed_arrays import Arrays, PackedFormat
+from lifelore.core.protocols import SignalModel
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+
+FORMAT = PackedFormat("lifelore user beliefs", 1, "file of user beliefs", "save_users", 2**40)
+
+
+def save_users(users: UserBeliefs, path: str | Path) -> None:
+    """Write all beliefs, uncompressed; StoreError where the disk refuses."""
+    header = {
+        "dtype": users.dtype,
+        "dynamics": users.dynamics.kind,
+        "rate": users.dynamics.rate,
+        "generator": generator_state(users.generator),
+    }
+    arrays: Arrays = {
+        "library": np.frombuffer(library_bytes(users.library), np.uint8),
+        "log_belief": users.log_belief,
+        "log_prior": users.log_prior,
+    }
+    if users.dynamics.law is not None:
+        arrays["law"] = users.dynamics.law
+    try:
+        with whole_file(path) as file:
+            FORMAT.write(file, header, arrays, compress=False)
+    except OSError as error:
+        raise StoreError(f"the users cannot be written to {path}: {error.strerror}") from None
+
+
+def load_users(path: str | Path, signal: SignalModel | None = None) -> UserBeliefs:
+    """What `save_users` wrote; `signal` is needed where the library's signal model is the caller's own.
+
+    Raises
+    ------
+    InputError
+        There is no such file, or it is none of ours, newer, or damaged.
+    """
+    if not Path(path).is_file():
+        raise InputError(f"the users {path} cannot be read: no such file")
+    with Path(path).open("rb") as file:
+        header, arrays = FORMAT.unpack(file, str(path))
+    try:
+        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
+        dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
+        users = UserBeliefs(
+            library,
+            len(arrays["log_belief"]),
+            header["dtype"],
+            dynamics=dynamics,
+            seed=generator_from_state(header["generator"]),
+        )
+        _restore(users, arrays)
+    except InputError:
+        raise
+    except (LookupError, ValueError, TypeError, AttributeError) as error:
+        raise FORMAT.damaged(str(path), error) from None
+    return users
+
+
+def _restore(users: UserBeliefs, arrays: Arrays) -> None:
+    for name in ("log_belief", "log_prior"):
+        value, own = arrays[name], getattr(users, name)
+        if value.shape != own.shape or value.dtype != own.dtype:
+            raise ValueError(f"{name} has shape {value.shape} of {value.dtype}")
+        # Rows without NaN or positive numbers, each with a type that is possible.
+        if not ((value <= 0).all() and (value.max(axis=-1) > -np.inf).all()):
+            raise ValueError(f"{name} holds rows that are no beliefs")
+    users.log_belief, users.log_prior = arrays["log_belief"], arrays["log_prior"]

@@ -1,0 +1,112 @@
+"""The exact best way to select over a finite horizon: dynamic programming over beliefs. Thesis: Eq. 4.3, §4.5.
+
+    V_k(w) = max_π [ Σ_τ w(τ) E[U | τ, π] + Σ_σ V_{k-1}(w · F(σ | ·, π)) ],   V_0 = 0
+
+The thesis's Q has no horizon and diverges, and takes the expectation under the unknown type; here it is under
+the belief, with a horizon. Beliefs w are not normalised: each carries the probability of the signals that lead
+to it, so nothing is divided. The tree has (n_policies n_signals)^k beliefs: an oracle for small problems
+(golf: 4 clubs, 7 categories, 3 shots), not a rule.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.library.library_names import checked_prior
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection.rule import SelectionRule
+
+Array = NDArray[np.float64]
+
+LARGEST = 50_000_000
+"""Numbers in the tree's last layer of beliefs, above which it is refused."""
+
+
+class Plan(NamedTuple):
+    """What the best selection is worth.
+
+    value : float
+        Expected sum of utilities over the horizon.
+    first : int
+        The policy that it starts with.
+    worth : (n_policies,) float64
+        Q: the value of starting with each policy and going on at best.
+    """
+
+    value: float
+    first: int
+    worth: Array
+
+
+def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None, n_bins: int = 8) -> Plan:
+    """The best value over `horizon` episodes from `belief` (the library's prior unless given), exactly.
+
+    Utilities are the performance model's; signals are `library.table(n_bins)`.
+
+    Raises
+    ------
+    InputError
+        The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
+    """
+    table, mean = library.table(n_bins), library.performance.mean
+    layers = _layers(table, _start(library, belief), horizon)
+    worth = layers[-1] @ mean
+    for weights in reversed(layers[:-1]):
+        worth = weights @ mean + _after_signals(worth.max(axis=1), table)
+    return Plan(float(worth[0].max()), int(worth[0].argmax()), worth[0])
+
+
+def value_of_rule(
+    library: PolicyLibrary, rule: SelectionRule, horizon: int, belief: Array | None = None, n_bins: int = 8
+) -> float:
+    """Expected sum of utilities over `horizon` episodes when `rule` selects, exactly: ties and draws are averaged.
+
+    Raises
+    ------
+    InputError
+        The horizon is below 1, the tree would be too large, or the belief is no distribution over the types.
+    """
+    table, mean = library.table(n_bins), library.performance.mean
+    layers = _layers(table, _start(library, belief), horizon)
+    value = np.zeros(0)
+    for left, weights in enumerate(reversed(layers)):
+        worth = weights @ mean
+        if left:
+            worth = worth + _after_signals(value, table)
+        value = (_shares(library, rule, weights, left) * worth).sum(axis=1)
+    return float(value[0])
+
+
+def _start(library: PolicyLibrary, belief: Array | None) -> Array:
+    return library.prior if belief is None else checked_prior(belief, library.n_types)
+
+
+def _layers(table: SignalTable, belief: Array, horizon: int) -> list[Array]:
+    """Unnormalised beliefs before each episode: layer k is ((n_policies n_signals)^k, n_types)."""
+    if horizon < 1:
+        raise InputError(f"horizon must be at least 1, got {horizon}")
+    branches = table.n_policies * table.n_signals
+    if branches ** (horizon - 1) * table.n_types > LARGEST:
+        raise InputError(
+            f"a tree of {branches} branches and horizon {horizon} is too large; take fewer bins or episodes"
+        )
+    law = table.probs.astype(np.float64).transpose(0, 2, 1).reshape(branches, table.n_types)
+    layers = [belief[None]]
+    for _ in range(horizon - 1):
+        layers.append((layers[-1][:, None, :] * law).reshape(-1, table.n_types))
+    return layers
+
+
+def _after_signals(value: Array, table: SignalTable) -> Array:
+    """Values (n P S,) of the next layer summed over signals, (n, P)."""
+    return value.reshape(-1, table.n_policies, table.n_signals).sum(axis=2)
+
+
+def _shares(library: PolicyLibrary, rule: SelectionRule, weights: Array, left: int) -> Array:
+    """How likely the rule is to select each policy at each belief; those that cannot be reached select any."""
+    total = weights.sum(axis=1, keepdims=True)
+    beliefs = np.divide(weights, total, out=np.full_like(weights, 1 / weights.shape[1]), where=total > 0)
+    return rule.probabilities(library, beliefs, episodes_left=left)

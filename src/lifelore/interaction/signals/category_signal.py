@@ -1,0 +1,158 @@
+"""Signals that are one of a few categories, such as the distance bands of the golf example.
+
+Thesis: §4.4.1, §4.6.1 (Table 4.1).
+"""
+
+import json
+from collections.abc import Hashable, Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
+from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
+from lifelore.interaction.outcomes.outcome_moments import chosen_of
+
+Array = NDArray[np.float64]
+
+
+class CategorySignal:
+    """P(category | type, policy).
+
+    Parameters
+    ----------
+    probs : (n_types, n_policies, n_categories) float
+        Rows over categories sum to 1; zeros are allowed.
+    categories : sequence of hashable, optional
+        What the categories are called; then signals are these names. Otherwise signals are 0 … n_categories - 1.
+
+    Raises
+    ------
+    InputError
+        A row is no distribution, or names are too few or not distinct.
+
+    Examples
+    --------
+    >>> signal = CategorySignal([[[0.9, 0.1]], [[0.2, 0.8]]], categories=["near", "far"])
+    >>> signal.log_likelihood(0, "far").round(3).tolist()
+    [-2.303, -0.223]
+    """
+
+    kind: ClassVar[str] = "category"
+
+    def __init__(self, probs: ArrayLike, categories: Sequence[Hashable] | None = None) -> None:
+        self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
+        self.categories = None if categories is None else tuple(categories)
+        n = self.probs.shape[2]
+        names = range(n) if self.categories is None else self.categories
+        self._place = {name: place for place, name in enumerate(names)}
+        if len(names) != n or len(self._place) != n:
+            raise InputError(f"categories must be {n} distinct names, got {len(names)}")
+        # Policy and category first: an update reads one row.
+        self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
+        self._log.flags.writeable = False
+
+    @classmethod
+    def from_samples(
+        cls,
+        samples: ArrayLike,
+        n_categories: int | None = None,
+        pseudo_count: float = 0.5,
+        categories: Sequence[Hashable] | None = None,
+    ) -> Self:
+        """Fitted to category numbers `samples` (n_types, n_policies, n), NaN where missing.
+
+        Parameters
+        ----------
+        n_categories : int, optional
+            The number of `categories`, or one more than the largest sample, unless given.
+        pseudo_count : float
+            Added to every category of every pair, ≥ 0; at 0, one category never seen deletes a type for ever.
+
+        Raises
+        ------
+        InputError
+            A pair has no sample, or a sample is no category.
+        """
+        rows = rows_of_samples(samples)
+        n = n_categories or (len(categories) if categories is not None else int(rows.values.max()) + 1)
+        number = rows.values.astype(np.int64)
+        if (number != rows.values).any() or number.min() < 0 or number.max() >= n:
+            raise InputError(f"samples must be category numbers 0 to {n - 1}")
+        if not (pseudo_count >= 0 and np.isfinite(pseudo_count)):
+            raise InputError(f"pseudo_count must be at least 0, got {pseudo_count}")
+        size = rows.shape[0] * rows.shape[1] * n
+        counts = np.bincount(rows.pair * n + number, minlength=size).reshape(*rows.shape, n) + pseudo_count
+        return cls(counts / counts.sum(axis=2, keepdims=True), categories)
+
+    @property
+    def n_types(self) -> int:
+        return self.probs.shape[0]
+
+    @property
+    def n_policies(self) -> int:
+        return self.probs.shape[1]
+
+    @property
+    def n_categories(self) -> int:
+        return self.probs.shape[2]
+
+    def log_likelihood(self, policy: int, signal: Hashable) -> Array:
+        """Log probability of the category per type, (n_types,); read only.
+
+        Raises
+        ------
+        InputError
+            There is no such category.
+        NotFoundError
+            There is no such policy.
+        """
+        try:
+            place = self._place[signal]
+        except (KeyError, TypeError):
+            raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
+        if not 0 <= policy < self._log.shape[0]:
+            check_policy(policy, self.n_policies)
+        return self._log[policy, place]
+
+    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
+        """Those of many category numbers at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        return self._log[policies, np.asarray(signals, np.int64)]
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """All categories where they are at most `n_bins`; otherwise neighbours joined, as for outcomes."""
+        check_bins(n_bins)
+        by_policy = self.probs.transpose(1, 0, 2)
+        if self.n_categories <= n_bins:
+            return SignalTable(by_policy)
+        return SignalTable(np.stack([joined_bins(rows, n_bins) for rows in by_policy]))
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Category numbers drawn for one pair."""
+        return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
+
+    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
+        """The model of some types and policies."""
+        chosen = np.ix_(chosen_of(types, self.n_types), chosen_of(policies, self.n_policies))
+        return type(self)(self.probs[chosen], self.categories)
+
+    def parts(self) -> tuple[Any, ...]:
+        """It rests on no other model."""
+        return ()
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Probabilities and, as JSON, the names of the categories."""
+        try:
+            names = json.dumps(self.categories)
+        except TypeError:
+            raise InputError("categories must be texts or numbers to be saved") from None
+        return {"probs": self.probs, "categories": np.frombuffer(names.encode(), np.uint8)}
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+        """The model of `to_arrays`, bit for bit."""
+        return cls(arrays["probs"], json.loads(arrays["categories"].tobytes()))

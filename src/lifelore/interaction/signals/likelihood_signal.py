@@ -1,0 +1,74 @@
+"""A signal model that is the caller's own function."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.outcome_model import check_policy
+from lifelore.interaction.outcomes.outcome_moments import chosen_of
+
+Array = NDArray[np.float64]
+
+
+class LikelihoodSignal:
+    """Signals of any kind, with a log likelihood by the caller.
+
+    Parameters
+    ----------
+    function : callable
+        ``function(policy, signal)`` gives log likelihoods (n_types,); -inf is allowed, NaN and +inf are not.
+    n_types : int
+    n_policies : int, optional
+        Checked where given.
+
+    Examples
+    --------
+    >>> signal = LikelihoodSignal(lambda policy, words: [-len(words), -1.0], n_types=2)
+    >>> signal.log_likelihood(0, "abc").tolist()
+    [-3.0, -1.0]
+    """
+
+    def __init__(
+        self, function: Callable[[int, Any], ArrayLike], n_types: int, n_policies: int | None = None
+    ) -> None:
+        if n_types < 1:
+            raise InputError(f"n_types must be at least 1, got {n_types}")
+        self.function, self.n_types, self.n_policies = function, n_types, n_policies
+
+    def log_likelihood(self, policy: int, signal: Any) -> Array:
+        """What the function gives, checked.
+
+        Raises
+        ------
+        InputError
+            It gave another shape, NaN or +inf.
+        NotFoundError
+            There is no such policy.
+        """
+        if self.n_policies is not None:
+            check_policy(policy, self.n_policies)
+        name = getattr(self.function, "__name__", type(self.function).__name__)
+        try:
+            found = np.asarray(self.function(policy, signal), np.float64)
+        except (TypeError, ValueError) as error:
+            raise InputError(f"log likelihood {name!r} gave no numbers for policy {policy}: {error}") from error
+        if found.shape != (self.n_types,):
+            raise InputError(f"log likelihood {name!r} must give ({self.n_types},) numbers, gave {found.shape}")
+        if not (found < np.inf).all():
+            raise InputError(f"log likelihood {name!r} must be below inf and no NaN, gave {found!r:.80}")
+        return found
+
+    def take(
+        self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None
+    ) -> "LikelihoodSignal":
+        """The model of some types and policies."""
+        kept = chosen_of(types, self.n_types)
+        given = self.function
+
+        def cut(policy: int, signal: Any) -> Array:
+            return np.asarray(given(policy if policies is None else int(policies[policy]), signal))[kept]
+
+        return LikelihoodSignal(cut, len(kept), self.n_policies if policies is None else len(policies))

@@ -1,0 +1,75 @@
+"""The episode's return as the signal: the performance model is the observation model too.
+
+Thesis: §4.4.2.3.
+"""
+
+from collections.abc import Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel
+
+Array = NDArray[np.float64]
+
+
+class ReturnSignal:
+    """Signals that are outcomes: F(σ) = P(U = σ | type, policy).
+
+    Parameters
+    ----------
+    outcomes : OutcomeModel
+        Kept, not copied: what it learns, the signal model knows.
+    """
+
+    kind: ClassVar[str] = "return"
+
+    def __init__(self, outcomes: OutcomeModel) -> None:
+        self.outcomes = outcomes
+
+    @property
+    def n_types(self) -> int:
+        return self.outcomes.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return self.outcomes.n_policies
+
+    def log_likelihood(self, policy: int, signal: float) -> Array:
+        """Log density of the return per type, (n_types,).
+
+        Raises
+        ------
+        InputError
+            The return is no finite number.
+        NotFoundError
+            There is no such policy.
+        """
+        return self.outcomes.log_density(policy, signal)
+
+    def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
+        """Those of many returns at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        return self.outcomes.log_densities(policies, signals)
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """The return in bins."""
+        return self.outcomes.table(n_bins)
+
+    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
+        """The model of some types and policies."""
+        return type(self)(self.outcomes.take(types, policies))
+
+    def parts(self) -> tuple[Any, ...]:
+        """The models it rests on."""
+        return (self.outcomes,)
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Nothing beyond its parts."""
+        return {}
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+        """The model of `to_arrays` and `parts`."""
+        return cls(*parts)

@@ -1,0 +1,130 @@
+"""The instantaneous rewards of an episode as the signal, each drawn alone.
+
+Thesis: §4.4.2.2. `StepRewardSignal` conditions each reward on the state and action it came from.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
+from lifelore.interaction.outcomes.outcome_model import (
+    LARGEST,
+    OutcomeModel,
+    OutcomeRows,
+    check_policy,
+    checked_rows,
+)
+
+Array = NDArray[np.float64]
+
+
+class RewardSignal:
+    """Signals that are sequences of rewards: F(r_1 … r_n) = Π P(r_i | type, policy).
+
+    Parameters
+    ----------
+    rewards : OutcomeModel
+        P(r | type, policy) of a single reward: `CategoricalOutcomes` where rewards are few, or Gaussian.
+
+    Examples
+    --------
+    >>> from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
+    >>> signal = RewardSignal(CategoricalOutcomes([0, 1], [[[0.5, 0.5]], [[0.9, 0.1]]]))
+    >>> signal.log_likelihood(0, [0, 0, 1]).round(3).tolist()
+    [-2.079, -2.513]
+    """
+
+    kind: ClassVar[str] = "reward"
+
+    def __init__(self, rewards: OutcomeModel) -> None:
+        self.rewards = rewards
+
+    @classmethod
+    def from_sequences(
+        cls,
+        sequences: Iterable[tuple[int, int, ArrayLike]],
+        n_types: int,
+        n_policies: int,
+        model: str = "categorical",
+        **options: Any,
+    ) -> Self:
+        """Fitted to rewards of episodes.
+
+        Parameters
+        ----------
+        sequences : iterable of (type, policy, rewards (n,))
+        model, **options
+            The outcome model and the options of its ``from_samples``.
+
+        Raises
+        ------
+        InputError
+            A pair has no reward, or one is not finite.
+        """
+        kept = [(type_, policy, _numbers(rewards)) for type_, policy, rewards in sequences]
+        if not kept:
+            raise InputError("sequences must hold at least one episode")
+        lengths = [len(rewards) for _, _, rewards in kept]
+        types = np.repeat([type_ for type_, _, _ in kept], lengths)
+        policies = np.repeat([policy for _, policy, _ in kept], lengths)
+        if not ((types >= 0) & (types < n_types) & (policies >= 0) & (policies < n_policies)).all():
+            raise InputError(f"sequences must name types 0 to {n_types - 1} and policies 0 to {n_policies - 1}")
+        values = np.concatenate([rewards for _, _, rewards in kept])
+        rows = checked_rows(OutcomeRows(types, policies, values, (n_types, n_policies)))
+        return cls(outcome_kind(model).from_rows(rows, **options))
+
+    @property
+    def n_types(self) -> int:
+        return self.rewards.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return self.rewards.n_policies
+
+    def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
+        """Log likelihood of the rewards (n,) per type, (n_types,); 0 where there are none.
+
+        Raises
+        ------
+        InputError
+            They are no finite numbers.
+        NotFoundError
+            There is no such policy.
+        """
+        check_policy(policy, self.n_policies)
+        rewards = _numbers(signal)
+        return self.rewards.log_densities(np.full(len(rewards), policy), rewards).sum(axis=0)
+
+    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
+        """The model of some types and policies."""
+        return type(self)(self.rewards.take(types, policies))
+
+    def parts(self) -> tuple[Any, ...]:
+        """The models it rests on."""
+        return (self.rewards,)
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """Nothing beyond its parts."""
+        return {}
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+        """The model of `to_arrays` and `parts`."""
+        return cls(*parts)
+
+
+def _numbers(rewards: ArrayLike) -> Array:
+    try:
+        found = np.asarray(rewards, np.float64)
+    except (TypeError, ValueError):
+        raise InputError("a signal of rewards must be numbers (n,)") from None
+    if found.ndim != 1 or not (np.abs(found) <= LARGEST).all():
+        raise InputError(
+            f"a signal of rewards must be finite numbers (n,) of at most {LARGEST:g}, got shape {found.shape}: "
+            f"{rewards!r:.80}"
+        )
+    return found

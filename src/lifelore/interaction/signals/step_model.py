@@ -1,0 +1,171 @@
+"""P(outcome of a step | state, action; type, policy) over whole numbers: what a step leads to, or what it pays.
+
+Steps are independent given the type, as in an MDP, so an episode's log likelihood is a sum. One table holds
+n_types × n_states × n_actions × n_outcomes numbers, times n_policies where policies differ beyond the actions they
+take. Thesis: §4.4.2.1–2, §4.7.6.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
+from lifelore.interaction.outcomes.outcome_model import check_policy
+from lifelore.interaction.outcomes.outcome_moments import chosen_of
+
+Array = NDArray[np.float64]
+
+_AXES = ("n_types", "n_policies or 1", "n_states", "n_actions", "n_outcomes")
+_ABOVE = 2e-6
+"""How far above 0 a logarithm may lie: rows are taken as they come when they sum to 1 to 1e-6."""
+
+
+class StepModel:
+    """Base of `TransitionSignal` and `StepRewardSignal`.
+
+    Parameters
+    ----------
+    probs : (n_types, n_states, n_actions, n_outcomes) or (n_types, n_policies, n_states, n_actions, n_outcomes)
+        Rows over outcomes sum to 1; zeros are allowed. Without the policies' axis all policies share the table.
+    n_policies : int, optional
+        How many policies share the table; any number where None.
+
+    Raises
+    ------
+    InputError
+        A row is no distribution.
+    """
+
+    kind: ClassVar[str]
+    n_policies: int | None
+
+    def __init__(self, probs: ArrayLike, n_policies: int | None = None) -> None:
+        probs = np.asarray(probs, np.float64)
+        self.shared = probs.ndim == 4
+        table = checked_distributions(probs[:, None] if self.shared else probs, "probs", _AXES)
+        self.n_policies = n_policies if self.shared else table.shape[1]
+        # Types last: a step reads one row.
+        self._log = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
+
+    @property
+    def n_types(self) -> int:
+        return self._log.shape[-1]
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """(n_states, n_actions, n_outcomes)."""
+        return self._log.shape[1:4]
+
+    @property
+    def probs(self) -> Array:
+        """P(outcome | state, action; type[, policy]), axes as given; made anew at each call."""
+        table = np.moveaxis(np.exp(self._log), -1, 0)
+        return table[:, 0] if self.shared else table
+
+    @property
+    def n_entries(self) -> int:
+        """How many numbers are stored."""
+        return self._log.size
+
+    def log_sum(self, policy: int, steps: NDArray[np.int64]) -> Array:
+        """Log likelihood per type, (n_types,), of steps (n, 3): state, action, outcome; 0 where there are none.
+
+        Raises
+        ------
+        InputError
+            A step is outside the table.
+        NotFoundError
+            There is no such policy.
+        """
+        if self.n_policies is not None:
+            check_policy(policy, self.n_policies)
+        check_steps(steps, self.shape)
+        return self._log[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
+
+    def taken(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> tuple[Array, int | None]:
+        """The table of some types and policies, and how many policies share it."""
+        table = self.probs[chosen_of(types, self.n_types)]
+        if self.shared:
+            return table, self.n_policies if policies is None else len(policies)
+        return table[:, chosen_of(policies, table.shape[1])], None
+
+    def parts(self) -> tuple[Any, ...]:
+        """It rests on no other model."""
+        return ()
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]:
+        """The logarithms, as they are read, and how many policies share them."""
+        return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0])}
+
+    def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
+        """Take what `to_arrays` gave, bit for bit."""
+        log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
+        if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
+            raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
+        self._log, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
+        return self
+
+
+def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
+    """Refuse steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
+    if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
+        bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
+        raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
+
+
+def whole_numbers(steps: ArrayLike, what: str) -> NDArray[np.int64]:
+    """A sequence of rows of whole numbers, (n, columns); InputError for anything else."""
+    try:
+        found = np.asarray(steps)
+    except ValueError:
+        raise InputError(f"a signal must be rows of {what}, got {steps!r:.80}") from None
+    if not found.size:
+        return np.empty((0, 3), np.int64)
+    if found.dtype.kind not in "iuf" or found.ndim != 2 or not (np.abs(found) < 2**53).all():
+        raise InputError(f"a signal must be rows of {what}, got {steps!r:.80}")
+    whole = found.astype(np.int64)
+    if (whole != found).any():
+        raise InputError(f"a signal must be rows of {what}, whole numbers, got {steps!r:.80}")
+    return whole
+
+
+def step_counts(
+    steps: Iterable[tuple[int, int, NDArray[np.int64]]],
+    n_types: int,
+    n_policies: int | None,
+    shape: tuple[int, int, int],
+) -> Array:
+    """How often each step was made: (n_types, *shape), with `n_policies` (n_types, n_policies, *shape).
+
+    Parameters
+    ----------
+    steps : iterable of (type, policy, (n, 3) int)
+        Episodes of known types.
+    shape : (n_states, n_actions, n_outcomes)
+    """
+    counts = np.zeros((n_types, n_policies or 1, *shape))
+    for type_, policy, rows in steps:
+        place = 0 if n_policies is None else policy
+        if not (0 <= type_ < n_types and 0 <= place < counts.shape[1]):
+            raise InputError(f"sequences must name known types and policies, got type {type_}, policy {policy}")
+        check_steps(rows, shape)
+        np.add.at(counts[type_, place], tuple(rows.T), 1.0)
+    return counts[:, 0] if n_policies is None else counts
+
+
+def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> Array:
+    """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`.
+
+    Parameters
+    ----------
+    possible : bool, broadcastable to the counts, optional
+        What may follow at all; everything unless given. What was counted is possible in any case.
+    """
+    counts = np.asarray(counts, np.float64)
+    if possible is None:
+        return with_pseudo_counts(counts, pseudo_count)
+    weights = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
+    return with_pseudo_counts(weights, 0.0)

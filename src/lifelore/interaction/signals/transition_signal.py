@@ -1,0 +1,105 @@
+"""The (s, a, s') tuples of an episode as the signal: the observation model is the type's transition function.
+
+Thesis: §4.4.2.1; the richest signal, and the dearest to store.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, ClassVar, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.signals.step_model import StepModel, step_counts, step_probs, whole_numbers
+
+Array = NDArray[np.float64]
+
+
+class TransitionSignal(StepModel):
+    """Signals that are sequences of (s, a, s'), or (s, s') where there is one action.
+
+    Parameters
+    ----------
+    probs : (n_types, n_states, n_actions, n_states) or (n_types, n_policies, n_states, n_actions, n_states)
+        T(s' | s, a; type), or by policy as well.
+    n_policies : int, optional
+        How many policies share the table; any number where None.
+
+    Examples
+    --------
+    >>> signal = TransitionSignal([[[[0.9, 0.1]], [[0.0, 1.0]]], [[[0.5, 0.5]], [[0.0, 1.0]]]])
+    >>> signal.log_likelihood(0, [(0, 0), (0, 1)]).round(3).tolist()
+    [-2.408, -1.386]
+    """
+
+    kind: ClassVar[str] = "transition"
+
+    def __init__(self, probs: ArrayLike, n_policies: int | None = None) -> None:
+        super().__init__(probs, n_policies)
+        if self.shape[0] != self.shape[2]:
+            raise InputError(f"probs must lead from states to states, got {self.shape[0]} and {self.shape[2]}")
+
+    @classmethod
+    def from_counts(
+        cls,
+        counts: ArrayLike,
+        pseudo_count: float = 0.5,
+        possible: ArrayLike | None = None,
+        n_policies: int | None = None,
+    ) -> Self:
+        """From how often each transition was seen, axes as `probs`.
+
+        Parameters
+        ----------
+        pseudo_count : float
+            Added to each transition that is `possible`, ≥ 0.
+        possible : bool, broadcastable to `counts`, optional
+            What may happen at all; everything unless given.
+        """
+        return cls(step_probs(counts, pseudo_count, possible), n_policies)
+
+    @classmethod
+    def from_sequences(
+        cls,
+        sequences: Iterable[tuple[int, int, ArrayLike]],
+        n_types: int,
+        n_states: int,
+        n_actions: int = 1,
+        n_policies: int | None = None,
+        pseudo_count: float = 0.5,
+        possible: ArrayLike | None = None,
+    ) -> Self:
+        """From episodes (type, policy, steps); with `n_policies` each policy has a table of its own."""
+        steps = ((type_, policy, _triples(rows)) for type_, policy, rows in sequences)
+        counts = step_counts(steps, n_types, n_policies, (n_states, n_actions, n_states))
+        return cls.from_counts(counts, pseudo_count, possible)
+
+    def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
+        """Log likelihood of the transitions (n, 3) or (n, 2) per type, (n_types,).
+
+        Raises
+        ------
+        InputError
+            They are no whole numbers, or outside the table.
+        NotFoundError
+            There is no such policy.
+        """
+        return self.log_sum(policy, _triples(signal))
+
+    def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
+        """The model of some types and policies."""
+        return type(self)(*self.taken(types, policies))
+
+    @classmethod
+    def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
+        """The model of `to_arrays`, bit for bit."""
+        return cls.__new__(cls)._restore(arrays)
+
+
+def _triples(signal: ArrayLike) -> NDArray[np.int64]:
+    steps = whole_numbers(signal, "(state, action, next state) or (state, next state)")
+    if steps.shape[1] == 2:
+        return np.insert(steps, 1, 0, axis=1)
+    if steps.shape[1] != 3:
+        raise InputError(f"a signal of transitions must have 2 or 3 columns, got {steps.shape[1]}")
+    return steps

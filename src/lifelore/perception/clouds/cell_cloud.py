@@ -1,0 +1,108 @@
+"""Smallest distances between two clouds, exact and fast: points sorted into cells, the nearest cells first.
+
+A k-d tree answers for every point; a gap needs only the few closest ones. So cells whose boxes are further apart
+than what has been found already are never opened, and two clouds that are far apart cost next to nothing.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+
+CELL = 0.02
+"""Side of a cell, metres: some dozens of points at 3 mm spacing."""
+
+
+class CellCloud(NamedTuple):
+    """Points sorted by cell.
+
+    points (n, 3): cell c holds rows ``starts[c]`` to ``starts[c + 1]``; low, high (n_cells, 3): box of its points.
+    """
+
+    points: NDArray[np.float64]
+    starts: NDArray[np.int64]
+    low: NDArray[np.float64]
+    high: NDArray[np.float64]
+
+
+def cell_cloud(points: NDArray[np.float64], size: float = CELL) -> CellCloud:
+    """Sort ``(n, 3)`` points, n ≥ 1, into cells of side `size`, metres."""
+    cell = np.floor((points - points.min(axis=0)) / size).astype(np.int64)
+    sides = cell.max(axis=0) + 1
+    key = (cell[:, 0] * sides[1] + cell[:, 1]) * sides[2] + cell[:, 2]
+    order = np.argsort(key, kind="stable")
+    sorted_points = np.ascontiguousarray(points[order])
+    firsts = np.flatnonzero(np.diff(key[order], prepend=-1))
+    low = np.minimum.reduceat(sorted_points, firsts, axis=0)
+    high = np.maximum.reduceat(sorted_points, firsts, axis=0)
+    return CellCloud(sorted_points, np.append(firsts, len(points)), low, high)
+
+
+def closest_distances(first: CellCloud, second: CellCloud, count: int, bound: float) -> NDArray[np.float64]:
+    """The `count` smallest of the distances from each point of `first` to the nearest of `second`, ascending.
+
+    Metres; distances above `bound` are left out, so fewer may come back.
+    """
+    found = np.full(count, np.inf)
+    _search(first, second, box_distances(first, second), bound * bound, found)
+    return np.sqrt(found[np.isfinite(found)])
+
+
+@kernel
+def box_distances(first: CellCloud, second: CellCloud) -> NDArray[np.float64]:
+    """Squared distance from each cell of `first` to the nearest cell of `second`, ``(n_cells,)``."""
+    nearest = np.full(len(first.low), np.inf)
+    for i in range(len(first.low)):
+        for j in range(len(second.low)):
+            square = 0.0
+            for axis in range(3):
+                gap = max(first.low[i, axis] - second.high[j, axis], second.low[j, axis] - first.high[i, axis])
+                if gap > 0.0:
+                    square += gap * gap
+            nearest[i] = min(nearest[i], square)
+    return nearest
+
+
+@kernel
+def _search(first: CellCloud, second: CellCloud, nearest: NDArray[np.float64], bound: float, found) -> None:
+    """Fill `found` with the smallest squared distances, ascending, each at most `bound`."""
+    for i in np.argsort(nearest):
+        if nearest[i] > min(bound, found[-1]):
+            break
+        for p in range(first.starts[i], first.starts[i + 1]):
+            square = _nearest(first.points[p], second, min(bound, found[-1]))
+            if square <= bound:
+                _insert(found, square)
+
+
+@kernel
+def _nearest(point: NDArray[np.float64], cells: CellCloud, limit: float) -> float:
+    """Squared distance to the nearest point, infinity where it exceeds `limit`."""
+    best = np.inf
+    for j in range(len(cells.low)):
+        square = 0.0
+        for axis in range(3):
+            gap = max(cells.low[j, axis] - point[axis], point[axis] - cells.high[j, axis])
+            if gap > 0.0:
+                square += gap * gap
+        if square <= min(limit, best):
+            for q in range(cells.starts[j], cells.starts[j + 1]):
+                dx = point[0] - cells.points[q, 0]
+                dy = point[1] - cells.points[q, 1]
+                dz = point[2] - cells.points[q, 2]
+                best = min(best, dx * dx + dy * dy + dz * dz)
+    return best if best <= limit else np.inf
+
+
+@kernel
+def _insert(found: NDArray[np.float64], square: float) -> None:
+    """Put a number among the ascending ones and drop the greatest."""
+    at = len(found) - 1
+    if square >= found[at]:
+        return
+    while at > 0 and found[at - 1] > square:
+        found[at] = found[at - 1]
+        at -= 1
+    found[at] = square

@@ -1,0 +1,210 @@
+"""One point for each small cube a label occupies: clouds of any density become clouds of one density.
+
+Voxels belong to labels, so labels never mix: where two objects share a cube, each keeps a point in it.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.point_cloud import PointCloud
+
+VOXEL = 0.003
+"""Metres; about the spacing of a depth camera at one to two metres."""
+_KEY_LIMIT = 2**61
+_LOW = 2**31 - 1
+_CHUNK = 1_000_000
+MAX_SCENE_POINTS = 2_000_000
+"""A cloud with more points is thinned to voxels before anything else is done with it."""
+
+
+@dataclass(frozen=True, eq=False)
+class VoxelCloud:
+    """A cloud thinned to voxels, with the way back.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+        One point, the mean of its members, for each occupied voxel of each label; m in all, in the order in
+        which the voxels first occur. A colour is that of the first member.
+    inverse : (n,) int64
+        The voxel of each original point, in 0 … m - 1.
+    first : (m,) int64
+        The first original point of each voxel.
+    counts : (m,) int64
+        Original points of each voxel, ≥ 1.
+    size : float
+        Side of a voxel in metres.
+    """
+
+    cloud: LabelledCloud
+    inverse: NDArray[np.int64]
+    first: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    size: float
+
+
+def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
+    """Thin a cloud to one point a voxel and label.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+    size : float
+        Side of a voxel, metres, > 0.
+
+    Raises
+    ------
+    InputError
+        The size is not positive, or so small that the voxels cannot be numbered.
+
+    Examples
+    --------
+    >>> cloud = LabelledCloud(np.array([[0.0, 0, 0], [0.001, 0, 0], [0.001, 0, 0]]), np.array([2, 2, 3]))
+    >>> thin = voxelised(cloud)
+    >>> thin.inverse.tolist(), thin.cloud.labels.tolist(), thin.cloud.points[0].tolist()
+    ([0, 0, 1], [2, 3], [0.0005, 0.0, 0.0])
+    """
+    inverse, first, counts, means = _voxels(cloud.points, cloud.labels, size)
+    colours = None if cloud.colours is None else cloud.colours[first]
+    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera)
+    return VoxelCloud(thin, inverse, first, counts, size)
+
+
+def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POINTS) -> PointCloud:
+    """The cloud itself while it has at most `at_most` measured points; else its voxels, in bounded memory.
+
+    The cloud is voxelised by chunks of 10⁶ points. Where the voxels are more than `at_most`, their size
+    doubles until they are not.
+    """
+    measured = cloud.measured
+    if np.count_nonzero(measured) <= at_most:
+        return cloud
+    lowest = np.min(cloud.points, axis=0, where=measured[:, None], initial=np.inf).astype(np.float64)
+    origin = np.floor(lowest / size) * size
+    held = _Held.of(cloud, np.empty(0, np.int64))
+    for start in range(0, len(measured), _CHUNK):
+        places = start + np.flatnonzero(measured[start : start + _CHUNK])
+        held = held.joined(_Held.of(cloud, places).merged(origin, size)).merged(origin, size)
+        while len(held.points) > at_most:
+            size *= 2
+            held = held.merged(origin, size)
+    return PointCloud(held.points.astype(cloud.points.dtype), held.labels, held.colours, camera=cloud.camera)
+
+
+@dataclass(frozen=True, eq=False)
+class _Held:
+    """Voxels found so far: mean points, weights (points behind each), labels and colours."""
+
+    points: NDArray[np.float64]
+    weights: NDArray[np.float64]
+    labels: NDArray[np.int64] | None
+    colours: NDArray[np.uint8] | None
+
+    @classmethod
+    def of(cls, cloud: PointCloud, places: NDArray[np.int64]) -> "_Held":
+        return cls(
+            cloud.points[places].astype(np.float64),
+            np.ones(len(places)),
+            None if cloud.labels is None else cloud.labels[places],
+            None if cloud.colours is None else cloud.colours[places],
+        )
+
+    def joined(self, other: "_Held") -> "_Held":
+        def both(a: NDArray | None, b: NDArray | None) -> NDArray | None:
+            return None if a is None or b is None else np.concatenate([a, b])
+
+        points, weights = (
+            np.concatenate([self.points, other.points]),
+            np.concatenate([self.weights, other.weights]),
+        )
+        return _Held(points, weights, both(self.labels, other.labels), both(self.colours, other.colours))
+
+    def merged(self, origin: NDArray[np.float64], size: float) -> "_Held":
+        labels = np.zeros(len(self.points), np.int64) if self.labels is None else self.labels
+        inverse, first, _, _ = _voxels(self.points, labels, size, origin)
+        weights = np.bincount(inverse, self.weights).astype(np.float64)
+        means = np.stack([np.bincount(inverse, self.weights * axis) for axis in self.points.T], axis=1)
+        return _Held(
+            means / weights[:, None],
+            weights,
+            None if self.labels is None else self.labels[first],
+            None if self.colours is None else self.colours[first],
+        )
+
+
+def _voxels(
+    points: NDArray[np.float64], labels: NDArray[np.int64], size: float, origin: NDArray[np.float64] | None = None
+) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+    """Voxel of each point, first point, count and mean of each voxel."""
+    if not (np.isfinite(size) and size > 0):
+        raise InputError(f"size must be a positive number of metres, got {size}")
+    n = len(points)
+    if n == 0:
+        none = np.empty(0, np.int64)
+        return none, none, none, np.empty((0, 3))
+    lowest, highest, top_label = _bounds(points, labels)
+    # Multiples of the size in the frame itself, so that a point keeps its cube whatever else is in the cloud.
+    low = np.floor(lowest / size) * size if origin is None else origin
+    sides = np.floor((highest - low) / size) + 1.0
+    if np.prod(sides) * (top_label + 1) > _KEY_LIMIT:
+        labels = np.unique(labels, return_inverse=True)[1].reshape(-1)
+        if np.prod(sides) * (labels.max() + 1) > _KEY_LIMIT:
+            span = (highest - lowest).max()
+            raise InputError(f"size {size} m is too small for a cloud of {span:.3g} m; take a larger one")
+    table = np.full(1 << int(2 * n - 1).bit_length(), -1, np.int32)
+    return _occupied(points, labels, low, 1.0 / size, sides.astype(np.int64), table)
+
+
+@kernel
+def _bounds(points, labels):
+    """Lowest and highest coordinate of each axis, and the largest label; one pass instead of three."""
+    lowest, highest = points[0].copy(), points[0].copy()
+    top = labels[0]
+    for i in range(len(points)):
+        top = max(top, labels[i])
+        for axis in range(3):
+            lowest[axis] = min(lowest[axis], points[i, axis])
+            highest[axis] = max(highest[axis], points[i, axis])
+    return lowest, highest, top
+
+
+@kernel
+def _occupied(points, labels, low, per_metre, sides, table):
+    """Hash the cell of each point by open addressing; voxels are numbered as they first occur."""
+    n = len(points)
+    inverse = np.empty(n, np.int64)
+    keys = np.empty(n, np.int64)
+    first = np.empty(n, np.int64)
+    mask = len(table) - 1
+    m = 0
+    for i in range(n):
+        key = labels[i]
+        for axis in range(3):
+            cell = int(np.floor((points[i, axis] - low[axis]) * per_metre))
+            key = key * sides[axis] + min(max(cell, 0), sides[axis] - 1)
+        # Both products stay below 2^62: plain Python and machine code agree without wrapping round.
+        mixed = (key & _LOW) * 1_640_531_527 + (key >> 31) * 668_265_263
+        slot = (mixed ^ (mixed >> 29)) & mask
+        while table[slot] >= 0 and keys[table[slot]] != key:
+            slot = (slot + 1) & mask
+        if table[slot] < 0:
+            table[slot] = m
+            keys[m] = key
+            first[m] = i
+            m += 1
+        inverse[i] = table[slot]
+    counts = np.zeros(m, np.int64)
+    means = np.zeros((m, 3))
+    for i in range(n):
+        counts[inverse[i]] += 1
+        for axis in range(3):
+            means[inverse[i], axis] += points[i, axis]
+    for voxel in range(m):
+        for axis in range(3):
+            means[voxel, axis] /= counts[voxel]
+    return inverse, first[:m].copy(), counts, means

@@ -1,0 +1,103 @@
+"""Contact point networks: an object as the places where it meets others, joined by a minimum spanning tree.
+
+The edges are those of the minimum weighted spanning tree over the contact points, weights Euclidean (thesis
+§2.3.4). Networks of one object towards several others are merged by collecting the points and building the tree
+anew (§2.3.6).
+"""
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from itertools import combinations
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.perception.contacts.contact_point import ContactPoint
+
+if TYPE_CHECKING:
+    import networkx as nx
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPointNetwork:
+    """The skeleton of one object as it is used in this scene.
+
+    Parameters
+    ----------
+    object_id : int
+    nodes : tuple of ContactPoint
+    edges : (m, 2) int64
+        Pairs of node numbers, a spanning tree: m is one less than the number of nodes (0 for none).
+    """
+
+    object_id: int
+    nodes: tuple[ContactPoint, ...]
+    edges: NDArray[np.int64]
+
+    @classmethod
+    def from_contacts(cls, object_id: int, contacts: Iterable[ContactPoint]) -> "ContactPointNetwork":
+        """The network over `contacts`: nodes as given, edges by the minimum spanning tree."""
+        nodes = tuple(contacts)
+        return cls(object_id, nodes, spanning_edges(np.array([n.position for n in nodes]).reshape(-1, 3)))
+
+    def merged(self, *others: "ContactPointNetwork") -> "ContactPointNetwork":
+        """This network and `others` of the same object as one (thesis §2.3.6).
+
+        Raises
+        ------
+        InputError
+            A network of another object is among them.
+        """
+        if any(other.object_id != self.object_id for other in others):
+            raise InputError(
+                f"networks to merge must belong to object {self.object_id}, got {[n.object_id for n in others]}"
+            )
+        return self.from_contacts(self.object_id, [n for net in (self, *others) for n in net.nodes])
+
+    @property
+    def positions(self) -> NDArray[np.float64]:
+        """Where the nodes are, shape ``(k, 3)``, metres."""
+        return np.array([node.position for node in self.nodes]).reshape(-1, 3)
+
+    def to_networkx(self) -> "nx.Graph":
+        """A graph with nodes 0 … k-1, each with the fields of its `ContactPoint`, and edges with ``length``."""
+        import networkx as nx
+
+        graph = nx.Graph(object_id=self.object_id)
+        for number, node in enumerate(self.nodes):
+            graph.add_node(number, **vars(node))
+        at = self.positions
+        for i, j in self.edges.tolist():
+            graph.add_edge(i, j, length=float(np.linalg.norm(at[i] - at[j])))
+        return graph
+
+    @classmethod
+    def from_networkx(cls, graph: Any) -> "ContactPointNetwork":
+        """From a graph such as `to_networkx` makes; nodes in the graph's order, the edges kept."""
+        order = {name: number for number, name in enumerate(graph.nodes)}
+        nodes = tuple(ContactPoint(**fields) for _, fields in graph.nodes(data=True))
+        edges = np.array([[order[i], order[j]] for i, j in graph.edges], np.int64).reshape(-1, 2)
+        return cls(graph.graph["object_id"], nodes, edges)
+
+
+def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Edges of the Euclidean minimum spanning tree, ``(k - 1, 2)``, each row ascending, rows in order.
+
+    Points at one place are joined like any others, by an edge of length 0. Of equally short edges, those of the
+    point that comes first in the order 1, 0, 2, 3, … are taken first: networkx breaks ties in this way.
+    """
+    n = len(positions)
+    if n < 2:
+        return np.empty((0, 2), np.int64)
+    apart = positions[:, None] - positions
+    distance = np.sqrt(apart[..., 0] ** 2 + apart[..., 1] ** 2 + apart[..., 2] ** 2).tolist()
+    tree = list(range(n))
+    edges = []
+    for edge in sorted(combinations([1, 0, *range(2, n)], 2), key=lambda pair: distance[pair[0]][pair[1]]):
+        kept, joined = tree[edge[0]], tree[edge[1]]
+        if kept != joined:
+            tree = [kept if part == joined else part for part in tree]
+            edges.append(sorted(edge))
+    return np.array(sorted(edges), np.int64)

@@ -1,0 +1,143 @@
+"""Support vectors to contact points: connected components, each condensed to a place, a normal and an extent.
+
+Thesis: §2.3.4. Clusters are connected components under a length (single linkage), which keeps the same clusters
+when most points are thrown away; X-means and density clusterings cut one continuous strip of contact at random.
+The thesis clusters each object by itself; here the support vectors of both take part (`facing_clusters`), since a
+contact belongs to two: what hides a piece of it on one object leaves one contact where the other is seen whole.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+from lifelore.perception.contacts.contact_point import ContactPoint
+
+
+@kernel
+def linked(points: NDArray[np.float64], reach: float) -> NDArray[np.int64]:
+    """Component of each point when points at most `reach` apart are linked, (k,) numbered by first member."""
+    n = len(points)
+    component = np.full(n, -1, np.int64)
+    waiting = np.empty(n, np.int64)
+    count = 0
+    for seed in range(n):
+        if component[seed] >= 0:
+            continue
+        component[seed] = count
+        waiting[0] = seed
+        top = 1
+        while top > 0:
+            top -= 1
+            i = waiting[top]
+            for j in range(n):
+                if component[j] < 0:
+                    dx = points[i, 0] - points[j, 0]
+                    dy = points[i, 1] - points[j, 1]
+                    dz = points[i, 2] - points[j, 2]
+                    if dx * dx + dy * dy + dz * dz <= reach * reach:
+                        component[j] = count
+                        waiting[top] = j
+                        top += 1
+        count += 1
+    return component
+
+
+def contact_clusters(
+    points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, min_support: float
+) -> list[NDArray[np.int64]]:
+    """Rows of each contact's support vectors on one object by itself, strongest contact first (thesis §2.3.4).
+
+    Parameters
+    ----------
+    points : (k, 3) float64
+        Support vectors of one object.
+    alpha : (k,) float64
+        Their multipliers, > 0.
+    linkage : float
+        Metres.
+    min_support : float
+        Smaller clusters are left out, but the strongest of all is always kept.
+    """
+    return _strongest_first(linked(np.ascontiguousarray(points), linkage), alpha, min_support)
+
+
+def facing_clusters(
+    first: NDArray[np.float64],
+    alpha_first: NDArray[np.float64],
+    second: NDArray[np.float64],
+    alpha_second: NDArray[np.float64],
+    linkage: float,
+    min_support: float,
+) -> tuple[list[NDArray[np.int64]], list[NDArray[np.int64]]]:
+    """As `contact_clusters` on either object, where links may lead through the other's support vectors.
+
+    Parameters
+    ----------
+    first, second : (k, 3), (m, 3) float64
+        Support vectors of the two objects, metres.
+    alpha_first, alpha_second : (k,), (m,) float64
+    linkage, min_support : float
+    """
+    component = linked(np.concatenate([first, second]), linkage)
+    return (
+        _strongest_first(component[: len(first)], alpha_first, min_support),
+        _strongest_first(component[len(first) :], alpha_second, min_support),
+    )
+
+
+def _strongest_first(
+    component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float
+) -> list[NDArray[np.int64]]:
+    """Rows of each component that has any, by strength; those of too few rows go, but never the strongest."""
+    strength = np.bincount(component, weights=alpha)
+    rows = [np.flatnonzero(component == number) for number in np.argsort(-strength, kind="stable")]
+    kept = [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
+    return kept or rows[:1]
+
+
+def contact_point(
+    points: NDArray[np.float64], alpha: NDArray[np.float64], normal: NDArray[np.float64], other: int
+) -> ContactPoint:
+    """One contact: α-weighted centroid, extent along principal axes, strength Σα."""
+    return ContactPoint(
+        position=alpha @ points / alpha.sum(),
+        normal=normal,
+        extent=extent(points),
+        strength=float(alpha.sum()),
+        n_support=len(points),
+        other=other,
+    )
+
+
+def extent(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lengths along the principal axes, (3,) descending, metres."""
+    centred = points - points.mean(axis=0)
+    _, axes = np.linalg.eigh(centred.T @ centred)
+    along = centred @ axes
+    return np.sort(along.max(axis=0) - along.min(axis=0))[::-1]
+
+
+def contact_edges(first: list[NDArray[np.float64]], second: list[NDArray[np.float64]]) -> NDArray[np.int64]:
+    """Which contact of one object faces which of the other, (m, 2) ascending.
+
+    Every contact faces the one on the other side that its support vectors come closest to.
+    """
+    if not first or not second:
+        return np.empty((0, 2), np.int64)
+    between = np.array([[closest(p, q) for q in second] for p in first])
+    edges = {(i, int(j)) for i, j in enumerate(between.argmin(axis=1))}
+    edges |= {(int(i), j) for j, i in enumerate(between.argmin(axis=0))}
+    return np.array(sorted(edges), np.int64)
+
+
+@kernel
+def closest(first: NDArray[np.float64], second: NDArray[np.float64]) -> float:
+    """Smallest distance between two sets of points, metres."""
+    best = np.inf
+    for i in range(len(first)):
+        for j in range(len(second)):
+            dx = first[i, 0] - second[j, 0]
+            dy = first[i, 1] - second[j, 1]
+            dz = first[i, 2] - second[j, 2]
+            best = min(best, dx * dx + dy * dy + dz * dz)
+    return np.sqrt(best)

@@ -1,0 +1,174 @@
+"""`Interface`: where two near objects of a scene bear on each other, and how; `interfaces` finds all of a scene.
+
+Thesis: §2.3.4 for a pair, §2.3.6 for a scene. A literal reading (hard margin, every contact of at least 7 support
+vectors) loses most contacts of a real depth camera; here a soft margin gives the contacts, and each separator also
+gives one *dipole*: the α-weighted centroids of all support vectors on either side, which always exist.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import contact_edges, contact_point, facing_clusters
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
+from lifelore.perception.separation.separator import MOST_WORK, Separator, separate
+
+STANDARD_VOXEL = 0.003
+"""Spacing (metres) at which `ContactSettings.cost` and `min_support` are stated."""
+LEAST_SHARE = 1000.0
+"""Evaluations of a kernel that each point of a pair may always cost a separator, however large the scene.
+
+On ordinary scenes half of the pairs need 160, one in a hundred 930, the worst 2100, and a scene's own share of
+`separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other need ever more the longer one looks.
+"""
+DEFAULT = ContactSettings()
+
+
+@dataclass(frozen=True, eq=False)
+class Dipole:
+    """A separator in brief: where its support vectors lie on either side, and which way it faces.
+
+    Parameters
+    ----------
+    length : float
+        Kernel length of the separator, metres.
+    first, second : (3,) float64
+        α-weighted centroids of the support vectors of a and of b, metres.
+    normal : (3,) float64
+        Unit gradient at the mid-point, out of b into a; zeros where the separator is flat.
+    """
+
+    length: float
+    first: NDArray[np.float64]
+    second: NDArray[np.float64]
+    normal: NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Interface:
+    """Everything that a near pair of objects shows of how they bear on each other.
+
+    Parameters
+    ----------
+    a, b : int
+        Objects, a < b; or an object and `TABLE`.
+    gap : float
+        How near they look, metres: the mean of the up to five smallest distances from a point of a to the nearest
+        of b (`near_pairs.visible_gap`); so a little above the smallest of all.
+    contacts_a, contacts_b : tuple of ContactPoint
+        Strongest first, at least one each.
+    contact_edges : (m, 2) int64
+        Row (i, j): ``contacts_a[i]`` faces ``contacts_b[j]``.
+    dipoles : tuple of Dipole
+        One of each scale in `ContactSettings.scales`; with the table of the first alone.
+    pair : NearPair, optional
+        The two objects' points; `pair_features` needs them.
+    max_violation : float
+        How far the worst of its separators is from its optimum, see `Separator`; above 1e-3 only where clouds that
+        lie in each other (mixed-up labels) cost more work than there was. Infinite where not even that is known.
+    """
+
+    a: int
+    b: int
+    gap: float
+    contacts_a: tuple[ContactPoint, ...]
+    contacts_b: tuple[ContactPoint, ...]
+    contact_edges: NDArray[np.int64]
+    dipoles: tuple[Dipole, ...] = ()
+    pair: NearPair | None = field(default=None, repr=False)
+    max_violation: float = 0.0
+
+
+def interfaces(cloud: LabelledCloud, settings: ContactSettings = DEFAULT) -> tuple[Interface, ...]:
+    """The interfaces of all near pairs: objects in ascending order, then each object with the table.
+
+    Deterministic: the same points give the same bits. The separators of a scene together may cost as much work as
+    `separator.MOST_WORK`, dealt out by their numbers of points; but each at least `LEAST_SHARE` a point.
+    """
+    if settings.voxel and len(cloud.points):
+        cloud = voxelised(cloud, settings.voxel).cloud
+    pairs = near_pairs(split_objects(cloud), settings.near, settings.table_margin)
+    points = sum(_n_points(pair) * len(_scales(pair, settings)) for pair in pairs)
+    share = max(MOST_WORK / max(points, 1), LEAST_SHARE)
+    return tuple(interface(pair, settings, share) for pair in pairs)
+
+
+def interface(pair: NearPair, settings: ContactSettings = DEFAULT, share: float = np.inf) -> Interface:
+    """One near pair's contacts and dipoles.
+
+    Parameters
+    ----------
+    pair : NearPair
+    settings : ContactSettings
+    share : float
+        Evaluations of a kernel that each point may cost a separator, > 0, within `separator.MOST_WORK` in all.
+    """
+    scales = _scales(pair, settings)
+    max_work = min(share * _n_points(pair), MOST_WORK)
+    found = [_separator(pair, length, cost, max_work) for length, cost in scales]
+    scale = (STANDARD_VOXEL / settings.voxel) ** 2 if settings.voxel else 1.0
+    sides = list(_contacts(pair, found[0], settings, settings.min_support * scale))
+    points_a, points_b = ([cluster for cluster, _ in side] for side in sides)
+    return Interface(
+        a=pair.first.label,
+        b=pair.second.label,
+        gap=pair.gap,
+        contacts_a=tuple(contact for _, contact in sides[0]),
+        contacts_b=tuple(contact for _, contact in sides[1]),
+        contact_edges=contact_edges(points_a, points_b),
+        dipoles=tuple(_dipole(pair, one, length) for one, (length, _) in zip(found, scales, strict=True)),
+        pair=pair,
+        max_violation=max(one.max_violation for one in found),
+    )
+
+
+def _scales(pair: NearPair, settings: ContactSettings) -> list[tuple[float, float]]:
+    """(length, cost) of each separator of a pair, the cost for one point as densely as they lie here."""
+    # What stands on a table is judged by heights: the narrow separator gives its contacts, the wide one nothing.
+    scales = settings.scales[:1] if pair.second.label == TABLE else settings.scales
+    per_point = (settings.voxel / STANDARD_VOXEL) ** 2 if settings.voxel else 1.0
+    return [(length, cost * per_point) for length, cost in scales]
+
+
+def _n_points(pair: NearPair) -> int:
+    return len(pair.first.points) + len(pair.second.points)
+
+
+def _separator(pair: NearPair, length: float, cost: float, max_work: float) -> Separator:
+    return separate(pair.first.points, pair.second.points, length=length, cost=cost, max_work=max_work)
+
+
+def _contacts(pair: NearPair, found: Separator, settings: ContactSettings, min_support: float):
+    """(support vectors, contact point) of each contact, on either side."""
+    sides = (
+        (pair.first.points[found.support_first], found.alpha_first, 1.0, pair.second.label),
+        (pair.second.points[found.support_second], found.alpha_second, -1.0, pair.first.label),
+    )
+    both = facing_clusters(*sides[0][:2], *sides[1][:2], settings.linkage, min_support)
+    for (points, alpha, sign, other), clusters in zip(sides, both, strict=True):
+        places = np.array([alpha[rows] @ points[rows] / alpha[rows].sum() for rows in clusters])
+        normals = sign * _unit(found.gradient(places))
+        yield [
+            (points[rows], contact_point(points[rows], alpha[rows], normal, other))
+            for rows, normal in zip(clusters, normals, strict=True)
+        ]
+
+
+def _dipole(pair: NearPair, found: Separator, length: float) -> Dipole:
+    ours = pair.first.points[found.support_first]
+    theirs = pair.second.points[found.support_second]
+    first = found.alpha_first @ ours / found.alpha_first.sum()
+    second = found.alpha_second @ theirs / found.alpha_second.sum()
+    normal = _unit(found.gradient((first + second)[None] / 2))[0]
+    return Dipole(length, first, second, normal)
+
+
+def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Each row at length 1; rows of zeros stay."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return vectors / np.where(length > 0, length, 1.0)

@@ -1,0 +1,157 @@
+"""Which objects of a scene come near one another, and how near: boxes first, then the closest points."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.compiled.jit import kernel
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.clouds.cell_cloud import CellCloud, cell_cloud, closest_distances
+
+CLOSEST = 5
+"""The gap is the mean over so many smallest distances, so that one stray point does not close it."""
+
+
+@dataclass(frozen=True, eq=False)
+class ObjectCloud:
+    """The points of one object, ``(k, 3)`` float64 metres, with its box."""
+
+    label: int
+    points: NDArray[np.float64]
+
+    @cached_property
+    def box(self) -> NDArray[np.float64]:
+        """Least and greatest corner, ``(2, 3)``."""
+        return corners(self.points)
+
+    @property
+    def low(self) -> NDArray[np.float64]:
+        """The box's least corner, ``(3,)``."""
+        return self.box[0]
+
+    @property
+    def high(self) -> NDArray[np.float64]:
+        """The box's greatest corner, ``(3,)``."""
+        return self.box[1]
+
+    @cached_property
+    def cells(self) -> CellCloud:
+        """The points sorted into cells, for distances."""
+        return cell_cloud(self.points)
+
+    def within(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
+        """Its points inside a box, ``(m, 3)``."""
+        return self.points[rows_within(self.points, low, high)]
+
+
+@dataclass(frozen=True, eq=False)
+class NearPair:
+    """Two objects (or an object and the piece of table around it) and their `visible_gap` in metres."""
+
+    first: ObjectCloud
+    second: ObjectCloud
+    gap: float
+
+
+@kernel
+def corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Least and greatest coordinate of each axis, ``(2, 3)``."""
+    box = np.empty((2, 3))
+    box[0], box[1] = np.inf, -np.inf
+    for i in range(len(points)):
+        for axis in range(3):
+            box[0, axis] = min(box[0, axis], points[i, axis])
+            box[1, axis] = max(box[1, axis], points[i, axis])
+    return box
+
+
+@kernel
+def rows_within(
+    points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """Rows of the points inside a box, ascending; one pass, since the table is long and asked for every object."""
+    rows = np.empty(len(points), np.int64)
+    count = 0
+    for i in range(len(points)):
+        inside = True
+        for axis in range(3):
+            inside = inside and low[axis] <= points[i, axis] <= high[axis]
+        if inside:
+            rows[count] = i
+            count += 1
+    return rows[:count]
+
+
+def split_objects(cloud: LabelledCloud) -> dict[int, ObjectCloud]:
+    """Every labelled object, and the table where there is one, by label, ascending."""
+    if not len(cloud.labels):
+        return {}
+    order = np.argsort(cloud.labels, kind="stable")
+    labels, starts = np.unique(cloud.labels[order], return_index=True)
+    parts = np.split(cloud.points[order], starts[1:])
+    return {int(n): ObjectCloud(int(n), part) for n, part in zip(labels, parts, strict=True) if n >= TABLE}
+
+
+def near_pairs(objects: dict[int, ObjectCloud], near: float, table_margin: float) -> list[NearPair]:
+    """Pairs whose gap is at most `near`: objects (a < b) in order; then every object with the table around it.
+
+    The table counts as near whatever the gap, because an object's foot may be hidden.
+
+    Parameters
+    ----------
+    objects : dict of int to ObjectCloud
+        As `split_objects` gives them.
+    near : float
+        Metres.
+    table_margin : float
+        So much of the table beyond an object's box is kept, metres.
+    """
+    things = [thing for label, thing in objects.items() if label != TABLE]
+    pairs = [_near(a, b, near) for i, a in enumerate(things) for b in things[i + 1 :]]
+    if TABLE in objects:
+        ground = objects[TABLE]
+        pairs += [_standing(thing, _around(ground, thing, table_margin), near) for thing in things]
+    return [pair for pair in pairs if pair is not None]
+
+
+def _around(table: ObjectCloud, thing: ObjectCloud, margin: float) -> ObjectCloud:
+    """The piece of table around an object; a wider one where objects in front hide all of it."""
+    far = max(box_distance(table, thing), float((table.high - table.low).max()))
+    while True:
+        low, high = thing.low - margin, thing.high + margin
+        low[2], high[2] = -np.inf, np.inf
+        piece = table.within(low, high)
+        if len(piece) >= CLOSEST or margin > far:
+            return ObjectCloud(TABLE, piece if len(piece) else table.points)
+        margin *= 2
+
+
+def _near(first: ObjectCloud, second: ObjectCloud, near: float) -> NearPair | None:
+    if not len(second.points) or box_distance(first, second) > near:
+        return None
+    gap = visible_gap(first, second, near)
+    return NearPair(first, second, gap) if gap <= near else None
+
+
+def _standing(thing: ObjectCloud, table: ObjectCloud, near: float) -> NearPair:
+    while not np.isfinite(gap := visible_gap(thing, table, near)):
+        near *= 2
+    return NearPair(thing, table, gap)
+
+
+def box_distance(first: ObjectCloud, second: ObjectCloud) -> float:
+    """Distance between two boxes, 0 where they overlap, metres."""
+    between = np.maximum(first.low - second.high, second.low - first.high)
+    return float(np.linalg.norm(np.maximum(between, 0.0)))
+
+
+def visible_gap(first: ObjectCloud, second: ObjectCloud, near: float) -> float:
+    """How near the visible points come, metres; infinity where none is within `near`, a bound on the search.
+
+    The mean of the up to `CLOSEST` smallest nearest-neighbour distances from points of `first` to `second`, of
+    those within `near`. So it lies above the smallest of all, and the two clouds' order matters a little.
+    """
+    closest = closest_distances(first.cells, second.cells, CLOSEST, near)
+    return float(closest.mean()) if closest.size else np.inf

@@ -1,0 +1,205 @@
+"""`pair_features`: every near pair of a scene as a row of named numbers, in either order of the two objects.
+
+The displacement between contact points is the thesis's feature (§2.3.5). It is ambiguous by itself: a tall box
+behind a short one makes the same crease as a box on a box. What tells them apart is the separator's normal and the
+height of the contact relative to both objects ("does a go on below the contact?"), so both stand beside it. All
+columns but the last few are the same whichever way the scene is turned about the vertical.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.perception.contacts.interface import Interface, interfaces
+from lifelore.perception.contacts.near_pairs import ObjectCloud
+from lifelore.perception.contacts.object_shape import ObjectShape, shape_of
+from lifelore.perception.pairs.objects_between import THIRD_COLUMNS, ThirdThings
+
+Rows = NDArray[np.float64]
+N_SCALES = 2
+SCALE_COLUMNS = (
+    "horizontal", "rise", "elevation", "distance", "normal_up", "below_a", "above_a", "below_b", "above_b",
+    "below_a_share", "above_b_share", "above_a_share", "below_b_share",
+)  # fmt: skip
+GEOMETRY_COLUMNS = (
+    "gap", "foot_a", "foot_b", "top_a", "top_b", "height_a", "height_b", "width_a", "width_b",
+    "foot_a_over_top_b", "foot_b_over_top_a", "overlap_share_a", "overlap_share_b", "centre_rise",
+    "centre_horizontal", "a_over_b", "b_over_a", "low_a_over_b", "low_b_over_a", "points_below_a",
+    "points_above_b", "points_above_a", "points_below_b",
+)  # fmt: skip
+VIEW_COLUMNS = ("behind", "right", "contact_behind", "contact_right")
+
+
+class HasInterfaces(Protocol):
+    """A scene: a cloud and what was found of its pairs."""
+
+    @property
+    def cloud(self) -> LabelledCloud: ...
+
+    @property
+    def interfaces(self) -> Sequence[Interface]: ...
+
+
+@dataclass(frozen=True, eq=False)
+class PairFeatures:
+    """One row for each ordered pair.
+
+    Parameters
+    ----------
+    names : tuple of str
+        What each column holds; lengths in metres, angles in radians, shares in [0, 1].
+    matrix : (n, d) float64
+        Finite.
+    pairs : (n, 2) int64
+        The ordered pair (a, b) of each row. Row 2i is interface i as it is, row 2i + 1 the same turned round.
+    gaps : (n,) float64
+        Visible gap, metres.
+    """
+
+    names: tuple[str, ...]
+    matrix: Rows
+    pairs: NDArray[np.int64]
+    gaps: Rows
+
+    def columns(self, names: Sequence[str]) -> Rows:
+        """Some of the columns, ``(n, len(names))``.
+
+        Raises
+        ------
+        InputError
+            A name that is no column.
+        """
+        missing = [name for name in names if name not in self.names]
+        if missing:
+            raise InputError(f"columns must be among {', '.join(self.names)}; got {', '.join(missing)}")
+        return self.matrix[:, [self.names.index(name) for name in names]]
+
+
+def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interface] | None = None) -> PairFeatures:
+    """Features of all near pairs of a scene.
+
+    Parameters
+    ----------
+    scene : LabelledCloud or Scene
+    found : sequence of Interface, optional
+        The scene's interfaces where they are known already.
+    """
+    cloud = scene if isinstance(scene, LabelledCloud) else scene.cloud
+    if found is None:
+        found = interfaces(scene) if isinstance(scene, LabelledCloud) else scene.interfaces
+    names = COLUMNS
+    pairs = np.array([[one.a, one.b, one.b, one.a] for one in found], np.int64).reshape(-1, 2)
+    gaps = np.repeat([one.gap for one in found], 2).astype(float)
+    if not found:
+        return PairFeatures(names, np.empty((0, len(names))), pairs, gaps)
+    shapes: dict[int, ObjectShape] = {}
+    for one in found:
+        for thing in _things(one):
+            if thing.label != TABLE and thing.label not in shapes:
+                shapes[thing.label] = shape_of(thing.points)
+    thirds = ThirdThings(found)
+    rows = [row for one in found for row in _both_ways(one, shapes, thirds, cloud.camera)]
+    return PairFeatures(names, np.array(rows), pairs, gaps)
+
+
+def column_names(n_scales: int) -> tuple[str, ...]:
+    """Names of all columns: of each scale, of geometry, of a third thing, of the camera's view."""
+    scaled = [f"{name}_{scale}" for scale in range(n_scales) for name in SCALE_COLUMNS]
+    return (*scaled, *GEOMETRY_COLUMNS, *THIRD_COLUMNS, *VIEW_COLUMNS)
+
+
+COLUMNS = column_names(N_SCALES)
+TURNING_COLUMNS = COLUMNS[: -len(VIEW_COLUMNS)]
+"""The columns that stay the same when scene and camera are turned about the vertical by different angles."""
+
+
+def _things(one: Interface) -> tuple[ObjectCloud, ObjectCloud]:
+    if one.pair is None:
+        raise InputError(f"the interface of {one.a} and {one.b} carries no points; make it with interfaces()")
+    return one.pair.first, one.pair.second
+
+
+def _both_ways(
+    one: Interface, shapes: dict[int, ObjectShape], thirds: ThirdThings, camera: NDArray[np.float64] | None
+) -> Rows:
+    """The rows of (a, b) and of (b, a), ``(2, d)``."""
+    first, second = (
+        shapes[thing.label] if thing.label in shapes else shape_of(thing.points) for thing in _things(one)
+    )
+    # With the table there is one scale: its columns stand for the others too.
+    dipoles = (one.dipoles + one.dipoles[-1:] * N_SCALES)[:N_SCALES]
+    middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])
+    displacements = np.array([dipole.first - dipole.second for dipole in dipoles])
+    normals = np.array([dipole.normal for dipole in dipoles])
+    return np.array(
+        [
+            np.concatenate(
+                [
+                    _scale_columns(sign * displacements, sign * normals, middles, a, b).ravel(),
+                    _geometry_columns(a, b, one.gap, middles[0, 2]),
+                    thirds.between(label_a, label_b, middles[0]),
+                    _view_columns(a, b, sign * displacements[0], middles[0], camera),
+                ]
+            )
+            for sign, a, b, label_a, label_b in (
+                (1.0, first, second, one.a, one.b),
+                (-1.0, second, first, one.b, one.a),
+            )
+        ]
+    )
+
+
+def _scale_columns(displacement: Rows, normal: Rows, middle: Rows, a: ObjectShape, b: ObjectShape) -> Rows:
+    """Displacement, normal and contact heights at each scale, ``(n_scales, len(SCALE_COLUMNS))``."""
+    horizontal = np.hypot(displacement[:, 0], displacement[:, 1])
+    rise = displacement[:, 2]
+    z = middle[:, 2]
+    below_a, above_a, below_b, above_b = z - a.foot, a.top - z, z - b.foot, b.top - z
+    return np.stack(
+        [
+            horizontal, rise, np.arctan2(rise, horizontal), np.hypot(horizontal, rise), normal[:, 2],
+            below_a, above_a, below_b, above_b,
+            below_a / a.height, above_b / b.height, above_a / a.height, below_b / b.height,
+        ],
+        axis=1,
+    )  # fmt: skip
+
+
+def _geometry_columns(a: ObjectShape, b: ObjectShape, gap: float, contact: float) -> list[Any]:
+    overlap = min(a.top, b.top) - max(a.foot, b.foot)
+    centre = a.centre - b.centre
+    a_over, b_over = a.over(b), b.over(a)
+    return [
+        gap, a.foot, b.foot, a.top, b.top, a.height, b.height, a.width, b.width,
+        a.foot - b.top, b.foot - a.top, overlap / a.height, overlap / b.height, centre[2],
+        float(np.hypot(centre[0], centre[1])), a_over.mean(), b_over.mean(),
+        _share(a_over, a.low), _share(b_over, b.low),
+        (a.sample[:, 2] < contact).mean(), (b.sample[:, 2] > contact).mean(),
+        (a.sample[:, 2] > contact).mean(), (b.sample[:, 2] < contact).mean(),
+    ]  # fmt: skip
+
+
+def _share(which: NDArray[np.bool_], among: NDArray[np.bool_]) -> float:
+    return float(which[among].mean()) if among.any() else 0.0
+
+
+def _view_columns(
+    a: ObjectShape, b: ObjectShape, displacement: Rows, middle: Rows, camera: NDArray[np.float64] | None
+) -> list[float]:
+    """How far a lies behind and to the right of b as the camera sees the pair, by centres and by contacts.
+
+    Zeros without a camera.
+    """
+    if camera is None:
+        return [0.0] * len(VIEW_COLUMNS)
+    away = middle[:2] - camera[:2]
+    away = away / max(float(np.hypot(away[0], away[1])), 1e-9)
+    right = np.array([away[1], -away[0]])
+    centre = (a.centre - b.centre)[:2]
+    ways = centre @ away, centre @ right, displacement[:2] @ away, displacement[:2] @ right
+    return [float(way) for way in ways]

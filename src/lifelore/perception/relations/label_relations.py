@@ -1,0 +1,95 @@
+"""Several relations of one pair at a time: each label is learnt by itself, yes or no, for every ordered pair.
+
+So *under*, *left_of* and *in_front_of* are learnt like any other word, none of them built in. View-dependent words
+need a camera in the clouds.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.relations import NONE, PairLabel
+from lifelore.perception.pairs.directed_label import REVERSED, as_directed
+from lifelore.perception.pairs.scene_pairs import ScenePairs
+from lifelore.perception.trees.tree_relations import TreeRelations, Vocabulary
+from lifelore.perception.trees.tree_training import Rows, TreeSettings, grown
+
+NO, YES = "0", "1"
+ON_TABLE = "with table: "
+FEATURE_SHARE = 0.5
+"""Of the columns tried at each split: what a word means may show in one column alone (*left_of* in "right")."""
+
+
+def fit_labels(
+    scenes: Sequence[ScenePairs],
+    truths: Sequence[Sequence[PairLabel]],
+    words: Vocabulary,
+    columns: Sequence[str],
+    settings: TreeSettings,
+    least_confidence: int,
+) -> dict[str, TreeRelations]:
+    """A model of yes and no for each name but *none*, from every order of every pair that is spoken of.
+
+    Pairs of objects and pairs with the table have models of their own; the latter are called `ON_TABLE` + name.
+    They know the order (object, table) alone, so a name said with the table first has a model beside them, called
+    `ON_TABLE` + ``~`` + name.
+    """
+    rows: dict[bool, list[tuple[NDArray[np.float64], frozenset[str], int]]] = {False: [], True: []}
+    for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
+        features = scene.features.columns(columns)
+        for pair, said in enumerate(scene.labels(truth, least_confidence)):
+            for row in _rows_of(scene, pair) if said else ():
+                holds = _names_in_order(said, int(scene.features.pairs[row, 0]), words.symmetric)
+                rows[bool(scene.with_table[pair])].append((features[row], holds, number))
+    settings = replace(settings, feature_share=FEATURE_SHARE)
+    return {
+        prefix + name: grown(_yes_and_no(rows[table], name), columns, settings, settings.n_trees)
+        for table, prefix in ((False, ""), (True, ON_TABLE))
+        for name in (*words.names, *(_turned(rows[True]) if table else ()))
+        if name != NONE and rows[table]
+    }
+
+
+def _yes_and_no(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]], name: str) -> Rows:
+    matrix, said, origin = zip(*rows, strict=True)
+    holds = np.array([YES if name in names else NO for names in said])
+    return Rows(np.array(matrix), holds, np.array(origin, np.int64))
+
+
+def _turned(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]]) -> list[str]:
+    """What holds in the other order somewhere, sorted."""
+    return sorted(
+        {name for _, names, _ in rows for name in names if name.startswith(REVERSED)} - {REVERSED + NONE}
+    )
+
+
+def _rows_of(scene: ScenePairs, pair: int) -> tuple[int, ...]:
+    """The feature rows of a pair: both orders among objects, (object, table) with the table."""
+    return (2 * pair,) if scene.with_table[pair] else (2 * pair, 2 * pair + 1)
+
+
+def _names_in_order(said: Sequence[PairLabel], first: int, symmetric: frozenset[str]) -> frozenset[str]:
+    """What holds of the pair in the order that starts with `first`; ``~`` marks the other order."""
+    return frozenset(as_directed(label, first, symmetric) for label in said)
+
+
+def label_shares(
+    models: Mapping[str, TreeRelations], scene: ScenePairs, symmetric: frozenset[str]
+) -> list[dict[str, float]]:
+    """Probability of each name for each pair; ``~`` marks the other order, symmetric names stand once."""
+    found: list[dict[str, float]] = [{} for _ in scene.with_table]
+    for called, model in models.items():
+        name, table = called.removeprefix(ON_TABLE), called.startswith(ON_TABLE)
+        rows = model.shares(scene.features.columns(model.columns))
+        yes = rows[:, model.classes.index(YES)] if YES in model.classes else np.zeros(len(rows))
+        for pair in np.flatnonzero(scene.with_table == table):
+            forward, backward = float(yes[2 * pair]), float(yes[2 * pair + 1])
+            if table:
+                found[pair][name] = forward
+            elif name in symmetric:
+                found[pair][name] = (forward + backward) / 2
+            else:
+                found[pair][name], found[pair][REVERSED + name] = forward, backward
+    return found

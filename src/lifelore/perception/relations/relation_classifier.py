@@ -1,0 +1,243 @@
+"""`RelationClassifier`: learns what a user's words for relations mean, from scenes in which they were said.
+
+Thesis: §2.3.5. Any set of labels may be brought; the order of a pair carries no information, the direction is
+inferred. ``method="displacement"`` is the thesis's own classifier.
+"""
+
+from collections import Counter
+from collections.abc import Collection, Mapping, Sequence
+from pathlib import Path
+from typing import Any, Self
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.protocols import Progress
+from lifelore.core.relations import ADJACENT_GAP, PairLabel
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.interface import DEFAULT, Interface
+from lifelore.perception.pairs import gap_rule
+from lifelore.perception.pairs.directed_label import REVERSED
+from lifelore.perception.pairs.pair_class import LEAST_CONFIDENCE as LEAST_CONFIDENCE
+from lifelore.perception.pairs.pair_class import pair_class
+from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
+from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
+from lifelore.perception.relations.displacement_relations import NeighbourSettings, fit_displacements
+from lifelore.perception.relations.label_relations import fit_labels, label_shares
+from lifelore.perception.relations.pair_belief import PairBelief
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.symmetric_names import symmetric_names
+from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
+from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
+
+METHODS = ("trees", "displacement")
+OBJECTS, WITH_TABLE = "objects", "table"
+DEFAULT_TREES = TreeSettings()
+
+
+class RelationClassifier:
+    """Learns relations from labelled scenes and says them of others.
+
+    Parameters
+    ----------
+    method : {"trees", "displacement"}
+        Trees on pair features, or the thesis's nearest neighbours among displacements.
+    adjacent_gap : float, optional
+        Metres; where *adjacent* and *none* are both learnt, things beside one another are adjacent up to this
+        visible gap. May be changed on a fitted classifier. None leaves it to the examples.
+    multi_label : bool
+        Every relation is learnt by itself, and several may hold of a pair (``under`` beside ``left_of``); a pair
+        of which the truths say anything is a counterexample for all they do not say of it.
+    symmetric : collection of str, optional
+        Relations that hold of (b, a) when they hold of (a, b); None infers them from the examples.
+    omega, weights, k
+        Of the thesis's method, see `NeighbourSettings`.
+    settings : ContactSettings
+        How contacts are looked for, the same in training and in use.
+    trees : TreeSettings
+
+    Attributes
+    ----------
+    names : tuple of str
+        The relations that were learnt, sorted.
+    symmetric : frozenset of str
+    learnt_from : dict of str to int
+        How many labels of near pairs, sure enough, were learnt from, by relation; empty for a loaded model. Labels
+        of pairs that are not near teach nothing.
+
+    Raises
+    ------
+    InputError
+        A setting breaks its rule.
+    """
+
+    def __init__(
+        self,
+        method: str = "trees",
+        *,
+        adjacent_gap: float | None = ADJACENT_GAP,
+        multi_label: bool = False,
+        symmetric: Collection[str] | None = None,
+        omega: float | None = None,
+        weights: str = "uniform",
+        k: int = 4,
+        settings: ContactSettings = DEFAULT,
+        trees: TreeSettings = DEFAULT_TREES,
+    ) -> None:
+        if method not in METHODS:
+            raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
+        if multi_label and method != "trees":
+            raise InputError("multi_label needs method 'trees', got 'displacement'; drop one of the two")
+        if adjacent_gap is not None and not 0 < adjacent_gap < 1:
+            raise InputError(f"adjacent_gap must be metres in (0, 1), got {adjacent_gap!r}; 0.0225 is 22.5 mm")
+        self.method = method
+        self.adjacent_gap = adjacent_gap
+        self.multi_label = multi_label
+        self.settings = settings
+        self.trees = trees
+        self.neighbours = NeighbourSettings(k, omega, weights)
+        self.declared = None if symmetric is None else frozenset(symmetric)
+        self.names: tuple[str, ...] = ()
+        self.symmetric: frozenset[str] = frozenset()
+        self.models: dict[str, Any] = {}
+        self.learnt_from: dict[str, int] = {}
+
+    def fit(
+        self,
+        clouds: Sequence[LabelledCloud],
+        truths: Sequence[Sequence[PairLabel]],
+        progress: Progress | None = None,
+    ) -> Self:
+        """Learn from scenes and what is said of their pairs, with confidence 2 or more.
+
+        Raises
+        ------
+        InputError
+            `clouds` and `truths` differ in number; no label is of a near pair; without `multi_label`, one pair has
+            two relations, or one in both directions that is not symmetric; a name starts with ``~`` or ends with
+            ``=``.
+        """
+        scenes = []
+        for number, cloud in enumerate(clouds):
+            scenes.append(scene_pairs(cloud, settings=self.settings))
+            if progress is not None:
+                progress(number + 1, len(clouds), "scenes")
+        return self.fit_pairs(scenes, truths)
+
+    def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
+        """As `fit`, from scenes that were looked at before."""
+        if len(scenes) != len(truths):
+            raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
+        near = [
+            label
+            for scene, truth in zip(scenes, truths, strict=True)
+            for said in scene.labels(truth, LEAST_CONFIDENCE)
+            for label in said
+        ]
+        if not near:
+            raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
+        learnt_from = Counter(label.relation for label in near)
+        self.names = tuple(sorted(learnt_from))
+        if odd := [name for name in self.names if name.startswith(REVERSED) or name.endswith("=")]:
+            raise InputError(f"a relation's name must neither start with ~ nor end with =, got {odd[0]!r}")
+        if self.declared is None:
+            self.symmetric = symmetric_names(scenes, truths, self.names, LEAST_CONFIDENCE)
+        else:
+            self.symmetric = self.declared
+        if not self.multi_label:
+            self._check_one_class(scenes, truths)
+        self.models = self._fitted(scenes, truths)
+        self.learnt_from = dict(sorted(learnt_from.items()))
+        return self
+
+    def _check_one_class(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> None:
+        # Before anything is grown: a contradiction should not come to light after minutes of training.
+        for scene, truth in zip(scenes, truths, strict=True):
+            for first, said in zip(
+                scene.features.pairs[::2, 0], scene.labels(truth, LEAST_CONFIDENCE), strict=True
+            ):
+                if said:
+                    pair_class(said, int(first), self.symmetric)
+
+    def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
+        words = self.words
+        if self.multi_label:
+            columns = (*TURNING_COLUMNS, *VIEW_COLUMNS)
+            return dict(fit_labels(scenes, truths, words, columns, self.trees, LEAST_CONFIDENCE))
+        if self.method == "displacement":
+            objects, table = (
+                fit_displacements(scenes, truths, self.symmetric, LEAST_CONFIDENCE, table, self.neighbours)
+                for table in (False, True)
+            )
+        else:
+            objects, table = fit_trees(scenes, truths, words, TURNING_COLUMNS, self.trees, LEAST_CONFIDENCE)
+        return {kind: model for kind, model in ((OBJECTS, objects), (WITH_TABLE, table)) if model is not None}
+
+    @property
+    def words(self) -> Vocabulary:
+        """What is learnt: names, which are symmetric, and the limit of *adjacent* where it applies."""
+        applies = (
+            gap_rule.applies(self.names, self.adjacent_gap) and self.method == "trees" and not self.multi_label
+        )
+        return Vocabulary(self.names, self.symmetric, self.adjacent_gap if applies else None)
+
+    def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
+        """The relation of every near pair, *none* included; then of every object with the table.
+
+        With `multi_label` every relation that is likelier than not. Pairs that are not near are left out.
+
+        Parameters
+        ----------
+        cloud : LabelledCloud
+        found : sequence of Interface, optional
+            Its interfaces where they are known already.
+        """
+        return self.predict_pairs(scene_pairs(cloud, found, self.settings))
+
+    def predict_pairs(self, scene: ScenePairs) -> tuple[Relation, ...]:
+        """As `predict`, from a scene that was looked at before."""
+        beliefs = self.beliefs_of(scene)
+        if not self.multi_label:
+            return tuple(belief.best() for belief in beliefs)
+        return tuple(
+            belief.relation(name) for belief in beliefs for name, share in belief.shares.items() if share >= 0.5
+        )
+
+    def beliefs(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[PairBelief, ...]:
+        """How likely each relation is, for every near pair; in the order of `predict`."""
+        return self.beliefs_of(scene_pairs(cloud, found, self.settings))
+
+    def beliefs_of(self, scene: ScenePairs) -> tuple[PairBelief, ...]:
+        """As `beliefs`, from a scene that was looked at before."""
+        if not self.models:
+            raise InputError("a classifier must be fitted before it is asked; call fit or load a model")
+        shares = self._shares(scene)
+        return tuple(
+            PairBelief(int(a), int(b), float(gap), mine)
+            for (a, b), gap, mine in zip(scene.features.pairs[::2], scene.features.gaps[::2], shares, strict=True)
+            if mine
+        )
+
+    def _shares(self, scene: ScenePairs) -> list[dict[str, float]]:
+        """Shares of each pair; empty for pairs of which nothing was learnt."""
+        if self.multi_label:
+            return label_shares(self.models, scene, self.symmetric)
+        if self.method == "displacement":
+            kinds = [WITH_TABLE if table else OBJECTS for table in scene.with_table]
+            return [
+                self.models[kind].shares(moved) if kind in self.models else {}
+                for kind, moved in zip(kinds, scene.displacements, strict=True)
+            ]
+        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.words)
+
+    def save(self, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
+        """Write the fitted classifier to an npz file, see `relation_model_file`."""
+        from lifelore.perception.relations.relation_model_file import save_model
+
+        save_model(self, path, about)
+
+    @staticmethod
+    def load(path: str | Path) -> "RelationClassifier":
+        """Read what `save` wrote."""
+        from lifelore.perception.relations.relation_model_file import load_model
+
+        return load_model(path)

@@ -1,0 +1,4 @@
+"""Segmentation: the table plane, the frame of a scene, and objects of a cloud without labels.
+
+Read in this order: `plane`, `table_frame`, `distance_segmentation`, `colour_segmentation`.
+"""

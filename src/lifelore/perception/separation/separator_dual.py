@@ -1,0 +1,172 @@
+"""The dual of one level, kept up to date: multipliers, and slopes that are exact or known within a bound.
+
+Notation as in `separator_smo`: β = yα, slope r = y - Kβ. Whatever a decision hangs on (the slopes of a working
+set, the extremes, the bias) is evaluated exactly first.
+"""
+
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.perception.separation.far_field import Cells, far_field
+from lifelore.perception.separation.gaussian import Array, kernel_sums
+from lifelore.perception.separation.nested_voxels import Level
+
+ORDER = 5
+"""Degree of the far field's expansions."""
+_PER_CELL, _PER_POINT = 24, 25
+"""An expansion's cost for each cell and source, and for each point, in evaluations of one Gaussian."""
+_PER_STEP = 2
+"""An optimiser's step's cost for each point of its working set, likewise; besides, it needs two kernel rows."""
+
+Indices = NDArray[np.int64]
+
+
+@dataclass(eq=False)
+class Dual:
+    """One level's dual, changed in place.
+
+    Parameters
+    ----------
+    level : Level
+    beta : (m,) float64
+        Σβ = 0 and lower ≤ β ≤ upper.
+    scope : (k,) int64 or None
+        The points that are looked at, ascending; the others keep the slope they are given. None: all.
+    cells : Cells or None
+        Far-field cells of the level's points, if all are looked at; None: every sum is exact.
+    work, max_work : float
+        Evaluations of a Gaussian so far, and how many there may be. Once they are spent nothing is settled any
+        more: slopes stay within their errors.
+
+    Attributes
+    ----------
+    lower, upper : (m,) float64
+        0 and the cap for the first cloud, minus the cap and 0 for the second.
+    slope, error : (m,) float64
+        |slope - exact slope| ≤ error; infinite until `evaluate` or `settle`.
+    """
+
+    level: Level
+    beta: Array
+    scope: Indices | None = None
+    cells: Cells | None = None
+    work: float = 0.0
+    max_work: float = np.inf
+    lower: Array = field(init=False)
+    upper: Array = field(init=False)
+    slope: Array = field(init=False)
+    error: Array = field(init=False)
+
+    def __post_init__(self) -> None:
+        bound = self.level.side * self.level.cap
+        self.lower, self.upper = np.minimum(bound, 0.0), np.maximum(bound, 0.0)
+        self.slope, self.error = self.level.side.copy(), np.full(len(bound), np.inf)
+
+    @property
+    def spent(self) -> bool:
+        """Whether no work is left."""
+        return self.work >= self.max_work
+
+    def affords(self, n_points: int) -> bool:
+        """Whether the work that is left pays for the sums of all support vectors at so many points."""
+        return self.work + n_points * float(np.count_nonzero(self.beta)) <= self.max_work
+
+    def steps_left(self, n_points: int) -> float:
+        """How many steps over so many points half the work left pays for; the other half is for their effect."""
+        each = (self.max_work - self.work) / (2 * n_points)
+        return max(each / (_PER_STEP + 2), (each - n_points) / _PER_STEP, 1.0)
+
+    def count_steps(self, n_steps: int, n_points: int) -> None:
+        """Add the work of so many steps over so many points: no row of the kernel is computed twice."""
+        self.work += (_PER_STEP * n_steps + min(2 * n_steps, n_points)) * n_points
+
+    def evaluate(self) -> None:
+        """All slopes from all multipliers; those already exact stay so. With too little work left, nothing."""
+        support = np.flatnonzero(self.beta)
+        if self.work + self._cost(len(support)) > self.max_work:
+            self.work = max(self.work, self.max_work)
+            return
+        exact = self.error == 0
+        kept = self.slope[exact]
+        scope = slice(None) if self.scope is None else self.scope
+        self.slope[scope], self.error[scope] = self.level.side[scope], 0.0
+        self.pull(support, self.beta[support])
+        self.slope[exact], self.error[exact] = kept, 0.0
+
+    def pull(self, which: Indices, weights: Array) -> None:
+        """Take the sums of Gaussians of `weights` at the points `which` off all slopes."""
+        points = self.level.points
+        n, k = points.shape[1], len(which)
+        if k == 0:
+            return
+        self.work += self._cost(k)
+        sources, sums = np.ascontiguousarray(points[:, which]), np.zeros(n)
+        if self.cells is not None and self._far_cost(k) < n * k:
+            sums, error = far_field(points, self.cells, sources, weights, ORDER)
+            self.error += error
+        else:
+            kernel_sums(points, sources, weights, np.arange(n) if self.scope is None else self.scope, sums)
+        self.slope -= sums
+
+    def _far_cost(self, n_sources: int) -> float:
+        if self.cells is None:
+            return np.inf
+        return len(self.cells.radius) * n_sources * _PER_CELL + self.level.points.shape[1] * _PER_POINT
+
+    def _cost(self, n_sources: int) -> float:
+        """Of the sums of so many sources at all points that are looked at."""
+        n_points = self.level.points.shape[1] if self.scope is None else len(self.scope)
+        return min(self._far_cost(n_sources), n_points * n_sources)
+
+    def settle(self, which: Indices) -> None:
+        """Evaluate the slopes of `which` exactly, where they are not and work is left."""
+        which = which[self.error[which] > 0]
+        if len(which) and not self.affords(len(which)):
+            self.work = max(self.work, self.max_work)
+        elif len(which):
+            sums = self.sums(np.ascontiguousarray(self.level.points[:, which]))
+            self.slope[which] = self.level.side[which] - sums
+            self.error[which] = 0.0
+
+    def sums(self, points: Array) -> Array:
+        """Σ_j β_j k(point, x_j) at `points` (3, m), exactly."""
+        support = np.flatnonzero(self.beta)
+        self.work += len(support) * points.shape[1]
+        sources, out = np.ascontiguousarray(self.level.points[:, support]), np.empty(points.shape[1])
+        kernel_sums(points, sources, self.beta[support], np.arange(points.shape[1]), out)
+        return out
+
+    def extremes(self, tolerance: float) -> tuple[float, float]:
+        """max{r : β < upper} and min{r : β > lower}: exact if within `tolerance`, else possibly too close.
+
+        With the work spent: as far apart as the errors allow.
+        """
+        rising, falling = np.flatnonzero(self.beta < self.upper), np.flatnonzero(self.beta > self.lower)
+        if len(rising) == 0 or len(falling) == 0:
+            return 0.0, 0.0
+        if not self.spent:
+            most = float((self.slope[rising] - self.error[rising]).max())
+            least = float((self.slope[falling] + self.error[falling]).min())
+            if most - least > tolerance:
+                return most, least
+            self.settle(rising[self.slope[rising] + self.error[rising] >= most])
+            self.settle(falling[self.slope[falling] - self.error[falling] <= least])
+        if self.spent:
+            slope, error = self.slope, self.error
+            return float((slope + error)[rising].max()), float((slope - error)[falling].min())
+        return float(self.slope[rising].max()), float(self.slope[falling].min())
+
+    def free(self) -> Indices:
+        """The points strictly between their bounds."""
+        return np.flatnonzero((self.beta > self.lower) & (self.beta < self.upper))
+
+    def bias(self) -> float:
+        """The mean slope of free points, which at an optimum all have the same; without any, the middle."""
+        free = self.free()
+        if len(free):
+            self.settle(free)
+            return float(self.slope[free].mean())
+        most, least = self.extremes(np.inf)
+        return (most + least) / 2 if np.isfinite(most - least) else float(np.median(self.slope))

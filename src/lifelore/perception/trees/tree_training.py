@@ -1,0 +1,214 @@
+"""Training of `TreeRelations`: rows in both orders, sureness set on scenes that were held out."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from numbers import Integral
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.relations import PairLabel
+from lifelore.perception.pairs import gap_rule
+from lifelore.perception.pairs.directed_label import mirrored
+from lifelore.perception.pairs.pair_class import pair_class
+from lifelore.perception.pairs.pair_features import GEOMETRY_COLUMNS
+from lifelore.perception.pairs.scene_pairs import ScenePairs
+from lifelore.perception.trees.tree_ensemble import MOST_TREES
+from lifelore.perception.trees.tree_relations import (
+    Shares,
+    TreeRelations,
+    Vocabulary,
+    both_orders,
+    carried_columns,
+    inner_symmetric,
+    object_shares,
+    table_rows,
+)
+
+FOLDS = 5
+FEW_ROWS = 40
+"""Below it leaves may hold a single row: a handful of examples should at least be told apart."""
+TEMPERATURES = np.geomspace(0.3, 2.0, 39)
+
+
+@dataclass(frozen=True)
+class TreeSettings:
+    """How trees are grown: see `TreeClassifier`.
+
+    Parameters
+    ----------
+    n_trees, table_trees : int
+        Trees for pairs of objects and for pairs with the table, 1 to `MOST_TREES`.
+    min_leaf : int
+        At least 1.
+    feature_share : float or "sqrt"
+        In (0, 1].
+    seed : int
+        At least 0.
+
+    Raises
+    ------
+    InputError
+        A number breaks its rule.
+    """
+
+    n_trees: int = 200
+    table_trees: int = 100
+    min_leaf: int = 2
+    feature_share: float | str = "sqrt"
+    seed: int = 0
+
+    def __post_init__(self) -> None:
+        for name, least, most in (
+            ("n_trees", 1, MOST_TREES),
+            ("table_trees", 1, MOST_TREES),
+            ("min_leaf", 1, 2**31 - 1),
+            ("seed", 0, 2**32 - 1),
+        ):
+            value = getattr(self, name)
+            if isinstance(value, bool) or not isinstance(value, Integral) or not least <= int(value) <= most:
+                raise InputError(f"{name} must be a whole number from {least} to {most}, got {value!r}")
+        share = self.feature_share
+        if share != "sqrt" and not (isinstance(share, float) and 0 < share <= 1):
+            raise InputError(f"feature_share must be 'sqrt' or a share in (0, 1] such as 0.5, got {share!r}")
+
+
+@dataclass(frozen=True, eq=False)
+class Rows:
+    """Training rows with their classes and the scene each comes from."""
+
+    matrix: NDArray[np.float64]
+    classes: NDArray[np.str_]
+    scene: NDArray[np.int64]
+
+
+def fit_trees(
+    scenes: Sequence[ScenePairs],
+    truths: Sequence[Sequence[PairLabel]],
+    words: Vocabulary,
+    columns: Sequence[str],
+    settings: TreeSettings,
+    least_confidence: int,
+) -> tuple[TreeRelations | None, TreeRelations | None]:
+    """Models for pairs of objects and for pairs with the table; None where the truths have no such pair."""
+    rows = _object_rows(scenes, truths, words, columns, least_confidence)
+    objects, seen = None, [{} for _ in scenes]
+    if len(rows.scene):
+        objects = grown(rows, columns, settings, settings.n_trees)
+        held_out = _held_out(rows, columns, settings, len(scenes))
+        objects = _calibrated(objects, held_out, rows, inner_symmetric(words.symmetric))
+        seen = [
+            object_shares(model or objects, scene, words.symmetric, words.adjacent_gap)
+            for model, scene in zip(held_out, scenes, strict=True)
+        ]
+    return objects, _fit_table(scenes, truths, words, settings, least_confidence, seen)
+
+
+def _object_rows(
+    scenes: Sequence[ScenePairs],
+    truths: Sequence[Sequence[PairLabel]],
+    words: Vocabulary,
+    columns: Sequence[str],
+    least_confidence: int,
+) -> Rows:
+    """Two rows for each labelled pair of objects: as it is, and turned round with its label."""
+    symmetric = inner_symmetric(words.symmetric)
+    matrix, classes, origin = [], [], []
+    for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
+        features = scene.features.columns(columns)
+        for pair, (said, table) in enumerate(
+            zip(scene.labels(truth, least_confidence), scene.with_table, strict=True)
+        ):
+            if table or not said:
+                continue
+            name = pair_class(said, int(scene.features.pairs[2 * pair, 0]), words.symmetric)
+            if words.adjacent_gap is not None:
+                name = gap_rule.inner_label(name, float(scene.features.gaps[2 * pair]), words.adjacent_gap)
+            matrix += [features[2 * pair], features[2 * pair + 1]]
+            classes += [name, mirrored(name, symmetric)]
+            origin += [number, number]
+    return Rows(np.array(matrix).reshape(-1, len(columns)), np.array(classes, str), np.array(origin, np.int64))
+
+
+def grown(rows: Rows, columns: Sequence[str], settings: TreeSettings, n_trees: int) -> TreeRelations:
+    """Trees over these rows, not calibrated."""
+    from lifelore.perception.trees.tree_classifier import TreeClassifier
+
+    min_leaf = settings.min_leaf if len(rows.classes) >= FEW_ROWS else 1
+    estimator = TreeClassifier(n_trees, min_leaf, settings.feature_share, random_state=settings.seed)
+    estimator.fit(rows.matrix, rows.classes)
+    return TreeRelations(tuple(map(str, estimator.classes_)), tuple(columns), estimator.ensemble_)
+
+
+def _held_out(
+    rows: Rows, columns: Sequence[str], settings: TreeSettings, n_scenes: int
+) -> list[TreeRelations | None]:
+    """For each scene a model that has not seen it; None where there are too few to hold any out."""
+    models: list[TreeRelations | None] = [None] * n_scenes
+    if n_scenes < 2:
+        return models
+    folds = min(FOLDS, n_scenes)
+    for fold in range(folds):
+        kept = rows.scene % folds != fold
+        if kept.any():
+            part = Rows(rows.matrix[kept], rows.classes[kept], rows.scene[kept])
+            model = grown(part, columns, settings, max(settings.n_trees // 2, 1))
+            models[fold::folds] = [model] * len(models[fold::folds])
+    return models
+
+
+def _calibrated(
+    model: TreeRelations, held_out: Sequence[TreeRelations | None], rows: Rows, symmetric: frozenset[str]
+) -> TreeRelations:
+    """The model at the temperature that fits what was held out best."""
+    right = []
+    for number in np.unique(rows.scene):
+        one = held_out[number]
+        if one is None:
+            continue
+        mine = rows.scene == number
+        shares = both_orders(one, rows.matrix[mine], symmetric)
+        truth = rows.classes[mine][::2]
+        for row, name in zip(shares, truth, strict=True):
+            right.append((row, one.classes.index(str(name)) if str(name) in one.classes else None))
+    temperature = best_temperature([(row, at) for row, at in right if at is not None])
+    return TreeRelations(model.classes, model.columns, model.trees, temperature)
+
+
+def best_temperature(answers: Sequence[tuple[NDArray[np.float64], int]]) -> float:
+    """The temperature of least log loss over (shares, number of the true class); 1 for none."""
+    if not answers:
+        return 1.0
+    loss = np.zeros(len(TEMPERATURES))
+    for row, true in answers:
+        # A truth that no tree voted for would cost infinitely much at any temperature.
+        logs = np.log(np.maximum(row, 1e-3))[None] / TEMPERATURES[:, None]
+        loss += np.log(np.exp(logs - logs[:, [true]]).sum(axis=1))
+    return float(TEMPERATURES[loss.argmin()])
+
+
+def _fit_table(
+    scenes: Sequence[ScenePairs],
+    truths: Sequence[Sequence[PairLabel]],
+    words: Vocabulary,
+    settings: TreeSettings,
+    least_confidence: int,
+    seen: Sequence[Shares],
+) -> TreeRelations | None:
+    columns = GEOMETRY_COLUMNS
+    matrix, classes, origin = [], [], []
+    for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
+        at = np.flatnonzero(scene.with_table)
+        rows = table_rows(scene, seen[number], words.names, words.symmetric, columns)
+        labels = scene.labels(truth, least_confidence)
+        for row, pair in zip(rows, at, strict=True):
+            if labels[pair]:
+                matrix.append(row)
+                classes.append(pair_class(labels[pair], int(scene.features.pairs[2 * pair, 0]), words.symmetric))
+                origin.append(number)
+    if not matrix:
+        return None
+    rows = Rows(np.array(matrix), np.array(classes, str), np.array(origin, np.int64))
+    names = (*columns, *carried_columns(words.names, words.symmetric))
+    return grown(rows, names, settings, settings.table_trees)

@@ -1,0 +1,151 @@
+"""Competence of demonstrators: by hand, and simulated people of known skill."""
+
+import numpy as np
+import pytest
+
+from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_ways
+from lifelore.action.demonstrations.demonstrations import Demonstration
+from lifelore.action.demonstrations.simulated_person import person_policy, shown_by_person
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.streams import stream
+
+
+def demonstration(agent, done, task="t") -> Demonstration:
+    states, actions = np.array(done, np.int64).T
+    return Demonstration(task, agent, states, actions)
+
+
+def grid(side: int) -> tuple[Tables, np.ndarray]:
+    """An open square with the goal in the far corner, and its best actions: every step down or right."""
+    s = np.arange(side * side)
+    row, column = s // side, s % side
+    follow = np.stack([
+        np.where(row > 0, s - side, s), np.where(row < side - 1, s + side, s),
+        np.where(column < side - 1, s + 1, s), np.where(column > 0, s - 1, s),
+    ], axis=1)  # fmt: skip
+    best = np.stack([np.zeros(len(s), bool), row < side - 1, column < side - 1, np.zeros(len(s), bool)], axis=1)
+    event = np.where(follow == len(s) - 1, TERMINAL, 0).astype(np.uint8)
+    tables = Tables(
+        follow[:, :, None].astype(np.int32), np.zeros((*follow.shape, 1)), event[:, :, None], np.ones(1),
+        np.zeros(1, np.int32),
+    )  # fmt: skip
+    return tables, best
+
+
+# ---- w(π) by steps -------------------------------------------------------------------------------------------
+
+
+def test_by_steps_by_hand():
+    # One of four actions is best in states 0 and 1; all are in state 2, none in state 3: those tell nothing.
+    best = np.array([[1, 0, 0, 0], [0, 1, 0, 0], [1, 1, 1, 1], [0, 0, 0, 0]], bool)
+    ann = demonstration("ann", [(0, 0), (1, 1), (2, 3), (3, 0)])
+    bob = demonstration("bob", [(0, 0), (1, 0), (0, 1), (1, 1), (2, 0)])
+    cat = demonstration("cat", [(0, 3), (1, 3)])
+    dan = demonstration("dan", [(2, 0), (3, 1)])
+    found = competence_by_steps([ann, bob, cat, dan], {"t": best}.__getitem__)
+    # bob: (2 - 1) / (4 - 1); cat is worse than blind.
+    assert found == pytest.approx({"ann": 1.0, "bob": 1 / 3, "cat": 0.0, "dan": 0.0})
+
+
+def test_tasks_of_one_agent_are_taken_together():
+    best = {"one": np.array([[True, False]]), "two": np.array([[False, True]])}
+    told = [demonstration("ann", [(0, 0)] * 3, "one"), demonstration("ann", [(0, 0)], "two")]
+    assert competence_by_steps(told, best.__getitem__) == {"ann": 0.5}  # (3 - 2) / (4 - 2)
+
+
+def test_steps_outside_the_task_are_refused():
+    with pytest.raises(
+        InputError, match="'ann' in task 't' must stay within its 1 states and 2 actions, got 1 and 0"
+    ):
+        competence_by_steps([demonstration("ann", [(1, 0)])], lambda task: np.ones((1, 2), bool))
+
+
+@pytest.mark.parametrize("skill", [0.0, 0.3, 0.7, 1.0])
+def test_by_steps_recovers_the_skill_of_simulated_people(skill):
+    # h - e over n - e has the mean `skill` for this kind of person: P(best) = skill + (1 - skill) · share. With n
+    # steps its deviation is at most ½ √n / (n (1 - ½)) = 1 / √n; four of them.
+    tables, best = grid(12)
+    random = stream(0, "skill")
+    told = []
+    while sum(len(one.states) for one in told) < 4000:
+        one = shown_by_person(tables, best, skill, random, task="t", agent="ann", most_steps=10**5)
+        assert one is not None
+        told.append(one)
+    n = sum(len(one.states) for one in told)
+    assert competence_by_steps(told, lambda task: best)["ann"] == pytest.approx(skill, abs=4 / np.sqrt(n))
+
+
+# ---- w(π) by ways --------------------------------------------------------------------------------------------
+
+
+def test_by_ways_by_hand():
+    # Ann goes 0 1 2 and out: three steps. Bob goes 0 5 1 4 1 2 and out: six, though he could have gone her way.
+    ann = demonstration("ann", [(0, 0), (1, 0), (2, 0)])
+    bob = demonstration("bob", [(0, 1), (5, 0), (1, 1), (4, 0), (1, 0), (2, 0)])
+    assert competence_by_ways([ann, bob]) == {"ann": 1.0, "bob": 0.5}
+    # Alone he is only charged for his circle 1 4 1: nothing shorter is known.
+    assert competence_by_ways([bob]) == {"bob": pytest.approx(4 / 6)}
+    elsewhere = demonstration("ann", [(9, 0)] * 4, "u")  # one step would have done
+    assert competence_by_ways([ann, bob, elsewhere])["ann"] == pytest.approx((1 + 1 / 4) / 2)
+
+
+def test_both_estimators_rank_people_alike():
+    tables, best = grid(8)
+    told = [
+        shown_by_person(tables, best, skill, stream(1, i), task="t", agent=str(skill), most_steps=10**5)
+        for i in range(10)
+        for skill in (0.1, 0.5, 0.95)
+    ]
+    told = [one for one in told if one is not None]
+    for found in (competence_by_steps(told, lambda task: best), competence_by_ways(told)):
+        assert found["0.1"] < found["0.5"] < found["0.95"] <= 1.0
+
+
+# ---- simulated people ----------------------------------------------------------------------------------------
+
+
+def test_a_persons_policy_by_hand():
+    best = [[True, True, False, False], [True, False, False, False], [False, False, False, False]]
+    assert person_policy(best, 0.6).tolist() == pytest.approx(
+        np.array([[0.4, 0.4, 0.1, 0.1], [0.7, 0.1, 0.1, 0.1], [0.25] * 4])
+    )
+
+
+def test_an_expert_takes_a_shortest_way():
+    tables, best = grid(6)
+    one = shown_by_person(tables, best, 1.0, stream(2), task="t", agent="ann")
+    assert one is not None
+    assert (one.task, one.agent, len(one.states), one.states[0]) == ("t", "ann", 10, 0)
+    assert best[one.states, one.actions].all()
+    followed = tables.next_state[one.states, one.actions, 0]
+    assert np.array_equal(followed[:-1], one.states[1:])
+    assert followed[-1] == 35
+    from_there = shown_by_person(tables, best, 1.0, stream(2), task="t", agent="ann", start=34)
+    assert from_there is not None
+    assert from_there.actions.tolist() == [2]
+
+
+def test_people_give_up():
+    tables, best = grid(6)
+    assert shown_by_person(tables, best, 1.0, stream(3), task="t", agent="ann", most_steps=9) is None
+
+
+def test_uncertain_outcomes_follow_their_probabilities():
+    # One action: stay with 3/4, end with 1/4; the number of steps is geometric with mean 4 and deviation √12.
+    tables = Tables(
+        np.zeros((1, 1, 2), np.int32), np.zeros((1, 1, 2)), np.array([[[0, TERMINAL]]], np.uint8),
+        np.array([0.75, 1.0]), np.zeros(1, np.int32),
+    )  # fmt: skip
+    random = stream(4)
+    told = [shown_by_person(tables, [[True]], 1.0, random, task="t", agent="a") for _ in range(2000)]
+    steps = [len(one.states) for one in told if one is not None]
+    assert np.mean(steps) == pytest.approx(4.0, abs=4 * np.sqrt(12 / 2000))
+
+
+def test_broken_rules():
+    tables, best = grid(2)
+    with pytest.raises(InputError, match=r"skill must lie in \[0, 1\], got 1.1"):
+        person_policy(best, 1.1)
+    with pytest.raises(InputError, match="most_steps must be at least 1, got 0"):
+        shown_by_person(tables, best, 1.0, stream(0), task="t", agent="a", most_steps=0)

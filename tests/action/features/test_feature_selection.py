@@ -1,0 +1,330 @@
+"""Feature selection: entropies by hand, a dictionary twin, Alg. 5 and 6, and why the entropy is high."""
+
+import math
+from itertools import combinations, product
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.action.features.counted_features import CountedFeatures, action_set_entropy, pooled_counts
+from lifelore.action.features.feature_selection import (
+    OnlineFeatureSelection,
+    best_feature_set,
+    features_left_by_removal,
+    independent_features,
+)
+from lifelore.action.features.feature_set import FeatureSet
+from lifelore.action.features.uncertainty import REASONS, why_uncertain
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+
+SIZES = (2, 3, 2)
+columns = st.tuples(*(st.integers(0, size - 1) for size in SIZES))
+count_rows = st.lists(st.sampled_from([0, 0, 1, 2, 0.5]), min_size=3, max_size=3)
+tables = st.lists(st.tuples(columns, count_rows), max_size=12)
+
+
+def counted(rows, sizes=SIZES) -> CountedFeatures:
+    features = FeatureSet(tuple(f"f{i}" for i in range(len(sizes))), sizes)
+    cells = np.array([cell for cell, _ in rows], np.int64).reshape(-1, len(sizes))
+    counts = np.array([row for _, row in rows], float).reshape(len(rows), -1) if rows else np.zeros((0, 3))
+    return CountedFeatures.from_columns(cells, counts, features)
+
+
+def naive_entropy(rows, kept) -> float:
+    """Eq. 3.9-3.11 term by term over a dictionary."""
+    alpha: dict[tuple, list[float]] = {}
+    for cell, row in rows:
+        own = alpha.setdefault(tuple(cell[i] for i in kept), [0.0] * len(row))
+        for a, count in enumerate(row):
+            own[a] += count
+    total = sum(sum(own) for own in alpha.values())
+    h = 0.0
+    for own in alpha.values():
+        for count in own:
+            if count:
+                theta = count / sum(own)
+                h += sum(own) / total * -theta * math.log2(theta)
+    return h
+
+
+# ---- Eq. 3.9-3.11 ------------------------------------------------------------------------------------------
+
+
+def test_entropy_by_hand():
+    # Context 0 leaves two actions open (1 bit), context 1 none; P is 3/4 and 1/4.
+    case = counted([((0,), [3, 3]), ((1,), [0, 2])], (2,))
+    assert case.entropy() == pytest.approx(0.75)
+    # Together 3 and 5 of 8.
+    assert case.entropy([]) == pytest.approx(-3 / 8 * math.log2(3 / 8) - 5 / 8 * math.log2(5 / 8))
+
+
+@given(tables)
+def test_entropy_is_the_printed_sum(rows):
+    case = counted(rows)
+    for n in range(4):
+        for kept in combinations(range(3), n):
+            assert case.entropy([f"f{i}" for i in kept]) == pytest.approx(naive_entropy(rows, kept), abs=1e-9)
+
+
+def test_entropy_of_a_prior_leaves_alpha0_out():
+    features = FeatureSet(("wall", "items"), (2, 3))
+    entropies = []
+    for alpha0 in (0.01, 10.0):
+        prior = ActionPrior(2, alpha0)
+        prior.update(features.codes([[0, 0], [0, 1], [1, 2]]), [[True, False], [True, True], [False, True]])
+        entropies.append(CountedFeatures.from_prior(prior, features).entropy())
+    # Only the middle context is open: two of four counts.
+    assert entropies == [pytest.approx(0.5)] * 2
+
+
+def test_with_alpha0_counted_in_a_feature_that_tells_everything_would_seem_to_harm():
+    # Printed, α and so θ and P hold α⁰ (Eq. 3.4, 3.11): of 512 configurations at most 60 are ever seen, and
+    # leaving out any feature takes away many that never were, each of them uniform.
+    features, random = FeatureSet(("tells", "x", "y"), (2, 16, 16)), stream(6, "alpha0")
+    cells = np.column_stack([random.integers(0, size, 60) for size in features.sizes])
+    case = CountedFeatures.from_columns(cells, np.eye(2)[cells[:, 0]], features)
+
+    def printed(names) -> float:
+        codes = features.coarser(case.codes, names)
+        alpha = np.full((features.subset(names).n_codes, 2), 0.1)
+        np.add.at(alpha, codes, case.counts)
+        return action_set_entropy(alpha)
+
+    pairs = {name: [other for other in features.names if other != name] for name in features.names}
+    assert all(printed(others) < printed(features.names) for others in pairs.values())
+    assert printed(features.names) > 0.5  # bits, of a choice that is never open
+    assert case.entropy() == 0.0
+    assert independent_features(case).names == ("tells",)
+
+
+@given(tables)
+def test_a_feature_more_never_adds_entropy(rows):
+    case = counted(rows)
+    for name in case.features.names:
+        others = [other for other in case.features.names if other != name]
+        assert case.entropy() <= case.entropy(others) + 1e-9
+        assert case.entropy() <= math.log2(3) + 1e-9
+
+
+@given(st.lists(st.tuples(st.one_of(st.integers(0, 5), st.integers(0, 2**47 - 1)), count_rows), max_size=20))
+def test_pooled_counts_are_a_dictionary(rows):
+    twin: dict[int, list[float]] = {}
+    for code, row in rows:
+        own = twin.setdefault(code, [0.0, 0.0, 0.0])
+        for a in range(3):
+            own[a] += row[a]
+    codes, counts = pooled_counts(
+        np.array([code for code, _ in rows], np.int64), np.array([row for _, row in rows], float).reshape(-1, 3)
+    )
+    found = {code: row for code, row in zip(codes.tolist(), counts.tolist(), strict=True) if any(row)}
+    assert found == {code: row for code, row in twin.items() if any(row)}
+    assert (np.diff(codes) > 0).all()
+
+
+# ---- Eq. 3.12 ----------------------------------------------------------------------------------------------
+
+
+@given(tables, st.sampled_from([0.0, 0.05, 0.3]))
+def test_the_best_set_is_the_least_of_all(rows, penalty):
+    found = best_feature_set(counted(rows), penalty)
+    every = {
+        tuple(f"f{i}" for i in kept): naive_entropy(rows, kept)
+        for n in range(4)
+        for kept in combinations(range(3), n)
+    }
+    assert found.entropies == pytest.approx(every, abs=1e-9)
+    assert found.objective == pytest.approx(min(h + penalty * len(names) for names, h in every.items()), abs=1e-9)
+    equal = [names for names, h in every.items() if h + penalty * len(names) < found.objective + 1e-10]
+    assert len(found.names) == min(map(len, equal))
+
+
+def test_the_penalty_decides_how_many_features():
+    # f0 halves the entropy from 2 bits to 1, f1 from 1 to 0; f2 says nothing.
+    rows = [((i, j, k), np.eye(4)[2 * i + j].tolist()) for i, j, k in product(range(2), repeat=3)]
+    case = counted(rows, (2, 2, 2))
+    assert best_feature_set(case).names == ("f0", "f1")
+    assert best_feature_set(case, 0.9).names == ("f0", "f1")
+    assert best_feature_set(case, 1.1).names == ()
+    assert len(best_feature_set(case).entropies) == 8
+
+
+def test_fifteen_features_are_searched_and_sixteen_refused():
+    rows = [(cell, [1.0, 0.0] if cell[7] else [0.0, 1.0]) for cell in map(tuple, np.eye(15, dtype=int).tolist())]
+    found = best_feature_set(counted(rows, (2,) * 15), 1e-3)
+    assert found.names == ("f7",)
+    assert len(found.entropies) == 2**15
+    with pytest.raises(InputError, match=r"at most 15 features, got 16; use Alg\. 5"):
+        best_feature_set(counted([], (2,) * 16))
+
+
+# ---- Alg. 5 ------------------------------------------------------------------------------------------------
+
+
+def test_independent_selection_by_hand():
+    # f0 tells the action; f1 tells it only in part (3 of 4); f2 says nothing.
+    rows = [((0, 0, k), [3.0, 0.0]) for k in range(2)] + [((0, 1, k), [1.0, 0.0]) for k in range(2)]
+    rows += [((1, 1, k), [0.0, 3.0]) for k in range(2)] + [((1, 0, k), [0.0, 1.0]) for k in range(2)]
+    choice = independent_features(counted(rows, (2, 2, 2)))
+    h = -0.75 * math.log2(0.75) - 0.25 * math.log2(0.25)
+    assert choice.full_entropy == pytest.approx(0.0)
+    assert choice.increase == pytest.approx({"f0": h, "f1": 0.0, "f2": 0.0})
+    assert choice.threshold == pytest.approx(h / 3)  # ω = mean Δ
+    assert choice.names == ("f0",)
+    assert independent_features(counted(rows, (2, 2, 2)), threshold=0.0).names == ("f0", "f1", "f2")
+
+
+@given(tables)
+def test_independent_selection_is_alg_5(rows):
+    choice = independent_features(counted(rows))
+    full = naive_entropy(rows, (0, 1, 2))
+    delta = {f"f{i}": naive_entropy(rows, [j for j in range(3) if j != i]) - full for i in range(3)}
+    assert choice.increase == pytest.approx(delta, abs=1e-9)
+    mean = sum(delta.values()) / 3
+    assert all((name in choice.names) == (d >= mean) for name, d in delta.items() if abs(d - mean) > 1e-9)
+
+
+def test_equal_features_reach_their_own_mean():
+    # Three thirds: the mean of three equal numbers may round above them, and none would be chosen.
+    rows = [((i, j, k), np.eye(8)[4 * i + 2 * j + k].tolist()) for i, j, k in product(range(2), repeat=3)]
+    for scale in (1.0, 0.1, 1 / 3):
+        scaled = [(cell, [scale * x for x in row]) for cell, row in rows]
+        assert independent_features(counted(scaled, (2, 2, 2))).names == ("f0", "f1", "f2")
+
+
+def test_two_copies_of_a_feature_are_both_dropped_by_alg_5_alone():
+    # Alg. 5 takes features to be independent: without one copy the other still tells.
+    rows = [((i, i, k), [[4.0, 0.0], [0.0, 4.0]][i]) for i, k in product(range(2), repeat=2)]
+    rows[0] = ((0, 0, 0), [3.0, 1.0])  # f2 tells a little, so that the mean is above 0
+    case = counted(rows, (2, 2, 2))
+    assert independent_features(case).names == ("f2",)
+    assert independent_features(case).increase["f0"] == pytest.approx(0.0)
+    assert case.entropy(["f2"]) > 0.9
+    assert len(features_left_by_removal(case, 0.2)) == 1
+    assert features_left_by_removal(case, 0.2) in (("f0",), ("f1",))
+    assert case.entropy(features_left_by_removal(case, 0.2)) < 0.5
+    assert best_feature_set(case, 0.2).names == ("f0",)
+
+
+def test_where_nothing_matters_the_mean_threshold_keeps_everything():
+    # Δ = 0 for all, so ω = 0 and Δ ≥ ω for all.
+    rows = [((i, j, k), [1.0, 1.0]) for i, j, k in product(range(2), repeat=3)]
+    assert independent_features(counted(rows, (2, 2, 2))).names == ("f0", "f1", "f2")
+    assert features_left_by_removal(counted(rows, (2, 2, 2)), 0.0) == ()
+
+
+# ---- Alg. 6 ------------------------------------------------------------------------------------------------
+
+
+def test_online_selection_after_each_task():
+    features = FeatureSet(("tells", "noise"), (2, 2))
+    online = OnlineFeatureSelection(features, ("left", "right"), alpha0=0.5)
+    everything = features.codes(list(product(range(2), repeat=2)))
+    assert online.probs(everything).tolist() == [[0.5, 0.5]] * 4
+    # Task 1 happens to tell by both features; task 2 and 3 by the first alone.
+    online.update(everything, [[True, False], [True, True], [True, True], [False, True]])
+    assert online.chosen.names == ("tells", "noise")
+    by_the_first = [[True, False], [True, False], [False, True], [False, True]]
+    choices = [online.update(everything, by_the_first) for _ in range(3)]
+    assert choices[-1].names == online.chosen.names == ("tells",)
+    assert len(online.choices) == 4
+    # tells = 0: 8 lefts and 1 right, each with α⁰ = ½.
+    assert online.prior.counts([0, 1]).tolist() == [[8.0, 1.0], [1.0, 8.0]]
+    assert online.probs(everything)[:, 0] == pytest.approx([0.85, 0.85, 0.15, 0.15])
+    assert online.full.counts(everything).sum() == online.prior.counts([0, 1]).sum()
+    assert online.prior.key == FeatureSet(("tells",), (2,)).key(("left", "right"))
+
+
+def test_online_selection_refuses_codes_of_another_set():
+    online = OnlineFeatureSelection(FeatureSet(("a",), (2,)), ("x", "y"))
+    with pytest.raises(InputError, match=r"codes must lie in \[0, 2\), got 2..2"):
+        online.update([2], [[True, False]])
+    assert len(online.full) == 0
+
+
+def test_a_million_configurations_reduced_to_four_features():
+    # The thesis's §3.4.6: from 4^9 · 3 to 4^4 configurations, told by the four neighbours alone.
+    names = ("UL", "UM", "UR", "ML", "MM", "MR", "DL", "DM", "DR", "Items")
+    features = FeatureSet(names, (4,) * 9 + (3,))
+    random = stream(0, "neighbours")
+    columns = np.column_stack([random.integers(0, size, 30_000) for size in features.sizes])
+    passable = columns[:, [1, 7, 5, 3]] != 1  # north, south, east, west
+    online = OnlineFeatureSelection(features, ("N", "S", "E", "W"))
+    online.update(features.codes(columns), passable)
+    assert online.chosen.names == ("UM", "ML", "MR", "DM")
+    assert online.chosen.n_codes == 256
+    assert 1 - 256 / features.n_codes == pytest.approx(0.999674, abs=1e-6)
+
+
+# ---- why the entropy is high -------------------------------------------------------------------------------
+
+
+def test_reasons_by_hand():
+    # f0 = 0: tasks disagree, whatever f1 says. f0 = 1: f1 tells. f0 = 2: nothing to tell. f0 = 3: seen once each.
+    rows = [((0, 0), [8, 8]), ((0, 1), [8, 8]), ((1, 0), [16, 0]), ((1, 1), [0, 16])]
+    rows += [((2, 0), [16, 0]), ((2, 1), [15, 1]), ((3, 0), [1, 0]), ((3, 1), [0, 1])]
+    told = why_uncertain(counted(rows, (4, 2)), ["f0"])
+    assert [REASONS[i] for i in told.reason] == [
+        "tasks disagree",
+        "features too poor",
+        "certain",
+        "too few counts",
+    ]
+    assert told.columns.ravel().tolist() == [0, 1, 2, 3]
+    assert told.share.tolist() == pytest.approx([32 / 98, 32 / 98, 32 / 98, 2 / 98])
+    assert told.entropy[[0, 1, 3]] == pytest.approx([1.0] * 3)
+    assert told.with_all[[0, 1, 3]] == pytest.approx([1.0, 0.0, 0.0])
+    assert told.counts_each.tolist() == [16, 16, 16, 1]
+    assert told.share_of("tasks disagree") == pytest.approx(32 / 98)
+
+
+@settings(max_examples=50)
+@given(tables)
+def test_the_two_reasons_add_up_to_the_entropy(rows):
+    case = counted([(cell, row) for cell, row in rows if any(row)] or [((0, 0, 0), [1, 0, 0])])
+    told = why_uncertain(case, ["f1"])
+    assert told.disagreement == pytest.approx(case.entropy(), abs=1e-9)
+    assert told.disagreement + told.poverty == pytest.approx(case.entropy(["f1"]), abs=1e-9)
+    assert (told.with_all <= told.entropy + 1e-9).all()
+    assert why_uncertain(case, case.features.names).poverty == pytest.approx(0.0, abs=1e-9)
+
+
+def test_ties_of_a_single_task_leave_entropy_without_any_disagreement():
+    # One task, two tied-best actions in the only state: 1 bit, and no other task to disagree with.
+    prior, features = ActionPrior(2), FeatureSet(("state",), (1,))
+    prior.update([0], [[True, True]], weight=8)
+    told = why_uncertain(CountedFeatures.from_prior(prior, features), ["state"])
+    assert (told.disagreement, told.poverty) == (1.0, 0.0)
+
+
+# ---- rules -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: CountedFeatures.from_columns([[0]], [[1.0], [2.0]]), "must have a row a context"),
+        (lambda: CountedFeatures.from_columns([[0]], [[-1.0]]), "counts must be finite and at least 0"),
+        (lambda: best_feature_set(counted([]), -1.0), "penalty must be finite and at least 0, got -1.0"),
+        (lambda: features_left_by_removal(counted([]), math.inf), "penalty must be finite"),
+    ],
+)
+def test_broken_rules(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
+
+
+def test_a_prior_of_other_contexts_is_refused():
+    prior = ActionPrior(2)
+    prior.update([5], [[True, False]])
+    with pytest.raises(InputError, match=r"codes must lie in \[0, 4\), got 5..5"):
+        CountedFeatures.from_prior(prior, FeatureSet(("a",), (4,)))
+
+
+def test_columns_name_themselves():
+    case = CountedFeatures.from_columns([[0, 2], [1, 0]], [[1, 0], [0, 1]])
+    assert (case.features.names, case.features.sizes) == (("f0", "f1"), (2, 3))
+    assert action_set_entropy(np.zeros((3, 2))) == 0.0

@@ -1,0 +1,316 @@
+"""Domain reduction: Alg. 3 by hand, the counterexamples, and properties over random small domains."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.action.search.domain_reduction import (
+    domain_futile_actions,
+    domain_futile_states,
+    futile_goal_probability,
+    minimised_domain,
+    reachable_states,
+    tables_within,
+    task_futile_actions,
+    task_futile_states,
+    trap_states,
+)
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import optimal_q
+
+DISCOUNT = 0.9
+
+
+def goal_task(follow, goal: int, starts, outcomes=(1.0,)) -> Tables:
+    """Reach `goal` for a reward of 1; `follow` is (n_states, n_actions) or with outcomes as a third axis."""
+    follow = np.asarray(follow, np.int32).reshape(len(follow), -1, len(outcomes))
+    there = follow == goal
+    cum = np.cumsum(outcomes)
+    cum[-1] = 1.0
+    event = np.where(there, TERMINAL, 0).astype(np.uint8)
+    return Tables(follow, there.astype(float), event, cum, np.asarray(starts, np.int32))
+
+
+def best_of(tables: Tables, goal: int) -> np.ndarray:
+    ended = np.arange(tables.n_states) == goal
+    return actions_to_count(optimal_q(tables, DISCOUNT), "all", ended=ended)
+
+
+@st.composite
+def task_sets(draw):
+    """Tasks of one random domain: goals in it, starts elsewhere, one or two outcomes an action."""
+    n_states, n_actions = draw(st.integers(2, 6)), draw(st.integers(1, 3))
+    outcomes = draw(st.sampled_from([(1.0,), (0.75, 0.25), (0.1, 0.2, 0.7)]))
+    shape = (n_states, n_actions, len(outcomes))
+    size = int(np.prod(shape))
+    follow = np.array(draw(st.lists(st.integers(0, n_states - 1), min_size=size, max_size=size))).reshape(shape)
+    tasks, policies = [], []
+    for _ in range(draw(st.integers(1, 3))):
+        goal = draw(st.integers(0, n_states - 1))
+        others = [s for s in range(n_states) if s != goal]
+        starts = sorted(draw(st.sets(st.sampled_from(others), min_size=1)))
+        tasks.append(goal_task(follow, goal, starts, outcomes))
+        policies.append(best_of(tasks[-1], goal))
+    return tasks, policies
+
+
+def naive_reach(tables: Tables, best) -> set[int]:
+    """Alg. 3 word for word, but that nothing is done once the episode is over."""
+    acting = set(tables.starts.tolist())
+    while True:
+        entered, going_on = set(), set()
+        for s in acting:
+            for a in range(tables.n_actions):
+                for k in range(len(tables.outcome_cum)):
+                    if best[s, a]:
+                        entered.add(int(tables.next_state[s, a, k]))
+                        if not tables.event[s, a, k] & TERMINAL:
+                            going_on.add(int(tables.next_state[s, a, k]))
+        if going_on <= acting:
+            return acting | entered
+        acting |= going_on
+
+
+# ---- by hand -----------------------------------------------------------------------------------------------
+
+# A corridor 0 - 1 - 2 - 3 - 4; actions left and right.
+CORRIDOR = [(max(s - 1, 0), min(s + 1, 4)) for s in range(5)]
+
+
+def test_futile_states_and_actions_by_hand():
+    east = goal_task(CORRIDOR, 3, [1])
+    best = best_of(east, 3)
+    assert best.tolist() == [[False, True], [False, True], [False, True], [False, False], [True, False]]
+    assert reachable_states(east, best).tolist() == [False, True, True, True, False]
+    assert task_futile_states(east, best).tolist() == [True, False, False, False, True]
+    assert task_futile_actions(best)[1].tolist() == [True, False]
+    west = goal_task(CORRIDOR, 0, [2])
+    both, policies = [east, west], [best, best_of(west, 0)]
+    assert domain_futile_states(both, policies).tolist() == [False, False, False, False, True]
+    # In 0 west's episode is over and east goes right, in 3 the other way about; in 4 both would go left.
+    futile = [[True, False], [False, False], [False, False], [False, True], [False, True]]
+    assert domain_futile_actions(policies).tolist() == futile
+
+
+def test_all_tied_actions_are_followed():
+    # From 0 both actions lead to the goal 3 in two steps, by 1 or by 2.
+    task = goal_task([(1, 2), (3, 3), (3, 3), (3, 3)], 3, [0])
+    assert reachable_states(task, best_of(task, 3)).all()
+
+
+# ---- E8: the printed definition can be left --------------------------------------------------------------------
+
+
+def printed_and_repaired(tasks, policies):
+    return (minimised_domain(tasks, policies, form) for form in ("printed", "repaired"))
+
+
+def test_the_counterexample_of_errata_e8():
+    # Both start in 0. Task 1: goal 1, by 0 -a-> 1; from 2, where it never comes, it would go 2 -b-> 3 -a-> 1.
+    # Task 2: goal 4, by 0 -b-> 2 -a-> 4.
+    follow = [(1, 2), (1, 1), (4, 3), (1, 1), (4, 4)]
+    tasks = [goal_task(follow, 1, [0]), goal_task(follow, 4, [0])]
+    policies = [best_of(tasks[0], 1), best_of(tasks[1], 4)]
+    printed, repaired = printed_and_repaired(tasks, policies)
+    assert printed.states.tolist() == repaired.states.tolist() == [True, True, True, False, True]
+    assert np.argwhere(printed.without_successor).tolist() == [[2, 1]]  # η = 1/0
+    assert np.argwhere(printed.leading_out).tolist() == [[2, 1]]
+    assert not repaired.leading_out.any()
+    assert np.argwhere(repaired.pairs).tolist() == [[0, 0], [0, 1], [2, 0]]
+
+
+def test_renormalising_would_change_the_dynamics():
+    # As above, but 2 -b-> leads to 3 or 4: a quarter of the outcomes stays, and η = 4 makes it all of them.
+    follow = np.array([(1, 2), (1, 1), (4, 3), (1, 1), (4, 4)])[:, :, None].repeat(2, axis=2)
+    follow[2, 1, 1] = 4
+    tasks = [goal_task(follow, goal, [0], (0.75, 0.25)) for goal in (1, 4)]
+    printed, repaired = printed_and_repaired(tasks, [best_of(tasks[0], 1), best_of(tasks[1], 4)])
+    assert printed.kept_mass[2, 1] == pytest.approx(0.25)
+    assert np.argwhere(printed.leading_out).tolist() == [[2, 1]]
+    assert not repaired.pairs[2, 1]
+    assert repaired.kept_mass[0, 1] == 1.0
+
+
+@settings(max_examples=300)
+@given(task_sets())
+def test_the_repaired_domain_is_never_left(case):
+    tasks, policies = case
+    domain = minimised_domain(tasks, policies)
+    assert domain.form == "repaired"
+    for s, a in np.argwhere(domain.pairs):
+        assert domain.states[s]
+        assert domain.states[tasks[0].next_state[s, a]].all()
+    assert not domain.leading_out.any()
+
+
+@settings(max_examples=300)
+@given(task_sets())
+def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
+    # Theorem 3.2.6, both parts: the same return from every start, and every optimal action still best.
+    tasks, policies = case
+    domain = minimised_domain(tasks, policies)
+    for tables, best in zip(tasks, policies, strict=True):
+        for dead_ends in ("stay", "free"):
+            q = optimal_q(tables_within(tables, domain.pairs, dead_ends), DISCOUNT)
+            whole = optimal_q(tables, DISCOUNT)
+            assert q[tables.starts].max(axis=1) == pytest.approx(whole[tables.starts].max(axis=1), abs=1e-9)
+            here = reachable_states(tables, best)[:, None] & best
+            assert q[here] == pytest.approx(whole[here], abs=1e-9)
+
+
+@settings(max_examples=200)
+@given(task_sets())
+def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
+    tasks, policies = case
+    domain, repaired = (minimised_domain(tasks, policies, form) for form in ("closed", "repaired"))
+    states = {int(s) for tables in tasks for s in tables.starts}
+    kept = {(s, a) for best in policies for s, a in np.argwhere(best)}
+    for _ in range(tasks[0].n_states):
+        states |= {int(t) for s, a in kept if s in states for t in tasks[0].next_state[s, a]}
+    assert set(np.flatnonzero(domain.states)) == states
+    assert {tuple(pair) for pair in np.argwhere(domain.pairs)} == {(s, a) for s, a in kept if s in states}
+    assert not domain.leading_out.any()
+    assert not (repaired.pairs & ~domain.pairs).any()
+    # Wherever another's steps have led, a task goes on as if nothing were missing (E36).
+    for tables, best in zip(tasks, policies, strict=True):
+        within = optimal_q(tables_within(tables, domain.pairs, "stay"), DISCOUNT)
+        own = domain.states[:, None] & best
+        assert within[own] == pytest.approx(optimal_q(tables, DISCOUNT)[own], abs=1e-9)
+
+
+@settings(max_examples=300)
+@given(task_sets())
+def test_reach_and_futility_are_the_definitions(case):
+    tasks, policies = case
+    reached = [naive_reach(tables, best) for tables, best in zip(tasks, policies, strict=True)]
+    for tables, best, states in zip(tasks, policies, reached, strict=True):
+        assert set(np.flatnonzero(reachable_states(tables, best))) == states
+    n_states, n_actions = policies[0].shape
+    futile = {s for s in range(n_states) if all(s not in states for states in reached)}
+    assert set(np.flatnonzero(domain_futile_states(tasks, policies))) == futile
+    printed, repaired = printed_and_repaired(tasks, policies)
+    for s in range(n_states):
+        for a in range(n_actions):
+            assert printed.pairs[s, a] == (s not in futile and any(best[s, a] for best in policies))
+            own = any(s in states and best[s, a] for states, best in zip(reached, policies, strict=True))
+            assert repaired.pairs[s, a] == own
+
+
+@given(task_sets())
+def test_where_every_state_is_a_start_both_definitions_agree(case):
+    tasks, policies = case
+    everywhere = [t._replace(starts=np.arange(t.n_states, dtype=np.int32)) for t in tasks]
+    printed, repaired = printed_and_repaired(everywhere, policies)
+    assert np.array_equal(printed.pairs, repaired.pairs)
+    assert not printed.leading_out.any()
+
+
+# ---- traps: Prop. 3.2.7 ----------------------------------------------------------------------------------------
+
+
+def test_the_minimised_domain_can_have_traps_where_the_domain_has_none():
+    # In the middle of a corridor one task goes left, the other right. Whoever, learning the first, tries the step
+    # that only the second takes cannot come back: all that is kept there leads on to the right.
+    tasks = [goal_task(CORRIDOR, 0, [2]), goal_task(CORRIDOR, 4, [2])]
+    domain = minimised_domain(tasks, [best_of(tasks[0], 0), best_of(tasks[1], 4)])
+    assert domain.states.all()
+    assert np.argwhere(domain.pairs).tolist() == [[1, 0], [2, 0], [2, 1], [3, 1]]
+    assert not trap_states(tasks[0]).any()
+    assert np.flatnonzero(trap_states(tasks[0], domain.pairs)).tolist() == [3, 4]
+    assert np.flatnonzero(trap_states(tasks[1], domain.pairs)).tolist() == [0, 1]
+
+
+def test_traps_by_hand():
+    # 0 leads to 1 or 2; 1 leads to the goal 3; 2 and 4 lead to each other for ever.
+    task = goal_task([(1, 2), (3, 3), (4, 4), (3, 3), (2, 2)], 3, [0])
+    assert np.flatnonzero(trap_states(task)).tolist() == [2, 4]
+    domain = minimised_domain([task], [best_of(task, 3)])
+    assert domain.states.tolist() == [True, True, False, True, False]
+    assert not (trap_states(task, domain.pairs) & domain.states).any()
+
+
+@given(task_sets())
+def test_from_every_state_a_minimised_domain_makes_no_traps(case):
+    # Where every state is a start each task keeps its own way from everywhere, so no trap is added.
+    tasks, policies = case
+    everywhere = [t._replace(starts=np.arange(t.n_states, dtype=np.int32)) for t in tasks]
+    domain = minimised_domain(everywhere, policies)
+    for tables in everywhere:
+        assert np.array_equal(trap_states(tables, domain.pairs), trap_states(tables))
+
+
+def test_tables_within_by_hand():
+    task = goal_task(CORRIDOR, 4, [0])
+    pairs = np.zeros((5, 2), bool)
+    pairs[:2, 1] = True
+    stay, free = (tables_within(task, pairs, word) for word in ("stay", "free"))
+    assert stay.next_state[..., 0].tolist() == [[1, 1], [2, 2], [2, 2], [3, 3], [4, 4]]
+    assert free.next_state[..., 0].tolist() == [[1, 1], [2, 2], [1, 3], [2, 4], [3, 4]]
+    assert stay.reward.sum() == 0
+    assert free.reward.sum() == 2  # 3 right, and 4 right against the wall
+    assert np.array_equal(task.next_state[..., 0], CORRIDOR)  # the task itself is unchanged
+
+
+# ---- Eq. 3.6 ---------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("n_actions", [2, 4, 6])
+@pytest.mark.parametrize("alpha0", [0.1, 1.0, 7.0])
+def test_the_worst_case_is_the_priors_own_proportion(n_actions, alpha0):
+    # All actions but the last tied best in each of the tasks.
+    prior = ActionPrior(n_actions, alpha0)
+    for n_tasks in range(4):
+        expected = prior.probs([0])[0, -1]
+        assert futile_goal_probability(n_actions, n_tasks, alpha0) == pytest.approx(expected, rel=1e-12)
+        prior.update([0], [[True] * (n_actions - 1) + [False]])
+    assert futile_goal_probability(n_actions, 0, alpha0) == pytest.approx(1 / n_actions)
+
+
+def test_percepts_pool_tasks_times_states():
+    # Ten states look alike; after two tasks the bound of Eq. 3.6 is that of twenty.
+    prior = ActionPrior(4, alpha0=0.1)
+    for _ in range(2):
+        prior.update([0] * 10, [[True, True, True, False]] * 10)
+    assert prior.probs([0])[0, 3] == pytest.approx(float(futile_goal_probability(4, 20, 0.1)))
+    assert prior.probs([0])[0, 3] < futile_goal_probability(4, 2, 0.1) / 9
+
+
+# ---- rules -----------------------------------------------------------------------------------------------------
+
+TASK = goal_task(CORRIDOR, 4, [0])
+BEST = best_of(TASK, 4)
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: minimised_domain([], []), "a policy for each task, at least one, got 0 and 0"),
+        (lambda: minimised_domain([TASK], [BEST, BEST]), "got 1 and 2"),
+        (lambda: minimised_domain([TASK], [BEST[:2]]), r"best must have shape \(5, 2\), got \(2, 2\)"),
+        (
+            lambda: minimised_domain([TASK, goal_task([(0, 0)] * 5, 0, [1])], [BEST, BEST]),
+            "tasks must share their transitions .*, got others in task 1",
+        ),
+        (
+            lambda: minimised_domain([TASK, goal_task([(0,)] * 5, 0, [1])], [BEST, BEST[:, :1]]),
+            "tasks must be of one domain, got task 1 with other",
+        ),
+        (lambda: futile_goal_probability(0, 1, 0.1), "n_actions must be at least 1"),
+        (lambda: futile_goal_probability(2, -1, 0.1), "n_tasks at least 0"),
+        (lambda: futile_goal_probability(2, 1, 0.0), "alpha0 positive"),
+    ],
+)
+def test_broken_rules(call, message):
+    with pytest.raises(InputError, match=message):
+        call()
+
+
+def test_unknown_words_name_the_known_ones():
+    with pytest.raises(NotFoundError, match="form must be one of repaired, printed, closed, got 'fixed'"):
+        minimised_domain([TASK], [BEST], "fixed")
+    with pytest.raises(NotFoundError, match="dead_ends must be one of stay, free"):
+        tables_within(TASK, BEST, "leave")

@@ -1,0 +1,342 @@
+"""Life in a world of the user's own: lore that carries over, and a memory that goes on."""
+
+import json
+from threading import Event
+
+import gymnasium
+import minigrid
+import numpy as np
+import pytest
+from gymnasium.envs.toy_text.frozen_lake import generate_random_map
+from gymnasium.spaces import Dict, Discrete
+from minigrid.core.world_object import Wall
+from minigrid.envs import CrossingEnv
+from scipy.stats import binomtest
+
+from lifelore.action.priors.action_prior import ONE
+from lifelore.agent.external_world.context_code import context_code
+from lifelore.agent.external_world.live_in import live_in
+from lifelore.bridges.gymnasium_world import GymnasiumWorld
+from lifelore.core.errors import InputError
+from lifelore.memory import open_memory
+
+
+class Doors:
+    """One state, `n_actions` doors, episodes of one step: door 3 holds 1, the others `nothing`."""
+
+    name = "doors"
+
+    def __init__(self, n_actions=8, nothing=0.0, context="hall"):
+        self.n_actions, self.nothing, self._context = n_actions, nothing, context
+        self.resets = []
+
+    def reset(self, task, seed):
+        self.resets.append((task, seed))
+        return "hall"
+
+    def step(self, action):
+        return "behind", 1.0 if action == 3 else self.nothing, True, False
+
+    def context(self, state, last_reward):
+        return self._context
+
+
+class Twofold(gymnasium.Env):
+    """Observes a dict; the colour of the lamp says which of two buttons pays."""
+
+    action_space = Discrete(2, start=1)
+    observation_space = Dict(lamp=Discrete(2), room=Discrete(5))
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.seen = {"lamp": int(self.np_random.integers(2)), "room": int(self.np_random.integers(5))}
+        return self.seen, {}
+
+    def step(self, action):
+        return self.seen, float(action - 1 == self.seen["lamp"]), True, False, {}
+
+
+def lake(task, size=4, slippery=False):
+    """A random map; the agent sees its number and the tiles around it."""
+    env = gymnasium.make("FrozenLake-v1", desc=generate_random_map(size, seed=task), is_slippery=slippery)
+    tiles = np.pad(env.unwrapped.desc, 1, constant_values=b"#")
+
+    def look(place):
+        row, column = divmod(place, size)
+        return place, tiles[row : row + 3, column : column + 3].tobytes()
+
+    return gymnasium.wrappers.TransformObservation(env, look, env.observation_space)
+
+
+def lakes(**how):
+    return GymnasiumWorld(lambda task: lake(task, **how), state=lambda seen: seen[0], context=lambda seen: seen[1])
+
+
+def numbers_of(report, agent, measure):
+    return [task["agents"][agent][measure] for task in report["tasks"]]
+
+
+# ---- learning ------------------------------------------------------------------------------------
+
+
+def test_only_what_is_worth_something_is_counted(tmp_path):
+    """One state, one good door: each task counts that door once and no other."""
+    path = tmp_path / "m.db"
+    live_in(Doors(), tasks=5, episodes=60, memory=path, key="doors")
+    with open_memory(path) as memory:
+        ((key, version, about),) = memory.keys("action_prior")
+        record = memory.recall("action_prior", key, version)
+    assert record is not None
+    assert record.slots.tolist() == [context_code("hall") * 8 + 3]
+    assert record.values.tolist() == [5 * ONE]
+    assert about == {"prior": "foreign", "world": "doors", "means": "doors"}
+
+
+def test_a_world_without_positive_reward_teaches_nothing():
+    class Dull(Doors):
+        def step(self, action):
+            return "behind", -1.0, True, False
+
+    report = live_in(Dull(), tasks=3, episodes=20)
+    assert report["n_contexts"] == 0
+    assert numbers_of(report, "lore", "mean_return") == numbers_of(report, "scratch", "mean_return")
+    assert not any(numbers_of(report, "lore", "reached"))
+
+
+def test_first_choice_follows_the_counts():
+    """After t tasks of eight doors the first choice is right with (t + α⁰) / (t + 8 α⁰), scratch's with 1/8.
+
+    Over 300 tasks that is 0.99 on average, with a standard error below 0.01, against 0.125.
+    """
+    report = live_in(Doors(), tasks=300, episodes=40)
+    lore, scratch = (np.mean(numbers_of(report, name, "first_return")) for name in ("lore", "scratch"))
+    expected = np.mean([(t + 0.1) / (t + 0.8) for t in range(300)])
+    assert abs(lore - expected) < 0.05
+    assert abs(scratch - 1 / 8) < 5 * np.sqrt(1 / 8 * 7 / 8 / 300)
+
+
+def test_both_agents_are_given_the_same_episodes():
+    world = Doors()
+    live_in(world, tasks=2, episodes=5)
+    assert world.resets[:5] == world.resets[5:10]
+    assert world.resets[10:15] == world.resets[15:]
+    assert len(set(world.resets)) == 10
+
+
+# ---- other people's worlds -----------------------------------------------------------------------
+
+
+def test_lore_of_thirty_lakes_helps_on_the_next_thirty(tmp_path):
+    """A sign test: were the prior useless, each would win equally often, and this fail but once in a hundred."""
+    path = tmp_path / "lake.db"
+    live_in(lakes(), tasks=30, memory=path, key="tiles around")
+    later = live_in(lakes(), tasks=30, episodes=60, memory=path, key="tiles around")
+    for measure in ("first_return", "mean_return"):
+        lore, scratch = (np.array(numbers_of(later, name, measure)) for name in ("lore", "scratch"))
+        wins, losses = int((lore > scratch).sum()), int((lore < scratch).sum())
+        assert binomtest(wins, wins + losses, alternative="greater").pvalue < 0.01
+    assert later["tasks"][0]["index"] == 30
+    assert later["summary"]["lore_vs_scratch"]["mean_return_difference"]["value"] > 0
+
+
+def test_slippery_lakes_are_lived_in():
+    report = live_in(lakes(slippery=True), tasks=3, episodes=150)
+    assert any(numbers_of(report, "lore", "reached"))
+    assert 1 < report["n_states"] <= 15
+    assert report["domain"] == "FrozenLake-v1"
+
+
+TURN = np.array([[1, 0], [0, 1], [-1, 0], [0, -1]])
+
+
+def ahead(seen):
+    """What stands ahead, to the left and to the right of MiniGrid's agent."""
+    kinds = seen["image"][:, :, 0]
+    (place,) = np.argwhere(kinds == 10)
+    return tuple(int(kinds[tuple(place + TURN[(seen["direction"] + side) % 4])]) for side in (0, 3, 1))
+
+
+def test_minigrid_is_lived_in():
+    """SimpleCrossing at its smallest: a river of wall with one gap through a room of 3 x 3."""
+    env = minigrid.wrappers.FullyObsWrapper(CrossingEnv(size=5, num_crossings=1, obstacle_type=Wall))
+    world = GymnasiumWorld(env, context=ahead, state=lambda seen: seen["image"].tobytes())
+    report = live_in(world, tasks=3, episodes=20, max_steps=100)
+    assert all(numbers_of(report, "lore", "reached"))
+    # A context is one of a few kinds of thing in each of three directions.
+    assert 0 < report["n_contexts"] <= 4**3
+    assert report["n_states"] > report["n_contexts"]
+
+
+def test_blackjack_is_lived_in():
+    world = GymnasiumWorld(gymnasium.make("Blackjack-v1"), reset_by="episode")
+    report = live_in(world, tasks=2, episodes=400, discount=1)
+    assert report["n_states"] > 100
+    assert all(-1 <= value <= 1 for value in numbers_of(report, "lore", "mean_return"))
+
+
+def test_dicts_and_actions_that_do_not_start_at_zero():
+    """Two lamps, two buttons: in the end every lamp's button is known, so the last episodes pay nearly 1."""
+    world = GymnasiumWorld(Twofold(), context=lambda seen: seen["lamp"], reset_by="episode")
+    report = live_in(world, tasks=4, episodes=200)
+    assert report["n_contexts"] == 2
+    assert report["n_states"] == 10
+    # A tenth of 200 episodes explores once in a hundred: three of its 20 failing has odds below 1 in 10,000.
+    assert min(numbers_of(report, "lore", "final_return")) >= 0.85
+
+
+# ---- memory --------------------------------------------------------------------------------------
+
+
+def test_two_lives_on_one_memory_are_one_life(tmp_path):
+    path = tmp_path / "m.db"
+    whole = live_in(lakes(), tasks=6, episodes=60)
+    first = live_in(lakes(), tasks=3, episodes=60, memory=path)
+    second = live_in(lakes(), tasks=3, episodes=60, memory=path)
+    assert first["memory"] == {"tasks_before": 0, "tasks_after": 3}
+    assert second["memory"] == {"tasks_before": 3, "tasks_after": 6}
+    assert first["tasks"] + second["tasks"] == whole["tasks"]
+    assert second["n_contexts"] == whole["n_contexts"]
+    with open_memory(path) as memory:
+        assert memory.tasks("robot") == 6
+        assert memory.check() == []
+
+
+def test_lore_is_shared_by_key_and_number_of_actions_only(tmp_path):
+    path = tmp_path / "m.db"
+    live_in(Doors(), tasks=4, episodes=60, memory=path, key="doors", robot="a")
+    same = live_in(Doors(), tasks=1, episodes=1, memory=path, key="doors", robot="b")
+    other = live_in(Doors(), tasks=1, episodes=1, memory=path, key="gates", robot="c")
+    fewer = live_in(Doors(5), tasks=1, episodes=1, memory=path, key="doors", robot="d")
+    assert same["n_contexts"] == 1
+    assert (same["memory"]["tasks_before"], other["memory"]["tasks_before"]) == (0, 0)
+    # One episode of ε = 1 may itself find the door; what the three had to start from is in the memory's keys.
+    assert same["tasks"][0]["agents"]["lore"]["first_return"] == 1.0
+    with open_memory(path) as memory:
+        assert memory.tasks("d") == 1
+        known = {about["means"] for _, _, about in memory.keys("action_prior")}
+    assert "doors" in known
+    assert other["settings"]["key"] == "gates"
+    assert fewer["n_contexts"] <= 1
+
+
+def test_a_memory_needs_to_know_what_contexts_mean(tmp_path):
+    with pytest.raises(InputError, match="key must say what the contexts of Doors mean"):
+        live_in(Doors(), memory=tmp_path / "m.db")
+    assert not (tmp_path / "m.db").exists()
+
+
+# ---- the report ----------------------------------------------------------------------------------
+
+
+def test_report_is_plain_json_of_the_shape_of_live():
+    ticks = []
+    report = live_in(Doors(), tasks=4, episodes=10, progress=lambda *tick: ticks.append(tick))
+    assert json.loads(json.dumps(report, allow_nan=False)) == report
+    assert set(report) == {
+        "domain",
+        "map",
+        "n_states",
+        "n_contexts",
+        "seed",
+        "settings",
+        "tasks",
+        "summary",
+        "memory",
+        "seconds",
+    }
+    assert (report["domain"], report["map"], report["n_states"]) == ("doors", None, 1)
+    task = report["tasks"][2]
+    assert (task["index"], task["goal"], task["optimal_return"]) == (2, None, None)
+    assert set(task["agents"]) == {"lore", "scratch"}
+    own = task["agents"]["lore"]
+    assert [own[name] for name in ("collisions", "steps_to_80", "episodes_to_80")] == [None] * 3
+    assert {"first_return", "reached", "final_return", "mean_return"} < set(own)
+    assert {"value", "median", "ci95", "n"} < set(report["summary"]["lore_vs_scratch"]["jumpstart"])
+    assert ticks == [(done, 4, f"task {done - 1}") for done in range(1, 5)]
+
+
+def test_same_seed_same_life_and_another_seed_another():
+    first, again, other = (live_in(lakes(), tasks=2, episodes=30, seed=seed)["tasks"] for seed in (0, 0, 1))
+    assert first == again != other
+
+
+# ---- stopping ------------------------------------------------------------------------------------
+
+
+def test_stop_keeps_the_finished_tasks(tmp_path):
+    stop, path = Event(), tmp_path / "m.db"
+
+    def after_two(done, total, label):
+        if done == 2:
+            stop.set()
+
+    report = live_in(Doors(), tasks=9, episodes=5, memory=path, key="doors", progress=after_two, stop=stop)
+    assert len(report["tasks"]) == 2
+    with open_memory(path) as memory:
+        assert memory.tasks("robot") == report["memory"]["tasks_after"] == 2
+
+
+def test_stop_is_heard_within_an_episode():
+    stop = Event()
+
+    class Endless(Doors):
+        steps = 0
+
+        def step(self, action):
+            self.steps += 1
+            stop.set()
+            return "hall", 0.0, False, False
+
+    world = Endless()
+    report = live_in(world, max_steps=10**6, stop=stop)
+    assert (report["tasks"], report["summary"], world.steps) == ([], {}, 200)
+
+
+# ---- refusals ------------------------------------------------------------------------------------
+
+
+def test_a_worlds_own_exception_passes_and_finished_tasks_stay(tmp_path):
+    class Breaks(Doors):
+        def reset(self, task, seed):
+            if task == 2:
+                raise RuntimeError("battery empty")
+            return super().reset(task, seed)
+
+    with pytest.raises(RuntimeError, match="battery empty"):
+        live_in(Breaks(), episodes=5, memory=tmp_path / "m.db", key="doors")
+    with open_memory(tmp_path / "m.db") as memory:
+        assert memory.tasks("robot") == 2
+
+
+@pytest.mark.parametrize(
+    ("settings", "said"),
+    [
+        ({"tasks": 0}, "tasks must be a whole number from 1 to 10\\^9, got 0"),
+        ({"episodes": 2.5}, "episodes must be a whole number"),
+        ({"max_steps": 0}, "max_steps must be a whole number"),
+        ({"discount": float("nan")}, "discount must lie in \\[0, 1\\], got nan"),
+        ({"learning_rate": 2}, "learning_rate must lie in"),
+        ({"alpha0": 0}, "alpha0 must be positive"),
+        ({"weight": float("nan")}, "weight must lie in"),
+        ({"form": "best"}, "form must be one of proportion"),
+        ({"ties": "none"}, "ties must be one of uniform, prior"),
+        ({"robot": " "}, "robot must have a name"),
+        ({"key": ""}, "key must say what the contexts mean, got an empty one"),
+    ],
+)
+def test_settings_that_break_their_rule(settings, said):
+    with pytest.raises(InputError, match=said):
+        live_in(Doors(), **settings)
+
+
+def test_what_is_no_world_is_refused():
+    with pytest.raises(InputError, match="world must have n_actions, reset, step and context"):
+        live_in(gymnasium.make("FrozenLake-v1"))  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"world\.n_actions must lie in"):
+        live_in(Doors(2**16))
+
+
+@pytest.mark.parametrize("context", [["a"], object()])
+def test_contexts_without_a_stable_code_are_refused(context):
+    with pytest.raises(InputError, match="context must be"):
+        live_in(Doors(context=context))

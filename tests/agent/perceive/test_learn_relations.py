@@ -1,0 +1,154 @@
+"""The verb from a folder of clouds to a model in memory and in a file."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.agent.perceive.learn_relations import (
+    RelationLesson,
+    as_bytes,
+    as_words,
+    learn_relations,
+    recall_relations,
+)
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.memory import open_memory
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+
+PLACES = {"stack": (0.01, 0.01, 0.052), "near": (0.09, 0, 0), "far": (0.14, 0, 0)}
+TRUTH = """scene,a,b,relation,confidence
+stack,3,2,on,3
+stack,2,1,on,3
+stack,3,1,none,3
+near,2,3,adjacent,3
+far,2,3,none,2
+"""
+
+
+def surface(low, high, step=0.006) -> np.ndarray:
+    axes = [np.linspace(a, b, max(2, round((b - a) / step) + 1)) for a, b in zip(low, high, strict=True)]
+    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    return points[((points == np.array(low)) | (points == np.array(high))).any(axis=1)]
+
+
+def cloud(place) -> LabelledCloud:
+    parts = [surface((0, 0, 0), (0.08, 0.08, 0.05)), surface(place, np.add(place, (0.05, 0.05, 0.05)))]
+    parts.append(surface((-0.1, -0.1, 0), (0.3, 0.2, 0)))
+    return LabelledCloud(np.vstack(parts), np.repeat([2, 3, TABLE], [len(part) for part in parts]))
+
+
+@pytest.fixture
+def folder(tmp_path):
+    for name, place in PLACES.items():
+        one = cloud(place)
+        np.savez(tmp_path / f"{name}.npz", points=one.points, labels=one.labels)
+    (tmp_path / "truth.csv").write_text(TRUTH)
+    return tmp_path
+
+
+def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
+    lesson = RelationLesson(str(folder), str(folder / "truth.csv"), "kitchen")
+    steps = []
+    report = learn_relations(lesson, str(folder / "m.db"), str(folder / "m.npz"), lambda *step: steps.append(step))
+    assert report["scenes"] == 3
+    assert report["pairs"] == {"adjacent": 1, "none": 2, "on": 2}
+    assert steps[-1][:2] == (3, 3)
+    written = RelationClassifier.load(folder / "m.npz")
+    with open_memory(folder / "m.db") as memory:
+        recalled = recall_relations(memory, "kitchen")
+    one = cloud(PLACES["stack"])
+    assert recalled.beliefs(one) == written.beliefs(one)
+    assert {(r.a, r.b, r.relation) for r in recalled.predict(one)} >= {(3, 2, "on"), (2, TABLE, "on")}
+    shorter = RelationLesson(str(folder), str(folder / "truth.csv"), "kitchen", method="displacement")
+    learn_relations(shorter, str(folder / "m.db"))
+    with open_memory(folder / "m.db") as memory:
+        assert recall_relations(memory, "kitchen").method == "displacement"
+        with pytest.raises(NotFoundError, match="kitchen"):
+            recall_relations(memory, "cellar")
+
+
+def test_without_memory_a_file_alone_is_written(folder, monkeypatch):
+    monkeypatch.setattr("lifelore.agent.perceive.learn_relations.open_memory", None)
+    report = learn_relations(RelationLesson(str(folder), str(folder / "truth.csv")), out=str(folder / "m.npz"))
+    assert report["memory"] is None
+    assert (folder / "m.npz").is_file()
+
+
+@pytest.mark.parametrize(
+    ("row", "said"),
+    [
+        ("attic,2,3,on,3", "no attic.pcd"),
+        ("../stack,2,3,on,3", "without folders"),
+        ("stack,9,2,on,3", r"on\(9, 2\)"),
+    ],
+)
+def test_a_truth_that_does_not_fit_the_clouds_is_refused(folder, row, said):
+    (folder / "wrong.csv").write_text(f"scene,a,b,relation,confidence\n{row}\n")
+    with pytest.raises(InputError, match=said):
+        learn_relations(RelationLesson(str(folder), str(folder / "wrong.csv")), str(folder / "m.db"))
+
+
+def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
+    away = cloud((0.25, 0, 0))
+    np.savez(folder / "away.npz", points=away.points, labels=away.labels)
+    more = "away,2,3,none,3\naway,3,2,beyond,2\naway,2,1,on,1\n"
+    (folder / "more.csv").write_text(TRUTH + more)
+    report = learn_relations(RelationLesson(str(folder), str(folder / "more.csv")), out=str(folder / "m.npz"))
+    assert report["pairs"] == {"adjacent": 1, "none": 2, "on": 2}
+    assert report["not_near"] == {"beyond": 1, "none": 1}
+
+
+def test_clouds_in_millimetres_with_parts_and_no_table(folder):
+    """What `perceive` reads by an option, this reads by the same option."""
+    for name, place in PLACES.items():
+        one = cloud(place)
+        kept = one.labels != TABLE
+        labels = np.where(one.labels == 2, 20, 31)[kept]
+        labels[:40] = 21
+        np.savez(folder / f"{name}.npz", points=1000 * one.points[kept], labels=labels)
+    (folder / "truth.csv").write_text("\n".join(row for row in TRUTH.splitlines() if ",1," not in row))
+    (folder / "planes.csv").write_text("scene,nx,ny,nz,d\nstack,1,0,0,0\n")
+    told = []
+    fits = {"units": "mm", "up": (0, 0, 1), "labels": "parts"}
+    lesson = RelationLesson(str(folder), str(folder / "truth.csv"), **fits)
+    assert learn_relations(lesson, out=str(folder / "m.npz"), notice=told.append)["pairs"]["on"] == 1
+    assert told == []
+    model = RelationClassifier.load(folder / "m.npz")
+    assert {(r.a, r.b, r.relation) for r in model.predict(cloud(PLACES["stack"]))} >= {(3, 2, "on")}
+    learn_relations(replace(lesson, labels="auto"), out=str(folder / "m.npz"), notice=told.append)
+    assert len(told) == 1
+    assert "labels of 3 of 3 clouds were taken as parts" in told[0]
+    for change, said in (
+        ({"units": "m"}, "millimetres"),
+        ({"up": None}, "scene 'near'.*up is not known"),
+        ({"labels": "plain"}, "names an object that the cloud does not have; it has 20, 21, 31"),
+    ):
+        with pytest.raises(InputError, match=said):
+            learn_relations(replace(lesson, **change), out=str(folder / "m.npz"))
+
+
+def test_what_perceive_could_not_name_is_refused(folder):
+    with pytest.raises(InputError, match=r"name must not end in \.npz"):
+        RelationLesson(str(folder), str(folder / "truth.csv"), "m.npz")
+    with pytest.raises(InputError, match=r"out must end in \.npz"):
+        learn_relations(RelationLesson(str(folder), str(folder / "truth.csv")), out=str(folder / "m.foo"))
+
+
+def test_a_place_that_cannot_be_written_is_refused_before_the_work(folder):
+    lesson = RelationLesson(str(folder), str(folder / "truth.csv"))
+    (folder / "d.npz").mkdir()
+    for out in (folder / "d.npz", folder / "none" / "m.npz"):
+        with pytest.raises(InputError, match="out must be a file"):
+            learn_relations(lesson, out=str(out), progress=lambda *step: pytest.fail("worked"))
+
+
+@settings(deadline=None)
+@given(st.binary(max_size=100), st.binary(max_size=50))
+def test_bytes_there_and_back_whatever_lies_behind(content, older):
+    words = as_words(content)
+    assert words.dtype == np.int64
+    assert as_bytes(np.concatenate([words, as_words(older)])) == content

@@ -1,0 +1,150 @@
+"""What choosing was worth: numbers by hand, and the files."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lifelore.agent.reuse import report as reuse_report
+from lifelore.agent.reuse.one_user import choose, update
+from lifelore.agent.reuse.report import COLUMNS, report
+from lifelore.agent.reuse.study import Study
+from lifelore.core.errors import StoreError
+from lifelore.figures.reuse_report import draw_reuse_report
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.memory import open_memory
+
+
+@pytest.fixture
+def memory(tmp_path):
+    with open_memory(tmp_path / "m.db") as opened:
+        yield opened
+
+
+@pytest.fixture
+def study():
+    library = PolicyLibrary.from_means([[8.0, 2.0], [2.0, 6.0]], 1.0, policies=["x", "y"])
+    return Study("s", library, {"x": "active", "y": "active"}, control=0.5, rule="greedy")
+
+
+def lived(memory, study, users=12, times=3):
+    """Outcomes by user and decision, all known but the last decision's."""
+    generator = np.random.default_rng(0)
+    said = {}
+    for user in range(users):
+        for time in range(times):
+            made = choose(memory, study, f"u{user}")
+            if time < times - 1:
+                outcome = float(generator.normal(5, 2))
+                update(memory, study, made["decision"], outcome)
+                said.setdefault((f"u{user}", made["control"]), []).append((made["policy"], outcome))
+    return said
+
+
+def test_numbers_by_hand(memory, study):
+    said = lived(memory, study)
+    document = report(memory, study)
+    means = {
+        control: [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if held == control]
+        for control in (False, True)
+    }
+    assert (document["decisions"], document["pending"]) == (36, 12)
+    assert document["personal"]["value"] == pytest.approx(np.mean(means[False]))
+    assert document["control"]["n"] == len(means[True]) > 2
+    assert document["uplift"]["value"] == pytest.approx(np.mean(means[False]) - np.mean(means[True]))
+    welch = stats.ttest_ind(means[False], means[True], equal_var=False).confidence_interval()
+    assert document["uplift"]["ci95"] == pytest.approx([welch.low, welch.high])
+    first = [rows[0][1] for (_, held), rows in said.items() if held]
+    assert document["by_decision"][0]["control"]["value"] == pytest.approx(np.mean(first))
+    assert [point["decision"] for point in document["by_decision"]] == [1, 2]
+    of_x = [[o for p, o in rows if p == "x"] for (_, held), rows in said.items() if held]
+    expected = np.mean([np.mean(outcomes) for outcomes in of_x if outcomes])
+    assert document["policies"][0]["outcome"]["value"] == pytest.approx(expected)
+
+
+def test_the_interval_of_many_users_is_the_normal_one(memory, study, monkeypatch):
+    said = lived(memory, study, 20)
+    resampled = report(memory, study)["personal"]
+    monkeypatch.setattr(reuse_report, "MANY", 4)
+    document = report(memory, study)
+    means = [np.mean([outcome for _, outcome in rows]) for (_, held), rows in said.items() if not held]
+    half = 1.96 * stats.sem(means)
+    assert document["personal"] == {
+        "value": pytest.approx(np.mean(means)), "median": pytest.approx(np.median(means)),
+        "ci95": pytest.approx([np.mean(means) - half, np.mean(means) + half]), "n": len(means),
+    }  # fmt: skip
+    assert set(document["personal"]) == set(resampled)
+
+
+def test_regret_is_what_the_last_belief_says(memory, study):
+    """One user, surely of the first type in the end: x brings 8, y 2."""
+    user = next(f"u{i}" for i in range(99) if study.holds_out(f"u{i}"))
+    chosen = []
+    for _ in range(30):
+        made = choose(memory, study, user)
+        chosen.append(made["policy"])
+        update(memory, study, made["decision"], 8.0 if made["policy"] == "x" else 2.0)
+    document = report(memory, study)
+    assert document["regret"]["control"]["value"] == pytest.approx(6 * chosen.count("y") / 30)
+    assert document["personal"] is document["uplift"] is document["regret"]["personal"] is None
+
+
+def test_the_folder_and_the_log(memory, study, tmp_path):
+    lived(memory, study)
+    document = report(memory, study, tmp_path / "a" / "b", tmp_path / "log.csv")
+    assert json.loads((tmp_path / "a/b/report.json").read_text()) == document
+    assert (tmp_path / "a/b/report.png").read_bytes().startswith(b"\x89PNG")
+    head, *lines = (tmp_path / "log.csv").read_text().splitlines()
+    assert head == ",".join(COLUMNS)
+    assert len(lines) == 36
+    fields = dict(zip(COLUMNS, lines[2].split(","), strict=True))
+    assert (fields["user"], fields["outcome"], fields["number"], fields["outcome_time"]) == ("u0", "", "2", "")
+    assert fields["probability"] == ("0.5" if fields["group"] == "control" else "1.0")
+
+
+def test_a_decision_is_a_whole_number_on_the_axis(memory, study):
+    lived(memory, study)
+    ticks = draw_reuse_report(report(memory, study)).axes[0].get_xticks()
+    assert ticks.tolist() == [round(tick) for tick in ticks]
+
+
+def test_names_are_drawn_as_they_are(memory, tmp_path):
+    """Neither a formula, which may be a wrong one, nor a warning about letters that the font has not."""
+    names = ["$\\nothing$", "用户"]
+    library = PolicyLibrary.from_means([[8.0, 2.0]], 1.0, policies=names)
+    odd = Study("a $\\study$", library, dict.fromkeys(names, "active"), control=0.5)
+    lived(memory, odd)
+    document = report(memory, odd, tmp_path)
+    assert (tmp_path / "report.png").exists()
+    labels = [label.get_text() for label in draw_reuse_report(document).axes[1].get_yticklabels()]
+    assert set(names) < set(labels)
+
+
+def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):
+    empty = report(memory, study, tmp_path / "empty")
+    assert empty["uplift"] is None
+    assert empty["by_decision"] == []
+    for user in range(12):
+        update(memory, study, choose(memory, study, f"u{user}")["decision"], 1.0)
+    same = report(memory, study, tmp_path / "same")
+    assert same["uplift"]["value"] == 0
+    assert same["uplift"]["ci95"] is None
+    for folder in ("empty", "same"):
+        assert (tmp_path / folder / "report.png").exists()
+
+
+def test_a_place_that_cannot_be_written(memory, study, tmp_path):
+    (tmp_path / "file").write_text("")
+    for places in ({"out": tmp_path / "file"}, {"log": tmp_path / "none" / "log.csv"}):
+        with pytest.raises(StoreError, match=r"cannot write .*; choose another place"):
+            report(memory, study, **places)
+
+
+def test_a_user_who_changed_groups_counts_in_each_by_its_own_decisions(memory, study):
+    for control, outcome in ((0.0, 4.0), (0.9999, 6.0)):
+        now = replace(study, control=control)
+        update(memory, now, choose(memory, now, "ann")["decision"], outcome)
+    document = report(memory, study)
+    assert (document["personal"]["value"], document["control"]["value"]) == (4.0, 6.0)

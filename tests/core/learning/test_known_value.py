@@ -1,0 +1,131 @@
+"""The value kept up to date beside an evaluation of every state, after every few steps of learning."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.learning.curve import NEWS, new_curve
+from lifelore.core.learning.known_value import KnownValue
+from lifelore.core.learning.known_world import (
+    GOAL,
+    UNKNOWN,
+    Model,
+    add_moves,
+    blank_model,
+    blank_ways,
+    find_ways,
+    goal_distances,
+)
+from lifelore.core.learning.model_learning import ALL_NEW, MOST_NEWS, Manner, Perceived, explore, new_explorer
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from lifelore.core.streams import stream
+
+seeds = st.integers(0, 10**6)
+
+
+def maze(seed: int, n=40, n_actions=4, goals=1) -> Tables:
+    """Places joined at random; refused moves cost, the moves into the goals end the episode with 100."""
+    random = np.random.default_rng(seed)
+    here = np.arange(n)[:, None]
+    refused = random.random((n, n_actions)) < 0.4
+    next_state = np.where(refused, here, random.integers(0, n, (n, n_actions)))
+    next_state[-1, 0] = 0  # some move leads into a goal
+    refused = next_state == here
+    wins = ~refused & (next_state < goals)
+    reward = np.where(refused, -10.0, np.where(wins, 100.0, 0.0))
+    event = np.where(refused, COLLISION, np.where(wins, TERMINAL, 0))
+    tables = (next_state.astype(np.int32), reward, event.astype(np.uint8))
+    return Tables(*(table[:, :, None] for table in tables), np.ones(1), np.arange(goals, n, dtype=np.int32))
+
+
+def follow(tables, model, manner=Manner(), seed=0, chunk=7, chunks=150):  # noqa: B008 — a frozen tuple
+    """`KnownValue.update` and `exact` after every `chunk` steps; the follower too."""
+    n = tables.n_states
+    explorer = new_explorer(n, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
+    seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, tables.n_actions)))
+    known, curve, values = KnownValue(tables, model, explorer, 0.95), new_curve(chunks * chunk), []
+    for _ in range(chunks):
+        explore(tables, model, seen, manner, explorer, curve, 60, 0.95, chunk)
+        values.append((known.update(), known.exact()))
+    return known, np.array(values)
+
+
+@settings(max_examples=60)
+@given(
+    seeds,
+    st.sampled_from([Manner(), Manner(exhaustive=True), Manner(senses=True), Manner(planned=False)]),
+    st.integers(1, 3),
+    st.sampled_from([0.0, 0.5, 1.0]),
+)
+def test_kept_up_to_date_equals_evaluating_every_state(seed, manner, goals, remembered):
+    """With nothing, half or all of the world remembered; with several goals a way may end at an unmet one."""
+    tables, model = maze(seed, goals=goals), blank_model(40, 4)
+    kept = np.random.default_rng(seed).random((40, 4)) < remembered
+    model.target[kept] = tables.next_state[:, :, 0][kept]
+    known, values = follow(tables, model, manner, seed)
+    assert goals > 1 or known._by_distance is not None  # the quick way is among what is tested
+    assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
+
+
+def test_ways_are_found_and_get_better():
+    """Guards the property above against mazes in which nothing happens."""
+    _, values = follow(maze(3), blank_model(40, 4), chunks=300)
+    steps = np.diff(values[:, 0])
+    assert values[0, 0] == 0
+    assert (steps >= -1e-12).all()
+    assert (steps > 0).sum() >= 3
+
+
+@settings(max_examples=60)
+@given(seeds)
+def test_any_world_and_any_remembered_model(draw_world, seed):
+    """Rewards on the way, bad ends, a model that is not true: then every state is evaluated."""
+    tables = draw_world(seed, n_states=12)
+    random = np.random.default_rng(seed)
+    model = Model(random.integers(-1, 12, (12, 3)).astype(np.int32), random.integers(0, 2, 12))
+    _, values = follow(tables, model, seed=seed, chunk=3, chunks=60)
+    assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
+
+
+@settings(max_examples=60)
+@given(seeds)
+def test_moves_added_in_any_order_give_the_distances_found_at_once(seed):
+    random = np.random.default_rng(seed)
+    truth = random.integers(0, 25, (25, 3)).astype(np.int32)
+    place = random.choice([0, 1, 1, 1, 2], 25).astype(np.int8)
+    place[random.integers(25)] = GOAL
+    target = np.full_like(truth, UNKNOWN)
+    ways = blank_ways(25, 3, np.arange(25, dtype=np.int32))
+    find_ways(target, place, ways)
+    for moves in np.array_split(random.permutation(75), 9):
+        target.flat[moves] = truth.flat[moves]
+        add_moves(target, place, np.concatenate([moves, moves[:2]]), ways)  # a move twice is one move
+        expected = goal_distances(target, place)
+        assert ways.distance.tolist() == expected.tolist()
+        counts = np.bincount(expected[expected > 0], minlength=26)
+        assert ways.starts_at[1:].tolist() == counts[1:].tolist()
+        assert ways.farthest[0] >= expected.max()
+
+
+def test_more_news_than_are_listed_are_all_found():
+    n = MOST_NEWS * 2
+    line = np.stack([np.r_[np.arange(1, n), n - 1], np.r_[0, np.arange(n - 1)]], axis=1)
+    stays = line == np.arange(n)[:, None]
+    wins = ~stays & (line == n - 1)
+    tables = Tables(
+        line.astype(np.int32)[:, :, None],
+        np.where(stays, -10.0, np.where(wins, 100.0, 0.0))[:, :, None],
+        np.where(stays, COLLISION, np.where(wins, TERMINAL, 0)).astype(np.uint8)[:, :, None],
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+    explorer = new_explorer(n, 2, stream(0), stream(1))
+    model = blank_model(n, 2)
+    known = KnownValue(tables, model, explorer, 0.999)
+    seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 2)))
+    assert known.update() == 0
+    explore(tables, model, seen, Manner(), explorer, new_curve(1), 10**6, 0.999, 10**6)
+    assert explorer.cursor[NEWS] == ALL_NEW
+    assert known.update() == pytest.approx(100 * 0.999 ** (n - 2))
+    assert explorer.cursor[NEWS] == 0

@@ -1,0 +1,370 @@
+"""The model-based learner: step by step beside a naive book-keeper, and in worlds that changed."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.known_world import (
+    DEAD_END,
+    GOAL,
+    LOOKED,
+    NOT_LOOKED,
+    UNKNOWN,
+    Model,
+    blank_model,
+    known_policy,
+)
+from lifelore.core.learning.model_learning import Manner, Perceived, check_deterministic, explore, new_explorer
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from lifelore.core.planning.planning import mean_start_value, optimal_q, policy_values
+from lifelore.core.streams import stream
+
+ALL = 10**9
+PLANNED = Manner()
+LEFT, RIGHT = 0, 1
+
+
+def corridor(walls=(), n=6, goal=5, start=0) -> Tables:
+    """Places in a row, moves left and right; a wall i stands between i and i + 1."""
+    next_state = np.empty((n, 2, 1), np.int32)
+    reward, event = np.zeros((n, 2, 1)), np.zeros((n, 2, 1), np.uint8)
+    for s in range(n):
+        for a, step in ((LEFT, -1), (RIGHT, 1)):
+            refused = not 0 <= s + step < n or min(s, s + step) in walls
+            t = s if refused else s + step
+            next_state[s, a] = t
+            if refused:
+                reward[s, a], event[s, a] = -10, COLLISION
+            elif t == goal:
+                reward[s, a], event[s, a] = 100, TERMINAL
+    return Tables(next_state, reward, event, np.ones(1), np.array([start], np.int32))
+
+
+def perceived(tables, percept=None, try_cost=0.0) -> Perceived:
+    n = tables.n_states
+    percept = np.zeros(n, np.int64) if percept is None else np.asarray(percept, np.int64)
+    return Perceived(percept, np.zeros(n, np.int32), np.full((1, tables.n_actions), float(try_cost)))
+
+
+def remembered(tables, percept=None) -> Model:
+    """Everything known of how the world was."""
+    seen = np.zeros(tables.n_states, np.int64) if percept is None else np.asarray(percept, np.int64)
+    return Model(tables.next_state[:, :, 0].copy(), seen)
+
+
+def new(tables, seed=0):
+    return new_explorer(tables.n_states, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
+
+
+def lived(tables, model, seen=None, manner=PLANNED, episodes=3, max_steps=100, budget=ALL, seed=0):
+    """The explorer and its curve after all episodes; `model` learns in place."""
+    explorer, curve = new(tables, seed), new_curve(episodes)
+    seen = perceived(tables) if seen is None else seen
+    while explore(tables, model, seen, manner, explorer, curve, max_steps, 0.9, budget):
+        pass
+    return explorer, curve
+
+
+# ---- by hand -----------------------------------------------------------------------------------------
+
+
+def test_a_remembered_corridor_is_walked_to_its_end():
+    tables = corridor(start=0)
+    explorer, curve = lived(tables, remembered(tables))
+    # Each place lies beside the last one: five steps, no collision; later episodes go straight there.
+    assert curve.steps.tolist() == [5, 5, 5]
+    assert curve.returns == pytest.approx([100 * 0.9**4] * 3)
+    assert curve.rewards.tolist() == [100.0] * 3
+    assert not curve.collisions.any()
+    assert curve.reached.all()
+    assert explorer.place.tolist() == [LOOKED] * 5 + [GOAL]
+    assert explorer.tried[:5].tolist() == [[0, 3]] * 5
+    assert explorer.cursor[4] == 15
+
+
+def test_episodes_end_at_the_cap():
+    tables = corridor(start=0)
+    _, curve = lived(tables, remembered(tables), max_steps=4)
+    # The first ends one short of the goal; later ones never get further, as all begin at 0.
+    assert curve.steps.tolist() == [4] * 3
+    assert not curve.reached.any()
+
+
+def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
+    tables = corridor(start=2)
+    model = blank_model(6, 2)
+    explorer, curve = lived(tables, model, episodes=30, seed=1)
+    assert curve.reached[-5:].all()
+    assert (curve.steps[-5:] == 3).all()
+    greedy = policy_values(tables, known_policy(model, explorer.place), 0.9)
+    assert mean_start_value(tables, greedy) == pytest.approx(optimal_q(tables, 0.9)[2].max())
+    # What was learnt is true, and the percepts of visited places are remembered.
+    known = model.target != UNKNOWN
+    assert (model.target[known] == tables.next_state[:, :, 0][known]).all()
+    assert ((model.percept == 0) == (explorer.place == LOOKED)).all()
+
+
+def test_a_bad_end_is_avoided_thereafter():
+    tables = corridor(start=2)
+    tables.reward[1, LEFT], tables.event[1, LEFT] = -50, TERMINAL  # the left end is a pit
+    explorer, curve = lived(tables, blank_model(6, 2), episodes=30, seed=3)
+    assert explorer.place[0] == DEAD_END
+    assert explorer.tried[1, LEFT] == 1
+    assert curve.reached.sum() == 29
+    assert curve.rewards.min() <= -50
+
+
+def test_least_tried_keeps_the_moves_of_a_place_even():
+    tables = corridor(start=2, n=4, goal=-1)
+    explorer, _ = lived(tables, blank_model(4, 2), manner=Manner(planned=False), episodes=1, max_steps=1001)
+    spread = explorer.tried.max(axis=1) - explorer.tried.min(axis=1)
+    assert (spread <= 1).all()
+    assert explorer.tried.sum() == 1001
+
+
+def test_senses_show_every_move_of_a_place_without_trying_it():
+    tables = corridor(start=0, goal=-1)
+    model = blank_model(6, 2)
+    _, curve = lived(tables, model, manner=Manner(senses=True), episodes=1, max_steps=3)
+    assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
+    assert (model.target[3:] == UNKNOWN).all()
+    assert curve.collisions[0] == 0
+
+
+def test_exhaustive_tries_everything_before_it_settles():
+    tables = corridor(start=0, n=4, goal=3)
+    model = blank_model(4, 2)
+    lived(tables, model, manner=Manner(exhaustive=True), episodes=40)
+    assert (model.target[:3] != UNKNOWN).all()
+
+
+# ---- a world that changed ----------------------------------------------------------------------------
+
+
+def test_a_transition_found_wrong_is_overwritten_and_the_way_planned_anew():
+    # Remembered as a loop: from 0 left to 3 directly. Now the shortcut is walled up.
+    before = corridor(n=4, goal=3)
+    model = remembered(before)
+    model.target[0, LEFT] = 3
+    _, curve = lived(before, model, episodes=20)
+    assert model.target[0, LEFT] == 0
+    assert curve.collisions.sum() == 1
+    assert curve.reached[-1]
+    assert curve.steps[-1] == 3
+
+
+def test_a_changed_percept_forgets_the_moves_of_that_place_alone():
+    tables = corridor(start=2)
+    model = remembered(tables, percept=[7] * 6)
+    model.target[3, RIGHT] = 3  # there used to be a wall
+    _, curve = lived(tables, model, perceived(tables, [7, 7, 7, 9, 7, 7]), episodes=8)
+    assert model.percept.tolist()[3] == 9
+    assert model.target[3, RIGHT] == 4  # tried anew
+    assert curve.reached[-1]
+    # The refusals at places that look as they did were believed, so nobody ran into the left end.
+    assert curve.collisions.sum() == 0
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_a_door_that_opened_unseen_is_found_when_nothing_is_left(seed):
+    """Two rooms 0-2 and 3-5; the wall between them has gone and nothing shows it."""
+    before, after = corridor(walls=(2,), start=0), corridor(start=0)
+    model = remembered(before)
+    model.target[3:] = UNKNOWN  # the other room was never entered
+    explorer, curve = lived(after, model, episodes=6, max_steps=200, seed=seed)
+    assert model.target[2, RIGHT] == 3
+    assert explorer.place[5] == GOAL
+    assert curve.reached[-1]
+    assert curve.steps[-1] == 5
+    # The outer wall was doubted too, at most once; the door is no collision.
+    assert curve.collisions.sum() <= 2
+
+
+def test_refusals_met_in_this_task_are_not_doubted_again():
+    """A room without a door: every wall is met once, then nothing but wandering."""
+    tables = corridor(walls=(2,), start=1)
+    model = remembered(tables)
+    explorer, curve = lived(tables, model, episodes=1, max_steps=500)
+    assert not curve.reached.any()
+    assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
+    assert explorer.tried[0, LEFT] >= 1
+    assert explorer.tried[2, RIGHT] >= 1
+    assert curve.steps[0] == 500
+
+
+def test_a_wall_across_the_remembered_way_is_met_once():
+    ring = np.array([[5, 1], [0, 2], [1, 3], [2, 4], [3, 5], [4, 0]], np.int32)  # left and right round six
+    blocked = ring.copy()
+    blocked[0, LEFT] = 0
+    event = np.zeros((6, 2, 1), np.uint8)
+    event[0, LEFT], event[4, RIGHT] = COLLISION, TERMINAL
+    reward = np.where(event == TERMINAL, 100.0, np.where(event == COLLISION, -10.0, 0.0))
+    tables = Tables(blocked[:, :, None], reward, event, np.ones(1), np.zeros(1, np.int32))
+    model = Model(ring.copy(), np.zeros(6, np.int64))
+    _, curve = lived(tables, model, episodes=20)
+    assert curve.collisions.sum() <= 1
+    assert curve.steps[-1] == 5
+    assert curve.reached.all()
+
+
+# ---- a naive book-keeper beside every step ------------------------------------------------------------
+
+
+class Bookkeeper:
+    """What is known, tried and looked at, kept in dictionaries; checks each step of the kernel."""
+
+    def __init__(self, tables, model, seen, manner):
+        self.tables, self.seen, self.manner = tables, seen, manner
+        self.target = {at: int(t) for at, t in np.ndenumerate(model.target)}
+        self.percept = dict(enumerate(model.percept.tolist()))
+        self.place = dict.fromkeys(range(tables.n_states), NOT_LOOKED)
+        self.tried = dict.fromkeys(self.target, 0)
+
+    def arrive(self, s):
+        if self.place[s] != NOT_LOOKED:
+            return
+        self.place[s] = LOOKED
+        if self.percept[s] != self.seen.percept[s]:
+            for a in range(self.tables.n_actions):
+                if not self.tried[s, a]:
+                    self.target[s, a] = UNKNOWN
+            self.percept[s] = int(self.seen.percept[s])
+        if self.manner.senses:
+            for a in range(self.tables.n_actions):
+                self.target[s, a] = int(self.tables.next_state[s, a, 0])
+
+    def doubt(self):
+        for (s, a), t in self.target.items():
+            if t == s and not self.tried[s, a]:
+                self.target[s, a] = UNKNOWN
+
+    def worth(self, start):
+        """Steps to everything worth doing from `start`, breadth first; only its least cost matters."""
+        goal_known = GOAL in self.place.values()
+        steps, waiting, costs = {start: 0}, [start], {}
+        for s in waiting:
+            for a in range(self.tables.n_actions):
+                t, depth = self.target[s, a], steps[s] + 1
+                if t == UNKNOWN:
+                    costs[s, a] = depth + self.seen.try_cost[self.seen.cost_row[s], a]
+                elif self.place[t] == GOAL:
+                    costs[s, a] = np.inf if self.manner.exhaustive else depth
+                elif self.place[t] == NOT_LOOKED and not goal_known:
+                    beside = {(t, b) for b in range(self.tables.n_actions)}
+                    near = [self.target[at] for at in beside if self.target[at] not in (UNKNOWN, t)]
+                    costs[s, a] = depth + 0.2 * sum(self.place[x] == NOT_LOOKED for x in near)
+                elif self.place[t] != DEAD_END and t not in steps:
+                    steps[t] = depth
+                    waiting.append(t)
+        return costs
+
+    def step(self, s, a):
+        self.tried[s, a] += 1
+        t = self.target[s, a] = int(self.tables.next_state[s, a, 0])
+        if self.tables.event[s, a, 0] & TERMINAL:
+            self.place[t] = GOAL if self.tables.reward[s, a, 0] > 0 else DEAD_END
+        return t
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    st.integers(0, 10**6),
+    st.booleans(),
+    st.sampled_from([Manner(), Manner(exhaustive=True), Manner(senses=True), Manner(planned=False)]),
+)
+def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, manner):
+    tables = draw_world(seed, n_states=12)
+    random = np.random.default_rng(seed)
+    model = blank_model(12, 3)
+    if with_memory:  # true in most places only
+        model = remembered(tables, random.integers(0, 2, 12))
+        model.target[random.random((12, 3)) < 0.2] = random.integers(-1, 12)
+    seen = Perceived(
+        random.integers(0, 2, 12), random.integers(0, 2, 12).astype(np.int32), random.choice([0, 3.0], (2, 3))
+    )
+    book = Bookkeeper(tables, model, seen, manner)
+    explorer, curve = new(tables, seed), new_curve(40)
+    plan: list[int] = []
+    for _ in range(400):
+        tried, s, fresh = explorer.tried.copy(), int(explorer.cursor[2]), explorer.cursor[1] == 0
+        if not explore(tables, model, seen, manner, explorer, curve, 40, 0.9, 1):
+            break
+        ((acted_in, action),) = np.argwhere(explorer.tried != tried).tolist()
+        if fresh:
+            s, plan = acted_in, []
+        assert acted_in == s
+        newly = book.place[s] == NOT_LOOKED
+        book.arrive(s)
+        if manner.planned:
+            if not plan or (newly and manner.senses):
+                plan = _checked_plan(book, s, explorer, action)
+            assert plan.pop(0) == action
+        else:
+            assert book.tried[s, action] == min(book.tried[s, a] for a in range(3))
+        expected = book.target[s, action]
+        following = book.step(s, action)
+        if following != expected:
+            plan = []
+        assert model.target.tolist() == [[book.target[s, a] for a in range(3)] for s in range(12)]
+        assert explorer.place.tolist() == list(book.place.values())
+        assert model.percept.tolist() == list(book.percept.values())
+        assert explorer.cursor[2] == following
+    assert explorer.tried.sum() == explorer.cursor[4]
+
+
+def _checked_plan(book, s, explorer, action) -> list[int]:
+    """The whole plan whose first action was just done, from the kernel's desk, once found to be a cheapest."""
+    costs = book.worth(s)
+    if not costs:  # nothing is left: doubt, and move at random
+        book.doubt()
+        return [action]
+    walked = [action, *explorer.plan[: explorer.cursor[3]][::-1].tolist()]
+    surprised = book.target[s, action] != book.tables.next_state[s, action, 0]
+    if surprised or explorer.cursor[1] == 0:  # a surprise and an episode's end clear the plan: no more to see
+        return walked
+    at = s
+    for a in walked[:-1]:
+        at = book.target[at, a]
+    assert costs[at, walked[-1]] <= min(costs.values()) + 1e-9
+    return walked
+
+
+@pytest.mark.parametrize("budget", [1, 7])
+@pytest.mark.parametrize("manner", [Manner(), Manner(planned=False), Manner(senses=True)])
+def test_chunks_change_no_bit(draw_world, budget, manner):
+    tables = draw_world(11, n_states=30)
+    models = blank_model(30, 3), blank_model(30, 3)
+    whole = lived(tables, models[0], manner=manner, episodes=40)
+    parts = lived(tables, models[1], manner=manner, episodes=40, budget=budget)
+    for a, b in zip((*whole[0], *whole[1], *models[0]), (*parts[0], *parts[1], *models[1]), strict=True):
+        assert np.array_equal(a, b)
+
+
+def test_threads_change_no_bit(draw_world):
+    tables = draw_world(2, n_states=60, n_actions=4)
+
+    def one(seed):
+        model = blank_model(60, 4)
+        explorer, curve = lived(tables, model, episodes=60, seed=seed)
+        return (*explorer, *curve, *model)
+
+    alone = [one(seed) for seed in range(6)]
+    with ThreadPoolExecutor(3) as pool:
+        together = list(pool.map(one, range(6)))
+    assert all(
+        np.array_equal(a, b) for x, y in zip(alone, together, strict=True) for a, b in zip(x, y, strict=True)
+    )
+
+
+def test_worlds_it_cannot_plan_in(draw_world):
+    check_deterministic(draw_world(0))
+    with pytest.raises(InputError, match="one outcome a move to be planned with, got 3"):
+        check_deterministic(draw_world(0, n_outcomes=3))
+    for n_actions in (0, 128):
+        with pytest.raises(InputError, match=rf"n_actions must lie in \[1, 127\], got {n_actions}"):
+            new_explorer(5, n_actions, stream(0), stream(1))

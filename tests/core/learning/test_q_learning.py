@@ -1,0 +1,319 @@
+"""The Q-learning kernel: by hand, against its naive twin, in chunks, in threads, and where it converges."""
+
+from concurrent.futures import ThreadPoolExecutor
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import TOTAL, new_curve
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.core.learning.q_learning import Rows, Schedule, cumulative, learn, new_learner, uniform_rows
+from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
+from lifelore.core.planning.planning import optimal_q, policy_values
+from lifelore.core.streams import stream
+
+ALL = 10**9
+
+
+def schedule(episodes, epsilon=0.2, alpha=0.5, max_steps=40, discount=0.9) -> Schedule:
+    return Schedule(np.full(episodes, epsilon), np.full(episodes, alpha), max_steps, discount)
+
+
+def learner(rows, seed=0):
+    n_rows, n_actions = int(rows.q_row.max()) + 1, rows.tie_weight.shape[1]
+    return new_learner(n_rows, n_actions, stream(seed, "world"), stream(seed, "own"))
+
+
+def learnt(tables, rows, plan, seed=0, budget=ALL):
+    """A learner and its curve after all episodes, run `budget` steps at a time."""
+    who, curve = learner(rows, seed), new_curve(len(plan.epsilon))
+    while learn(tables, rows, plan, who, curve, budget):
+        pass
+    return who, curve
+
+
+def drawn_rows(tables, seed, n_rows=3, n_contexts=4, n_classes=2) -> Rows:
+    """Rows of every kind at once: hidden states, contexts by reward class, priors with zeros, tie weights."""
+    random = np.random.default_rng(seed)
+    explore = random.dirichlet(np.ones(tables.n_actions), n_contexts)
+    explore[0] = np.eye(tables.n_actions)[0]
+    return Rows(
+        np.concatenate([np.arange(n_rows), random.integers(0, n_rows, tables.n_states - n_rows)]).astype(np.int32),
+        random.integers(0, n_contexts, (tables.n_states, n_classes)).astype(np.int32),
+        random.integers(0, n_classes, tables.next_state.shape).astype(np.uint8),
+        cumulative(explore),
+        random.uniform(0.1, 2, (n_contexts, tables.n_actions)),
+    )
+
+
+def agree(twin, who, curve) -> bool:
+    return (
+        np.array_equal(who.q, twin["q"])
+        and np.array_equal(who.visits, twin["visits"])
+        and who.world_random.tolist() == twin["world"]
+        and who.own_random.tolist() == twin["own"]
+        and all(np.array_equal(getattr(curve, name), twin[name]) for name in curve._fields)
+    )
+
+
+def corridor(length=3) -> Tables:
+    """States 0 … length-1 in a row, one action: on to the next; the last one is the goal, worth 100."""
+    here = np.arange(length)
+    following = np.minimum(here + 1, length - 1).astype(np.int32)[:, None, None]
+    reward = np.where(here == length - 2, 100.0, 0.0)[:, None, None]
+    event = np.where(here == length - 2, TERMINAL, NOTHING).astype(np.uint8)[:, None, None]
+    return Tables(following, reward, event, np.ones(1), np.zeros(1, np.int32))
+
+
+def test_three_episodes_by_hand():
+    # Q(1) = 50, 75, 87.5. Q(0): 0, then 0 + ½(½·50) = 12.5, then 12.5 + ½(½·75 - 12.5) = 25.
+    tables = corridor()
+    who, curve = learnt(tables, uniform_rows(tables), schedule(3, 0.0, 0.5, discount=0.5))
+    assert who.q.ravel().tolist() == [25.0, 87.5, 0.0]
+    assert who.visits.ravel().tolist() == [3, 3, 0]
+    assert curve.returns.tolist() == [50.0] * 3
+    assert curve.rewards.tolist() == [100.0] * 3
+    assert curve.steps.tolist() == [2] * 3
+    assert curve.reached.all()
+    assert not curve.collisions.any()
+    assert who.cursor[4] == 6
+
+
+def test_an_episode_is_capped_and_collisions_count():
+    tables = Tables(
+        np.zeros((1, 1, 1), np.int32),
+        np.full((1, 1, 1), -10.0),
+        np.full((1, 1, 1), COLLISION, np.uint8),
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+    who, curve = learnt(tables, uniform_rows(tables), schedule(2, 0.0, 0.0, max_steps=3, discount=0.5))
+    assert curve.returns.tolist() == [-17.5] * 2  # -10 (1 + ½ + ¼)
+    assert curve.steps.tolist() == curve.collisions.tolist() == [3, 3]
+    assert not curve.reached.any()
+    assert who.q[0, 0] == 0.0  # α = 0
+
+
+def test_context_may_be_the_class_of_the_last_reward():
+    # One state. Action 1 earns class 1, and in context 1 only action 0 is tried; in context 0 only action 1.
+    tables = Tables(
+        np.zeros((1, 2, 1), np.int32),
+        np.array([[[0.0], [-1.0]]]),
+        np.zeros((1, 2, 1), np.uint8),
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+    rows = Rows(
+        np.zeros(1, np.int32),
+        np.array([[0, 1]], np.int32),
+        np.array([[[0], [1]]], np.uint8),
+        cumulative(np.array([[0.0, 1.0], [1.0, 0.0]])),
+        np.ones((2, 2)),
+    )
+    # Each episode of three starts anew in class 0: actions 1 0 1.
+    who, curve = learnt(tables, rows, schedule(4, 1.0, 0.0, max_steps=3))
+    assert who.visits.tolist() == [[4, 8]]
+    assert curve.rewards.tolist() == [-2.0] * 4
+
+
+def test_stochastic_outcomes_average_to_their_mean():
+    tables = Tables(
+        np.zeros((1, 1, 2), np.int32),
+        np.array([[[1.0, 0.0]]]),
+        np.full((1, 1, 2), TERMINAL, np.uint8),
+        np.array([0.3, 1.0]),
+        np.zeros(1, np.int32),
+    )
+    n = 10_000
+    plan = Schedule(np.zeros(n), 1 / np.arange(1, n + 1), 1, 0.9)
+    who, curve = learnt(tables, uniform_rows(tables), plan)
+    assert who.q[0, 0] == pytest.approx(curve.rewards.mean(), abs=1e-12)
+    # Deviation √(0.3·0.7/n) = 0.0046; four of them.
+    assert curve.rewards.mean() == pytest.approx(0.3, abs=0.0184)
+
+
+def test_exploration_and_ties_follow_their_weights():
+    tables = Tables(
+        np.zeros((1, 3, 1), np.int32),
+        np.zeros((1, 3, 1)),
+        np.full((1, 3, 1), TERMINAL, np.uint8),
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+    rows = uniform_rows(tables, explore=[[0.5, 0.0, 0.5]], ties=[[1.0, 2.0, 5.0]])
+    n = 20_000
+    explored, _ = learnt(tables, rows, schedule(n, 1.0, 0.0))
+    tied, _ = learnt(tables, rows, schedule(n, 0.0, 0.0))
+    # Deviations are at most √(n/4) = 71; four of them.
+    assert explored.visits[0, 1] == 0
+    assert explored.visits[0] == pytest.approx([n / 2, 0, n / 2], abs=284)
+    assert tied.visits[0] == pytest.approx([n / 8, n / 4, 5 * n / 8], abs=284)
+
+
+def test_better_than_the_rest_is_not_a_tie():
+    tables = corridor()
+    rows = uniform_rows(tables)
+    who, curve = learner(rows), new_curve(1)
+    before = who.own_random.copy()
+    learn(tables, rows, schedule(1, 0.0), who, curve, ALL)
+    assert np.array_equal(who.own_random, before)  # greedy and untied: the learner's stream is not read
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.sampled_from([1, 2, 3]), st.sampled_from([0.0, 0.1, 1.0]))
+def test_same_as_the_naive_twin(draw_world, naive_learn, seed, n_outcomes, epsilon):
+    tables = draw_world(seed, n_outcomes=n_outcomes)
+    rows = drawn_rows(tables, seed)
+    random = np.random.default_rng(seed)
+    plan = Schedule(np.full(12, epsilon), random.uniform(0, 1, 12), int(random.integers(1, 30)), 0.9)
+    start = learner(rows, seed)
+    twin = naive_learn(tables, rows, plan, start.world_random, start.own_random)
+    assert agree(twin, *learnt(tables, rows, plan, seed))
+
+
+@pytest.mark.parametrize("budget", [1, 7])
+@pytest.mark.parametrize("n_outcomes", [1, 3])
+def test_chunks_change_no_bit(draw_world, budget, n_outcomes):
+    tables = draw_world(5, n_outcomes=n_outcomes)
+    rows = drawn_rows(tables, 5)
+    plan = schedule(60)
+    whole, whole_curve = learnt(tables, rows, plan)
+    parts, parts_curve = learnt(tables, rows, plan, budget=budget)
+    for a, b in zip((*whole, *whole_curve), (*parts, *parts_curve), strict=True):
+        assert np.array_equal(a, b)
+
+
+def test_returns_the_steps_it_ran(draw_world):
+    tables = corridor(4)
+    rows = uniform_rows(tables)
+    who, curve = learner(rows), new_curve(2)
+    plan = schedule(2)
+    assert [learn(tables, rows, plan, who, curve, 4) for _ in range(3)] == [4, 2, 0]
+    assert who.cursor[4] == curve.steps.sum() == 6
+
+
+@pytest.mark.parametrize("threads", [2, 5])
+def test_threads_change_no_bit(draw_world, threads):
+    tables = draw_world(1, n_states=40, n_actions=4, n_outcomes=2)
+    rows, plan = drawn_rows(tables, 1, n_rows=40, n_contexts=9), schedule(300)
+
+    def one(seed):
+        return learnt(tables, rows, plan, seed)[0]
+
+    alone = [one(seed) for seed in range(8)]
+    with ThreadPoolExecutor(threads) as pool:
+        together = list(pool.map(one, range(8)))
+    for a, b in zip(alone, together, strict=True):
+        assert all(np.array_equal(x, y) for x, y in zip(a, b, strict=True))
+    assert not np.array_equal(alone[0].q, alone[1].q)
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_converges_to_the_optimum_where_every_action_keeps_mass(draw_world, seed):
+    tables = draw_world(seed, n_states=10, n_actions=3)
+    random = np.random.default_rng(seed)
+    # A prior that misleads as hard as it may: 0.94 on one action drawn at random, 0.03 on each other one.
+    explore = np.full((10, 3), 0.03)
+    explore[np.arange(10), random.integers(0, 3, 10)] = 0.94
+    # α = 1 is exact in a deterministic world: once all pairs were tried again, errors shrink by γ = 0.9. A pair
+    # is tried at an episode's first step 200,000 / 10 · 0.5 · 0.03 = 300 times on average, deviation 17.
+    who, _ = learnt(tables, uniform_rows(tables, explore), schedule(200_000, 0.5, 1.0, 50))
+    assert who.visits.min() > 230
+    best = optimal_q(tables, 0.9)
+    assert who.q == pytest.approx(best, abs=20 * 0.9**200 + 1e-9)
+    greedy = policy_values(tables, who.q.argmax(axis=1), 0.9)
+    assert greedy == pytest.approx(best.max(axis=1), abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("given_rows", "message"),
+    [
+        ({"explore": [[0.5, 0.6, 0.0]]}, "sum to 1"),
+        ({"explore": [[-0.5, 1.0, 0.5]]}, "non-negative"),
+        ({"explore": [[np.nan, 1.0, 0.0]]}, "sum to 1"),
+        ({"explore": [[0.5, 0.5]]}, "3 columns"),
+        ({"ties": [[1.0, 1.0]]}, "agree in shape"),
+        ({"ties": [[1.0, 0.0, 1.0]]}, "ties must be positive"),
+        ({"context_row": [0, 0]}, "each of 8 states"),
+        ({"context_row": [1] * 8}, r"row in \[0, 1\)"),
+        ({"context_row": [-1] * 8}, r"row in \[0, 1\)"),
+    ],
+)
+def test_rows_that_break_a_rule(draw_world, given_rows, message):
+    with pytest.raises(InputError, match=message):
+        uniform_rows(draw_world(0), **given_rows)
+
+
+def test_default_rows_read_the_state_or_row_0(draw_world):
+    tables = draw_world(0)
+    assert uniform_rows(tables).context_row.ravel().tolist() == [0] * 8
+    each = uniform_rows(tables, np.full((8, 3), 1 / 3))
+    assert each.context_row.ravel().tolist() == list(range(8))
+    assert (each.explore_cum[:, -1] == 1.0).all()
+
+
+# ---- many learners at once -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("chunk", "threads"), [(7, 1), (7, 3), (10**6, 2)])
+def test_many_learn_what_each_learns_alone(draw_world, chunk, threads):
+    tables, n = draw_world(4, n_states=9, n_outcomes=2), 11
+    method = QLearning(episodes=12, max_steps=25)
+    rows = uniform_rows(tables, ties=np.random.default_rng(0).uniform(0.5, 2, (1, 3)))
+    learners, curves = method.learn_many(
+        tables,
+        0.9,
+        worlds=[stream(i, "world") for i in range(n)],
+        owns=[stream(i, "own") for i in range(n)],
+        rows=rows,
+        threads=threads,
+        chunk=chunk,
+    )
+    for i in range(n):
+        alone = method.learn(tables, 0.9, world=stream(i, "world"), own=stream(i, "own"), rows=rows)
+        for stacked, one in zip((*learners, *curves), (*alone[0], *alone[1]), strict=True):
+            assert stacked[i].dtype == one.dtype
+            assert np.array_equal(stacked[i], one)
+    assert not np.array_equal(learners.q[0], learners.q[1])
+
+
+def test_many_are_watched_between_chunks(draw_world):
+    seen = []
+
+    def watch(learners, curves):
+        seen.append(learners.cursor[:, TOTAL].tolist())
+        assert curves.returns.shape == (3, 50)
+        return len(seen) == 4
+
+    streams = [stream(i) for i in range(3)]
+    QLearning(episodes=50, max_steps=100).learn_many(
+        draw_world(1), 0.9, worlds=streams, owns=streams, chunk=5, watch=watch
+    )
+    assert seen == [[5] * 3, [10] * 3, [15] * 3, [20] * 3]
+
+
+@pytest.mark.parametrize(
+    ("worlds", "options", "message"),
+    [
+        (0, {}, "worlds and owns must hold one generator a learner, got 0 and 2"),
+        (3, {}, "worlds and owns must hold one generator a learner, got 3 and 2"),
+        (2, {"threads": 0}, "threads must be at least 1, got 0"),
+        (2, {"chunk": 0}, "chunk must be at least 1, got 0"),
+    ],
+)
+def test_many_refuse_what_breaks_a_rule(draw_world, worlds, options, message):
+    owns = [stream(i) for i in range(2)]
+    with pytest.raises(InputError, match=message):
+        QLearning().learn_many(draw_world(1), 0.9, worlds=[stream(i) for i in range(worlds)], owns=owns, **options)
+
+
+def test_many_may_share_generators_drawn_learner_by_learner(draw_world):
+    tables, method = draw_world(2), QLearning(episodes=5)
+    shared, again = stream(1), stream(1)
+    learners, _ = method.learn_many(tables, 0.9, worlds=[shared] * 3, owns=[shared] * 3)
+    for i in range(3):
+        alone, _ = method.learn(tables, 0.9, world=again, own=again)
+        assert np.array_equal(learners.q[i], alone.q)

@@ -1,0 +1,227 @@
+"""The planner of the model-based learner against a naive Dijkstra; distances against SciPy."""
+
+import heapq
+from collections import Counter
+
+import numpy as np
+import pytest
+import scipy.sparse.csgraph
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.compiled.random_state import random_state
+from lifelore.core.learning.known_world import (
+    DEAD_END,
+    GOAL,
+    LOOKED,
+    NOT_LOOKED,
+    UNKNOWN,
+    Model,
+    best_known_actions,
+    goal_distances,
+    known_policy,
+)
+from lifelore.core.learning.model_learning import new_explorer
+from lifelore.core.learning.search_plan import NO_CRUMBS, plan_search
+from lifelore.core.streams import stream
+
+seeds = st.integers(0, 10**6)
+
+
+def knowledge(seed: int, n_states=10, n_actions=3, goal=False):
+    """Known moves, places and costs of trying, drawn at random; state 0 is where one stands."""
+    random = np.random.default_rng(seed)
+    target = random.integers(0, n_states, (n_states, n_actions)).astype(np.int32)
+    target[random.random(target.shape) < random.choice([0.05, 0.3])] = UNKNOWN
+    place = random.choice([NOT_LOOKED, LOOKED, LOOKED, LOOKED, DEAD_END], n_states).astype(np.int8)
+    place[0] = LOOKED
+    if goal:
+        place[1:][random.random(n_states - 1) < 0.2] = GOAL
+    cost_row = random.integers(0, 2, n_states).astype(np.int32)
+    try_cost = random.choice([0.0, 0.0, 2.0, 7.5], (2, n_actions))
+    return target, place, cost_row, try_cost
+
+
+def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0):
+    """The actions of `_plan`, first one first."""
+    desk = new_explorer(*target.shape, stream(0, "world"), stream(0, "own"))
+    own = random_state(stream(seed, "own"))
+    length = plan_search(
+        start,
+        target,
+        place,
+        bool((place == GOAL).any()),
+        cost_row,
+        try_cost,
+        exhaustive,
+        desk.plan,
+        desk.queue,
+        desk.parent,
+        desk.parent_action,
+        own,
+    )
+    assert (desk.parent == UNKNOWN).all()  # as it was, whatever the search reached
+    return [int(a) for a in desk.plan[:length][::-1]]
+
+
+def crumbs(t, target, place) -> int:
+    return sum(x not in (UNKNOWN, t) and place[x] == NOT_LOOKED for x in target[t].tolist())
+
+
+def naive_candidates(target, place, cost_row, try_cost, start=0):
+    """(kind, cost) of everything worth doing, by Dijkstra over all known moves but bad ones."""
+    n_actions = target.shape[1]
+    goal_known = (place == GOAL).any()
+    crumb = min(NO_CRUMBS, 1 / (n_actions + 1))
+    found, settled, heap = {}, set(), [(0, start)]
+    while heap:
+        steps, s = heapq.heappop(heap)
+        if s in settled:
+            continue
+        settled.add(s)
+        for a in range(n_actions):
+            t = int(target[s, a])
+            if t == UNKNOWN:
+                found[s, a] = ("try", steps + 1 + try_cost[cost_row[s], a])
+            elif place[t] == GOAL:
+                found[s, a] = ("goal", steps + 1)
+            elif place[t] == NOT_LOOKED and not goal_known:
+                found[s, a] = ("look", steps + 1 + crumb * crumbs(t, target, place))
+                heapq.heappush(heap, (steps + 1, t))
+            elif place[t] != DEAD_END:
+                heapq.heappush(heap, (steps + 1, t))
+    return found
+
+
+def followed(plan, target, start=0):
+    """The (state, action) at which a plan ends; every move before it must be known."""
+    s = start
+    for a in plan[:-1]:
+        assert target[s, a] != UNKNOWN
+        s = int(target[s, a])
+    return s, plan[-1]
+
+
+@settings(max_examples=300, deadline=None)
+@given(seeds, st.booleans(), st.booleans(), st.sampled_from([2, 3, 4, 8]))
+def test_what_is_planned_is_a_cheapest(seed, goal, exhaustive, n_actions):
+    target, place, cost_row, try_cost = knowledge(seed, n_actions=n_actions, goal=goal)
+    candidates = naive_candidates(target, place, cost_row, try_cost)
+    plan = planned(target, place, cost_row, try_cost, exhaustive, seed)
+    if exhaustive and any(kind != "goal" for kind, _ in candidates.values()):
+        candidates = {at: found for at, found in candidates.items() if found[0] != "goal"}
+    assert bool(plan) == bool(candidates)
+    if plan:
+        end = followed(plan, target)
+        assert end in candidates
+        kind, cost = candidates[end]
+        assert cost == pytest.approx(min(cost for _, cost in candidates.values()), abs=1e-9)
+        assert len(plan) == pytest.approx(cost - _extra(kind, end, target, place, cost_row, try_cost))
+
+
+def _extra(kind, end, target, place, cost_row, try_cost) -> float:
+    s, a = end
+    if kind == "try":
+        return try_cost[cost_row[s], a]
+    crumb = min(NO_CRUMBS, 1 / (target.shape[1] + 1))
+    return crumb * crumbs(int(target[s, a]), target, place) if kind == "look" else 0.0
+
+
+def test_equally_cheap_targets_are_equally_likely():
+    # From 0 all four moves lead to places not looked at, alike in every way.
+    target = np.full((5, 4), UNKNOWN, np.int32)
+    target[0] = [1, 2, 3, 4]
+    place = np.array([LOOKED] + [NOT_LOOKED] * 4, np.int8)
+    free = np.zeros(5, np.int32), np.zeros((1, 4))
+    n = 4000
+    counts = Counter(tuple(planned(target, place, *free, seed=seed)) for seed in range(n))
+    # Deviation √(n · ¼ · ¾) = 27; four of them.
+    assert sorted(counts) == [(0,), (1,), (2,), (3,)]
+    assert all(abs(count - n / 4) < 110 for count in counts.values())
+
+
+def test_ties_lie_as_far_as_they_are_cheap():
+    # Beyond 1 and beyond 2 a place not looked at, two steps off; and here a move that costs 1 + 1 to try.
+    target = np.array([[1, 2, UNKNOWN], [3, 1, 1], [4, 2, 2], [3, 3, 3], [4, 4, 4]], np.int32)
+    place = np.array([LOOKED, LOOKED, LOOKED, NOT_LOOKED, NOT_LOOKED], np.int8)
+    costs = np.zeros(5, np.int32), np.array([[0.0, 0.0, 1.0]])
+    n = 3000
+    counts = Counter(tuple(planned(target, place, *costs, seed=seed)) for seed in range(n))
+    # Deviation √(n · ⅓ · ⅔) = 26; four of them.
+    assert sorted(counts) == [(0, 0), (1, 0), (2,)]
+    assert all(abs(count - n / 3) < 104 for count in counts.values())
+
+
+def corridor(n=6):
+    """Places in a row, moves left and right, refused at both ends; all known, all looked at."""
+    here = np.arange(n)
+    target = np.stack([np.maximum(here - 1, 0), np.minimum(here + 1, n - 1)], axis=1).astype(np.int32)
+    return target, np.full(n, LOOKED, np.int8), np.zeros(n, np.int32), np.zeros((1, 2))
+
+
+def test_plans_by_hand():
+    target, place, cost_row, try_cost = corridor()
+    assert planned(target, place, cost_row, try_cost, start=2) == []
+    place[5] = NOT_LOOKED
+    assert planned(target, place, cost_row, try_cost, start=2) == [1, 1, 1]
+    place[1] = GOAL  # a goal once seen ends the looking round
+    assert planned(target, place, cost_row, try_cost, start=2) == [0]
+    place[1], target[2, 0] = LOOKED, UNKNOWN
+    assert planned(target, place, cost_row, try_cost, start=2) == [0]
+    dear = np.array([[5.0, 5.0]])  # a move that costs 1 + 5 to try waits for a place 3 steps off
+    assert planned(target, place, cost_row, dear, start=2) == [1, 1, 1]
+    place[3] = DEAD_END  # and is made all the same when nothing else is left: an order, never a mask
+    assert planned(target, place, cost_row, dear, start=2) == [0]
+
+
+def test_exhaustive_prefers_the_unknown_to_the_goal():
+    target, place, cost_row, try_cost = corridor()
+    place[1], target[5, 1] = GOAL, UNKNOWN
+    assert planned(target, place, cost_row, try_cost, start=2) == [0]
+    assert planned(target, place, cost_row, try_cost, exhaustive=True, start=2) == [1, 1, 1, 1]
+    target[5, 1] = 5
+    assert planned(target, place, cost_row, try_cost, exhaustive=True, start=2) == [0]
+
+
+def test_no_crumbs_are_left_behind():
+    # Places 1 and 2 are one step away; beside 1 lies another not looked at, beside 2 none: 2 first.
+    target = np.array([[1, 2], [3, 1], [2, 2], [3, 3]], np.int32)
+    place = np.array([LOOKED, NOT_LOOKED, NOT_LOOKED, NOT_LOOKED], np.int8)
+    for seed in range(20):
+        assert planned(target, place, np.zeros(4, np.int32), np.zeros((1, 2)), seed=seed) == [1]
+
+
+@settings(max_examples=100, deadline=None)
+@given(seeds)
+def test_goal_distances_are_scipys(seed):
+    target, place, *_ = knowledge(seed, n_states=15, goal=True)
+    walkable = np.flatnonzero(place != DEAD_END)
+    graph = np.zeros((15, 15))
+    for s in walkable:
+        for t in target[s]:
+            if t != UNKNOWN and place[t] != DEAD_END:
+                graph[s, t] = 1
+    distance = scipy.sparse.csgraph.shortest_path(scipy.sparse.csr_matrix(graph), unweighted=True)
+    goals = np.flatnonzero(place == GOAL)
+    nearest = distance[:, goals].min(axis=1, initial=np.inf)
+    nearest[place == DEAD_END] = np.inf
+    expected = np.where(np.isinf(nearest), -1, nearest)
+    assert goal_distances(target, place).tolist() == expected.tolist()
+
+
+@settings(max_examples=100, deadline=None)
+@given(seeds)
+def test_best_known_actions_shorten_the_way_and_leave_none_out(seed):
+    target, place, *_ = knowledge(seed, n_states=15, goal=True)
+    explorer = new_explorer(15, 3, stream(0), stream(1))
+    explorer.place[:] = place
+    model = Model(target, np.zeros(15, np.int64))
+    distance = goal_distances(target, place)
+    expected = [
+        [t != UNKNOWN and distance[s] > 0 and distance[t] == distance[s] - 1 for t in target[s]] for s in range(15)
+    ]
+    best = best_known_actions(model, explorer.place)
+    assert best.tolist() == expected
+    assert (best.any(axis=1) == (distance > 0)).all()
+    policy = known_policy(model, explorer.place)
+    assert policy.tolist() == [row.index(True) if True in row else -1 for row in expected]

@@ -1,0 +1,67 @@
+"""Exact moments of returns against the plain recursion over all ways an episode can go."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.mdp import TERMINAL
+from lifelore.core.planning.episode_value import best_episode_value, return_moments
+from lifelore.core.planning.planning import optimal_q
+
+
+def naive_moments(tables, row_of, probs, steps, discount):
+    """E[G] and E[G²] by following every branch."""
+
+    def onward(s, left):
+        if left == 0:
+            return 0.0, 0.0
+        first = second = 0.0
+        for a in range(tables.n_actions):
+            for k, w in enumerate(np.diff(tables.outcome_cum, prepend=0.0)):
+                r, later, later2 = tables.reward[s, a, k], 0.0, 0.0
+                if not tables.event[s, a, k] & TERMINAL:
+                    later, later2 = onward(tables.next_state[s, a, k], left - 1)
+                p = probs[row_of[s], a] * w
+                first += p * (r + discount * later)
+                second += p * (r * r + 2 * r * discount * later + discount**2 * later2)
+        return first, second
+
+    return np.mean([onward(s, steps) for s in tables.starts], axis=0)
+
+
+@pytest.mark.parametrize(("seed", "discount"), [(0, 1.0), (1, 0.7), (2, 1.0)])
+def test_moments_equal_the_recursion(draw_world, seed, discount):
+    tables = draw_world(seed, n_states=6, n_actions=2, n_outcomes=2)
+    random = np.random.default_rng(seed)
+    # Two states share a row: a hidden state.
+    row_of = np.array([0, 1, 2, 3, 4, 0], np.int32)
+    probs = random.dirichlet(np.ones(2), 5)
+    probs[1] = [1.0, 0.0]
+    first, second = naive_moments(tables, row_of, probs, 5, discount)
+    mean, deviation = return_moments(tables, row_of, probs, 5, discount)
+    assert mean == pytest.approx(first, abs=1e-12)
+    assert deviation == pytest.approx(np.sqrt(second - first**2), abs=1e-9)
+
+
+def test_a_start_named_twice_counts_twice(draw_world):
+    tables = draw_world(3, n_states=4, n_actions=2)
+    probs = np.full((4, 2), 0.5)
+    row_of = np.arange(4, dtype=np.int32)
+
+    def mean(*starts):
+        return return_moments(tables._replace(starts=np.array(starts, np.int32)), row_of, probs, 9)[0]
+
+    assert mean(0, 0, 1) == pytest.approx((2 * mean(0) + mean(1)) / 3)
+
+
+def test_the_best_value_is_that_of_planning_once_the_cap_no_longer_matters(draw_world):
+    tables = draw_world(4, n_outcomes=2)
+    best = optimal_q(tables, 0.8).max(axis=1)[tables.starts].mean()
+    assert best_episode_value(tables, 300, 0.8) == pytest.approx(best, abs=1e-6)
+
+
+def test_no_policy_exceeds_the_best_value(draw_world):
+    tables = draw_world(5, n_states=5, n_actions=2)
+    best = best_episode_value(tables, 6)
+    for code in range(2**5):
+        probs = np.eye(2)[[code >> s & 1 for s in range(5)]]
+        assert return_moments(tables, np.arange(5, dtype=np.int32), probs, 6)[0] <= best + 1e-12

@@ -1,0 +1,119 @@
+"""Layer by layer equals sweeps over everything; a corridor by hand; only what is asked for is solved."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import NOTHING, TERMINAL, Tables
+from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
+from lifelore.core.planning.planning import best_actions, optimal_q
+
+seeds = st.integers(0, 10**6)
+SIZE = 4
+
+
+def rows_of(tables: Tables, size: int):
+    """The rows of a layer, cut out of the whole tables."""
+    return lambda layer: tables._replace(
+        **{
+            name: getattr(tables, name)[layer * size : (layer + 1) * size]
+            for name in ("next_state", "reward", "event")
+        }
+    )
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
+def test_same_as_sweeps_over_all_layers(draw_layers, seed, n_outcomes, discount):
+    tables = draw_layers(seed, n_layers=5, size=SIZE, n_outcomes=n_outcomes)
+    found, swept = layered_q(tables, SIZE, discount), optimal_q(tables, discount)
+    assert found == pytest.approx(swept, abs=1e-9)
+    # Values that are zero but for what the sweeps leave have no relative tolerance: ties are told absolutely.
+    best, swept_best = (q >= q.max(axis=1, keepdims=True) - 1e-8 for q in (found, swept))
+    assert np.array_equal(best, swept_best)
+    plan = LayeredPlan(rows_of(tables, SIZE), 5, SIZE, discount)
+    for layer in (2, 0, 4, 1, 3):
+        here = slice(layer * SIZE, (layer + 1) * SIZE)
+        assert plan.values(layer) == pytest.approx(found[here].max(axis=1), abs=1e-9)
+        assert plan.q(layer) == pytest.approx(found[here], abs=1e-9)
+        assert np.array_equal(plan.best_actions(layer), best_actions(plan.q(layer)))
+
+
+def corridor(length: int, exit_reward: float) -> Tables:
+    """Two layers of a corridor: west, east for -1 each; beyond the last cell lies the next layer, then the end."""
+    n = 2 * length
+    here, place = np.arange(n), np.arange(n) % length
+    west = here - (place > 0)
+    last = place == length - 1
+    east = np.where(last, np.minimum(here + 1, n - 1), here + 1)
+    reward = np.stack([np.full(n, -1.0), np.where(last, exit_reward, -1.0)], axis=1)
+    event = np.stack([np.full(n, NOTHING), np.where(here == n - 1, TERMINAL, NOTHING)], axis=1)
+    next_state = np.stack([west, east], axis=1)
+    return Tables(
+        next_state[:, :, None].astype(np.int32),
+        reward[:, :, None],
+        event[:, :, None].astype(np.uint8),
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+
+
+@pytest.mark.parametrize("discount", [0.5, 0.999999])
+def test_a_corridor_by_hand(discount):
+    # Five moves: -1, -1, then 20 into the next layer, where it is the same once more.
+    rewards = [-1.0, -1.0, 20.0, -1.0, -1.0, 20.0]
+    worth = sum(reward * discount**t for t, reward in enumerate(rewards))
+    q = layered_q(corridor(3, 20.0), 3, discount)
+    assert q[0, 1] == pytest.approx(worth, rel=1e-12)
+    assert best_actions(q).tolist() == [[False, True]] * 6
+
+
+def test_for_ever_may_beat_every_exit():
+    # At ½, for ever to and fro is worth -2, through the exit -100 at least.
+    tables = corridor(2, -100.0)
+    assert layered_q(tables, 2, 0.5) == pytest.approx(optimal_q(tables, 0.5), abs=1e-9)
+    assert layered_q(tables, 2, 0.5).max(axis=1) == pytest.approx(np.full(4, -2.0), abs=1e-9)
+    # And a reward for every step is better kept than ended.
+    endless = corridor(2, 1.0)._replace(reward=np.ones((4, 2, 1)))
+    assert layered_q(endless, 2, 0.5).max(axis=1) == pytest.approx(np.full(4, 2.0), abs=1e-9)
+
+
+def test_only_what_is_asked_for_is_solved(draw_layers):
+    tables = draw_layers(3, n_layers=8, size=SIZE, reach=1)
+    looked = []
+
+    def rows(layer):
+        looked.append(layer)
+        return rows_of(tables, SIZE)(layer)
+
+    plan = LayeredPlan(rows, 8, SIZE, 0.9)
+    plan.values(5)
+    assert set(looked) == set(np.flatnonzero(plan.solved)) <= {5, 6, 7}
+    looked.clear()
+    plan.values(6)
+    plan.values(0)
+    assert 7 not in looked[1:]  # known already, not looked at again
+    assert plan.solved[0]
+
+
+def test_the_values_handed_out_are_the_callers_own(draw_layers):
+    plan = LayeredPlan(rows_of(draw_layers(0, n_layers=3, size=SIZE), SIZE), 3, SIZE, 0.9)
+    plan.values(0)[:] = 7.0
+    assert (plan.values(0) != 7.0).all()
+
+
+def test_misuse_is_told(draw_layers):
+    tables = draw_layers(1, n_layers=3, size=SIZE)
+    with pytest.raises(InputError, match="layer_size must divide the 12 states, got 5"):
+        layered_q(tables, 5, 0.9)
+    tables.next_state[5, 0, 0], tables.event[5, 0, 0] = 0, NOTHING
+    with pytest.raises(InputError, match="state of layer 1 that leads to an earlier one"):
+        layered_q(tables, SIZE, 0.9)
+    plan = LayeredPlan(rows_of(tables, SIZE), 3, SIZE, 0.9)
+    with pytest.raises(InputError, match="state of layer 1 that leads to an earlier one"):
+        plan.values(1)
+    for wrong in (-1, 3):
+        with pytest.raises(InputError, match=r"layer must lie in \[0, 3\)"):
+            plan.values(wrong)

@@ -1,0 +1,117 @@
+"""Exact solutions: closed forms, a dense linear-algebra twin, cycles and standing still."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL, Tables
+from lifelore.core.planning.planning import (
+    best_actions,
+    greedy_policy,
+    learnt_best_actions,
+    mean_start_value,
+    optimal_q,
+    policy_values,
+)
+
+seeds = st.integers(0, 10**6)
+
+
+def dense(tables: Tables) -> tuple[np.ndarray, np.ndarray]:
+    """Mean rewards (n_states, n_actions) and transition matrices (n_actions, n_states, n_states)."""
+    probs = np.diff(tables.outcome_cum, prepend=0.0)
+    transitions = np.zeros((tables.n_actions, tables.n_states, tables.n_states))
+    for s, a, k in np.ndindex(tables.next_state.shape):
+        if not tables.event[s, a, k] & TERMINAL:
+            transitions[a, s, tables.next_state[s, a, k]] += probs[k]
+    return tables.reward @ probs, transitions
+
+
+def ring(n=4) -> Tables:
+    """Action 0 walks the ring for a reward of 1 each; action 1 stays and ends with 5."""
+    here = np.arange(n)
+    next_state = np.stack([(here + 1) % n, here], axis=1)[:, :, None].astype(np.int32)
+    reward = np.tile([[1.0], [5.0]], (n, 1, 1))
+    event = np.tile(np.array([[NOTHING], [TERMINAL]], np.uint8), (n, 1, 1))
+    return Tables(next_state, reward, event, np.ones(1), np.array([0, 2], np.int32))
+
+
+def test_for_ever_round_the_ring():
+    # 1 / (1 - ½) = 2 for ever, or 5 now: end at once.
+    assert optimal_q(ring(), 0.5) == pytest.approx(np.tile([1 + 0.5 * 5, 5.0], (4, 1)))
+    # 1 / (1 - 0.9) = 10 beats 5.
+    assert optimal_q(ring(), 0.9) == pytest.approx(np.tile([10.0, 5.0], (4, 1)))
+
+
+def test_a_policy_on_a_cycle_and_into_it():
+    # 0 ends (5), 1 stands still, 2 → 3 → 0: 1 + ½(1 + ½·5).
+    assert policy_values(ring(), np.array([1, -1, 0, 0]), 0.5).tolist() == [5.0, 0.0, 2.75, 3.5]
+    assert policy_values(ring(), np.zeros(4, int), 0.9) == pytest.approx(np.full(4, 10.0))
+    assert policy_values(ring(), np.full(4, -1), 0.9).tolist() == [0.0] * 4
+    # A tail into a cycle: refused moves at the end of a row cost 1 for ever, 1 / (1 - ½) = 2.
+    row = Tables(
+        np.array([1, 2, 2], np.int32)[:, None, None],
+        np.array([0.0, 0.0, -1.0])[:, None, None],
+        np.array([NOTHING, NOTHING, COLLISION], np.uint8)[:, None, None],
+        np.ones(1),
+        np.zeros(1, np.int32),
+    )
+    assert policy_values(row, np.zeros(3, int), 0.5).tolist() == [-0.5, -1.0, -2.0]
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
+def test_policy_values_solve_the_linear_equations(draw_world, seed, n_outcomes, discount):
+    tables = draw_world(seed, n_states=9, n_outcomes=n_outcomes)
+    policy = np.random.default_rng(seed).integers(-1, tables.n_actions, 9)
+    reward, transitions = dense(tables)
+    moves = policy >= 0
+    chosen = np.where(moves, reward[np.arange(9), policy], 0.0)
+    matrix = np.where(moves[:, None], transitions[policy, np.arange(9)], 0.0)
+    exact = np.linalg.solve(np.eye(9) - discount * matrix, chosen)
+    # Sweeps stop when nothing moves by 2e-12, so the rest is at most 2e-12 / (1 - 0.95).
+    assert policy_values(tables, policy, discount) == pytest.approx(exact, abs=1e-10)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
+def test_value_iteration_same_as_dense_sweeps(draw_world, seed, n_outcomes, discount):
+    tables = draw_world(seed, n_outcomes=n_outcomes)
+    reward, transitions = dense(tables)
+    q = np.zeros_like(reward)
+    for _ in range(600):  # 0.95^600 · 40 = 2e-12
+        q = reward + discount * np.einsum("ast,t->sa", transitions, q.max(axis=1))
+    found = optimal_q(tables, discount)
+    assert found == pytest.approx(q, abs=1e-10)
+    # No policy beats it, and its own greedy policy attains it.
+    assert policy_values(tables, found.argmax(axis=1), discount) == pytest.approx(found.max(axis=1), abs=1e-9)
+    other = np.random.default_rng(seed).integers(0, tables.n_actions, tables.n_states)
+    assert (policy_values(tables, other, discount) <= found.max(axis=1) + 1e-9).all()
+
+
+def test_ties_within_the_tolerance_are_best():
+    q = np.array([[1.0, 1.0 - 1e-12, 0.5], [0.0, 0.0, -1e-9], [-2.0, -2.0 * (1 + 1e-12), -3.0]])
+    assert best_actions(q).tolist() == [[True, True, False]] * 3
+    assert best_actions(q, 0.6)[0].tolist() == [True, True, True]
+
+
+def test_ties_at_nothing_are_ties_whatever_the_rounding():
+    q = np.array([[0.0, 3e-15, -2e-14], [0.0, 1e-6, 0.0], [100.0, 50.0, 0.0], [-np.inf, 0.0, 1e-11]])
+    assert best_actions(q).tolist() == [
+        [True, True, True], [False, True, False], [True, False, False], [False, True, True]
+    ]  # fmt: skip
+    # As large a share of smaller values is seen, and without a floor the rounding is.
+    assert best_actions(q / 1e9).tolist() == best_actions(q).tolist()
+    assert best_actions(q, floor=0.0)[0].tolist() == [False, True, False]
+    assert best_actions(np.full((1, 2), -np.inf)).tolist() == [[True, True]]
+    # What is learnt last, far from the goal, is little and yet learnt.
+    assert learnt_best_actions(q)[0].tolist() == [False, True, False]
+
+
+def test_no_policy_where_nothing_is_promised():
+    assert greedy_policy(np.array([[0.0, -1.0], [0.1, 0.1], [0.0, 2.0]])).tolist() == [-1, 0, 1]
+
+
+def test_mean_over_the_starts():
+    assert mean_start_value(ring(), np.array([1.0, 50.0, 4.0, 50.0])) == 2.5

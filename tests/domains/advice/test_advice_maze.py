@@ -1,0 +1,81 @@
+"""Advice mazes: connected, a tree with as many loops as asked for, goals in corners and at corridors' ends."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import ndimage
+
+from lifelore.core.errors import InputError
+from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.integers(0, 10**6), st.integers(6, 24), st.floats(0, 1))
+def test_connected_and_as_many_loops_as_asked(seed, size, loops):
+    world = advice_maze(np.random.default_rng(seed), size, loops, n_goals=1)
+    free = world.state_of >= 0
+    assert free.shape == (size, size)
+    assert ndimage.label(free)[1] == 1  # type: ignore[index]
+    assert not free[[0, -1]].any()
+    assert not free[:, [0, -1]].any()
+    # A connected plane drawing of corridors has edges - cells + 1 loops; of n × n crossings a tree leaves (n - 1)²
+    # of the 2n(n - 1) places between two of them closed. Doubling a line turns no corridor into a loop.
+    n = (size - 1) // 2
+    edges = (world.neighbour >= 0).sum() // 2
+    assert edges - world.n_states + 1 == round(loops * (n - 1) ** 2)
+
+
+def test_the_maze_of_the_thesis():
+    world = advice_maze(np.random.default_rng(0))
+    assert world.shape == (30, 30)
+    assert len(set(maze_goals(world).tolist())) == 8
+    assert (world.goal_reward, world.wall_reward) == (1000.0, 0.0)
+
+
+def test_goals_lie_in_corners_and_at_ends_and_both_kinds_occur():
+    kinds = set()
+    for seed in range(20):
+        world = advice_maze(np.random.default_rng(seed))
+        for goal in maze_goals(world):
+            ways = np.flatnonzero(world.neighbour[goal] >= 0).tolist()
+            # North and south, or east and west, would be a corridor leading straight on.
+            assert len(ways) == 1 or (len(ways) == 2 and ways not in ([0, 1], [2, 3]))
+            kinds.add(len(ways))
+    assert kinds == {1, 2}
+
+
+def test_other_goals_may_be_walls():
+    world = advice_maze(np.random.default_rng(1), 12, 0.5, n_goals=4)
+    goal, *others = maze_goals(world).tolist()
+    open_world, closed = errand(world, goal).tables(), errand(world, goal, "wall").tables()
+    into = np.isin(open_world.next_state[..., 0], others) & ~np.isin(np.arange(world.n_states), others)[:, None]
+    assert into.any()
+    assert (closed.next_state[into][:, 0] == np.nonzero(into)[0]).all()
+    elsewhere = ~into & ~np.isin(np.arange(world.n_states), others)[:, None]
+    assert np.array_equal(closed.next_state[elsewhere], open_world.next_state[elsewhere])
+    assert closed.reward.max() == 1000.0
+    assert not np.isin(open_world.starts, maze_goals(world)).any()
+    with pytest.raises(InputError, match="others must be one of pass, wall, got 'door'"):
+        errand(world, goal, "door")
+
+
+def test_the_same_generator_state_is_the_same_maze():
+    a, b, c = (advice_maze(np.random.default_rng(seed)).fingerprint for seed in (1, 1, 2))
+    assert a == b != c
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"size": 5}, "size of an advice maze"),
+        ({"size": 1000}, "size of an advice maze"),
+        ({"loops": -0.1}, "loops must be a share"),
+        ({"loops": float("nan")}, "loops must be a share"),
+        ({"n_goals": 0}, "n_goals must lie in"),
+        ({"n_goals": 9999}, "n_goals must lie in"),
+    ],
+)
+def test_each_broken_rule_is_one_clear_line(arguments, words):
+    with pytest.raises(InputError, match=words):
+        advice_maze(np.random.default_rng(0), **arguments)

@@ -1,0 +1,92 @@
+"""The explorers of Table 3.1, by hand on small worlds."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.noise_maze import noise_maze
+
+NORTH, SOUTH, EAST, WEST = range(4)
+CROSS = GridWorld.from_free("cross", np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool))
+"""States: 0 north arm, 1 west arm, 2 middle, 3 east arm, 4 south arm."""
+
+
+@pytest.mark.parametrize("explorer", EXPLORERS)
+def test_rows_are_probabilities_and_only_the_random_and_the_bug_bump(explorer):
+    world = noise_maze(np.random.default_rng(3), 11, 0.4)
+    probs = explorer_probs(world, explorer, 5 if explorer == "bug" else None)
+    assert probs.shape == (world.n_states, 5, 4)
+    assert probs.sum(axis=2) == pytest.approx(np.ones((world.n_states, 5)))
+    bumps = (probs * (world.neighbour < 0)[:, None]).sum()
+    assert (bumps > 0) == (explorer in ("random", "bug"))
+
+
+def test_random_and_avoiding_by_hand():
+    assert (explorer_probs(CROSS, "random") == 0.25).all()
+    avoid = explorer_probs(CROSS, "avoid")
+    assert avoid[0, 0].tolist() == [0, 1, 0, 0]
+    assert avoid[2, 3].tolist() == [0.25] * 4
+
+
+@pytest.mark.parametrize(
+    ("heading", "order"),
+    [(NORTH, "WNES"), (SOUTH, "ESWN"), (EAST, "NESW"), (WEST, "SWNE")],
+)
+def test_left_straight_right_back(heading, order):
+    # With all four ways open the first of the order is taken; close it and the next one is, and so on.
+    names = "NSEW"
+    steps = dict(zip(names, [(0, 1), (2, 1), (1, 2), (1, 0)], strict=True))
+    free = np.array([[0, 1, 0], [1, 1, 1], [0, 1, 0]], bool)
+    for direction in order:
+        world = GridWorld.from_free("cross", free)
+        middle = world.state_of[1, 1]
+        assert names[explorer_probs(world, "left")[middle, heading + 1].argmax()] == direction
+        free[steps[direction]] = False
+        if free.sum() < 2:
+            break
+
+
+def test_always_left_walks_round_a_tree():
+    # A wall follower in a world without loops passes every cell and comes back: 2 (cells - 1) moves.
+    plan = [[0, 0, 0, 0, 0], [0, 1, 1, 1, 0], [0, 1, 0, 1, 0], [0, 1, 0, 0, 0], [0, 0, 0, 0, 0]]
+    world = GridWorld.from_free("tree", np.array(plan, bool))
+    left = explorer_probs(world, "left")
+    state, heading, seen = int(world.state_of[3, 1]), NORTH, set()
+    for _ in range(2 * (world.n_states - 1)):
+        action = int(left[state, heading + 1].argmax())
+        state, heading = int(world.neighbour[state, action]), action
+        seen.add(state)
+    assert seen == set(range(world.n_states))
+    assert state == world.state_of[3, 1]
+
+
+def test_the_bug_goes_where_it_gets_nearest():
+    open_floor = GridWorld.from_free("floor", np.ones((5, 5), bool))
+    goal = int(open_floor.state_of[0, 4])
+    bug = explorer_probs(open_floor, "bug", goal)[:, 0]
+    # From (2, 0), two rows and four columns away: east gains 16 - 9 = 7 of the square, north 4 - 1 = 3.
+    assert bug[open_floor.state_of[2, 0]].tolist() == [0, 0, 1, 0]
+    assert bug[open_floor.state_of[3, 1]].tolist() == [0.5, 0, 0.5, 0]  # as far in rows as in columns
+    assert bug[open_floor.state_of[0, 0]].tolist() == [0, 0, 1, 0]
+
+
+def test_the_bug_takes_the_second_best_way_where_the_best_is_blocked_and_else_pushes_at_the_wall():
+    free = np.ones((5, 5), bool)
+    free[2, 1] = False
+    world = GridWorld.from_free("floor", free)
+    bug = explorer_probs(world, "bug", int(world.state_of[0, 4]))[:, 0]
+    assert bug[world.state_of[2, 0]].tolist() == [1, 0, 0, 0]
+    free[1, 0] = False
+    walled = GridWorld.from_free("floor", free)
+    stuck = explorer_probs(walled, "bug", int(walled.state_of[0, 4]))[:, 0]
+    assert stuck[walled.state_of[2, 0]].tolist() == [0, 0, 1, 0]
+
+
+def test_each_broken_rule_is_one_clear_line():
+    with pytest.raises(NotFoundError, match="explorer must be one of random, avoid, left, bug, got 'fly'"):
+        explorer_probs(CROSS, "fly")
+    for explorer, goal in (("bug", None), ("left", 2)):
+        with pytest.raises(InputError, match="goal must be given for the bug and for no other"):
+            explorer_probs(CROSS, explorer, goal)

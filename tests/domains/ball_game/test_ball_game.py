@@ -1,0 +1,389 @@
+"""The ball game by hand, against naive twins, and its simulated player."""
+
+import heapq
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.domains.ball_game.ball_game import (
+    MOVES,
+    SIDE,
+    LossScale,
+    ball_game,
+    check_place,
+    slide,
+    step,
+    travel,
+)
+from lifelore.domains.ball_game.layouts import (
+    Layout,
+    blobs,
+    layout_names,
+    layout_of,
+    obstacle_points,
+    open_field,
+    s_maze,
+)
+from lifelore.domains.ball_game.paths import CELL, MARGIN, cost_to_go
+from lifelore.domains.ball_game.simulated_player import (
+    STOPPED,
+    advance,
+    choose_heading,
+    new_balls,
+    play,
+    random_states,
+    restart,
+)
+
+GAME = ball_game()
+FIELD = GAME.field
+STAYS = ball_game(blocked="stays").field
+NORTH, SOUTH, EAST, WEST = range(4)
+NO_SLIP, NO_PUSH = 0.999, (0.0, 0.0)
+
+
+def places(kind):
+    """Free places of a ball, some of them touching almost."""
+    free = np.argwhere(FIELD.clearance > FIELD.radius[kind])
+    return st.integers(0, len(free) - 1).map(lambda i: (int(free[i, 1]), int(free[i, 0])))
+
+
+def test_the_s_maze_by_hand():
+    layout = s_maze(160)
+    # Walls: under the first corridor from the left, open for 160 at the right; then the other way round.
+    assert layout.polygons[0] == ((0, 160), (840, 160), (840, 420), (0, 420))
+    assert layout.polygons[1] == ((160, 580), (1000, 580), (1000, 840), (160, 840))
+    assert layout.start == (80, 80)
+    assert layout.goal == (840, 840, 1000, 1000)
+    clearance = FIELD.clearance
+    assert clearance[80, 80] == 80  # mid corridor: the border at y = 0 and the wall at y = 160
+    assert clearance[160, 500] == 0
+    assert clearance[500, 500] == 80
+    assert clearance[0, 500] == clearance[500, SIDE] == 0
+    assert clearance[120, 869] == pytest.approx(50)  # from the corner (839, 160): a triangle of 30, 40, 50
+
+
+def test_obstacle_points_of_a_triangle_by_hand():
+    triangle = Layout("triangle", (((10, 10), (14, 10), (10, 14)),), (500, 500), (900, 900, 1000, 1000))
+    rows, columns = np.nonzero(obstacle_points(triangle)[1:-1, 1:-1])
+    # Left of the hypotenuse x + y = 24, which does not belong to it: four places, three, two and one.
+    expected = [(y, x) for y in range(10, 14) for x in range(10, 24 - y)]
+    assert list(zip((rows + 1).tolist(), (columns + 1).tolist(), strict=True)) == expected
+    assert len(expected) == 10
+
+
+def test_layouts_by_name():
+    for name in layout_names():
+        assert layout_of(name).name == name
+    assert layout_of("s-maze 130") == s_maze(130)
+    assert layout_of("blobs 3") == blobs(3) != blobs(4)
+    with pytest.raises(NotFoundError, match="unknown layout 'moon'; there are s-maze 160"):
+        layout_of("moon")
+    with pytest.raises(InputError, match=r"width must lie in \[20, 300\], got 400"):
+        s_maze(400)
+
+
+@pytest.mark.parametrize("name", layout_names())
+def test_every_layout_can_be_played_by_every_size(name):
+    game = ball_game(name)
+    for kind in range(game.n_types):
+        check_place(game, kind, *game.layout.start)
+        x, y = (place // CELL for place in game.layout.start)
+        assert np.isfinite(game.field.cost[kind, y, x])
+
+
+def test_games_that_cannot_be_played():
+    with pytest.raises(InputError, match="size 60 and radius 60 cannot get from the start to the goal"):
+        ball_game("s-maze 110", 1.0)
+    with pytest.raises(InputError, match=r"radius_share must lie in \(0, 1\], got 2"):
+        ball_game(radius_share=2.0)
+    with pytest.raises(InputError, match="sizes and speeds must be whole numbers"):
+        ball_game(sizes=(0,))
+    with pytest.raises(InputError, match="care must be finite"):
+        ball_game(care=-1.0)
+    with pytest.raises(InputError, match="blocked must be one of slides, stays, got 'bounces'"):
+        ball_game(blocked="bounces")
+    with pytest.raises(InputError, match="place must be free for a ball of size 60"):
+        check_place(GAME, 5, 20, 20)
+
+
+def naive_slide(clearance, radius, x, y, dx, dy, distance):
+    for moved in range(distance):
+        if not clearance[y + dy * (moved + 1), x + dx * (moved + 1)] > radius:
+            return moved
+    return distance
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=150)
+def test_slide_goes_place_by_place(data):
+    kind = data.draw(st.integers(0, 5))
+    x, y = data.draw(places(kind))
+    dx, dy = MOVES[data.draw(st.integers(0, 3))].tolist()
+    distance = data.draw(st.integers(0, 90))
+    arguments = (FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, distance)
+    assert slide(*arguments) == naive_slide(*arguments)
+
+
+def test_moves_by_hand():
+    # Size 20, radius 10, in mid corridor; no slip, no push (v = 0 makes the normal number 0).
+    assert step(FIELD, 3, 500, 80, EAST, 50, 4.0, NO_SLIP, *NO_PUSH) == (550, 80, False, False)
+    assert step(FIELD, 3, 500, 80, NORTH, 50, 4.0, NO_SLIP, *NO_PUSH) == (500, 30, False, False)
+    # To the border there are 80 units, less the radius and the place that would touch: 69.
+    assert step(FIELD, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, *NO_PUSH) == (500, 11, True, False)
+    # A slip (20 / 200 = 10 %): u in thirds of it tells the other way; north slips to south, east, west.
+    for u, expected in ((0.01, (500, 110)), (0.05, (530, 80)), (0.09, (470, 80))):
+        assert step(FIELD, 3, 500, 80, NORTH, 30, 4.0, u, *NO_PUSH)[:2] == expected
+    # A push of one deviation: sqrt(-2 log(1 - v)) = 1 at v = 1 - e^-½; 4 units across the way of the ball.
+    one = 1 - np.exp(-0.5)
+    assert step(FIELD, 3, 500, 80, EAST, 30, 4.0, NO_SLIP, one, 0.0)[:2] == (530, 84)
+    assert step(FIELD, 3, 500, 80, EAST, 30, 4.0, NO_SLIP, one, 0.5)[:2] == (530, 76)
+    # Pushed against a wall it stops there, and that is a collision too.
+    assert step(FIELD, 3, 500, 12, EAST, 30, 4.0, NO_SLIP, one, 0.5)[:3] == (530, 11, True)
+
+
+def test_a_blocked_ball_that_stays_by_hand():
+    # As above: 69 units of room to the north. Of a move of 70 nothing is made, and it is a collision all the same.
+    assert step(STAYS, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, *NO_PUSH) == (500, 80, True, False)
+    assert step(STAYS, 3, 500, 80, NORTH, 69, 4.0, NO_SLIP, *NO_PUSH) == (500, 11, False, False)
+    # A blocked push is not made, and the move before it is: pushed by 4 units there, with 1 unit of room.
+    one = 1 - np.exp(-0.5)
+    assert step(STAYS, 3, 500, 12, EAST, 30, 4.0, NO_SLIP, one, 0.5) == (530, 12, True, False)
+    # A blocked move leaves the push: 4 units to the east, across the way to the north.
+    assert step(STAYS, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, one, 0.5) == (504, 80, True, False)
+    # A slip to the east, where the border at x = 1000 stops it: 1000 less the radius, less 1.
+    assert step(STAYS, 3, 950, 80, NORTH, 50, 4.0, 0.05, *NO_PUSH) == (950, 80, True, False)
+    assert step(FIELD, 3, 950, 80, NORTH, 50, 4.0, 0.05, *NO_PUSH) == (989, 80, True, False)
+    assert step(STAYS, 5, 830, 960, SOUTH, 30, 0.0, NO_SLIP, *NO_PUSH) == (830, 960, True, False)
+    # The goal comes before the border that the move would touch: the game is over there.
+    below = Layout("below", (), (100, 100), (0, 960, 1000, 1000))
+    for blocked in ("slides", "stays"):
+        field = ball_game(below, blocked=blocked).field
+        assert step(field, 3, 500, 940, SOUTH, 70, 0.0, NO_SLIP, *NO_PUSH) == (500, 989, True, True)
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=150)
+def test_a_ball_that_stays_makes_whole_moves_or_none(data):
+    kind = data.draw(st.integers(0, 5))
+    x, y = data.draw(places(kind))
+    dx, dy = MOVES[data.draw(st.integers(0, 3))].tolist()
+    distance = data.draw(st.integers(0, 90))
+    moved = naive_slide(FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, distance)
+    in_goal = x + dx * moved >= 840 and y + dy * moved >= 840
+    made = moved if moved == distance or in_goal or (x >= 840 and y >= 840) else 0
+    expected = (x + dx * made, y + dy * made, moved < distance)
+    assert travel(STAYS, STAYS.radius[kind], x, y, dx, dy, distance) == expected
+
+
+def test_the_goal_is_reached_by_passing_over_its_edge():
+    assert step(FIELD, 0, 800, 920, EAST, 40, 0.0, NO_SLIP, *NO_PUSH) == (840, 920, False, True)
+    assert not step(FIELD, 0, 800, 920, EAST, 30, 0.0, NO_SLIP, *NO_PUSH)[3]
+    bar = Layout("bar", (), (100, 100), (200, 0, 210, 1000))
+    assert step(ball_game(bar).field, 0, 180, 100, EAST, 70, 0.0, NO_SLIP, *NO_PUSH)[3]
+
+
+@given(st.data())
+@settings(deadline=None, max_examples=100)
+def test_no_step_ends_in_an_obstacle_and_a_free_one_is_no_collision(data):
+    kind = data.draw(st.integers(0, 5))
+    x, y = data.draw(places(kind))
+    uniform = st.floats(0, 1, exclude_max=True)
+    u, v, w = (data.draw(uniform) for _ in range(3))
+    heading, speed, sigma = (data.draw(s) for s in (st.integers(0, 3), st.integers(30, 70), st.floats(0.3, 8)))
+    x1, y1, hit, _ = step(FIELD, kind, x, y, heading, speed, sigma, u, v, w)
+    assert FIELD.clearance[y1, x1] > FIELD.radius[kind]
+    if hit:  # something is right beside it
+        around = FIELD.clearance[y1 - 1 : y1 + 2, x1 - 1 : x1 + 2]
+        assert around.min() <= FIELD.radius[kind] or abs(x1 - x) + abs(y1 - y) > 0
+    else:
+        assert speed in (abs(x1 - x), abs(y1 - y))
+
+
+def naive_costs(clearance, radius, goal, care):
+    """Dijkstra over cells with a heap."""
+    n = SIDE // CELL + 1
+    half = CELL // 2
+    room = np.full((n, n), -1.0)
+    for i in range(n):
+        for j in range(n):
+            block = clearance[
+                max(0, CELL * i - half) : CELL * i + half + 1, max(0, CELL * j - half) : CELL * j + half + 1
+            ]
+            room[i, j] = block.max() - radius
+    weight = 1 + care * np.clip(1 - room / MARGIN, 0, 1)
+    cost = np.full((n, n), np.inf)
+    left, top, right, bottom = goal
+    queue = []
+    for i in range(n):
+        for j in range(n):
+            if room[i, j] > 0 and left <= CELL * j <= right and top <= CELL * i <= bottom:
+                cost[i, j] = 0
+                queue.append((0.0, i, j))
+    heapq.heapify(queue)
+    while queue:
+        done, i, j = heapq.heappop(queue)
+        if done > cost[i, j]:
+            continue
+        for di in (-1, 0, 1):
+            for dj in (-1, 0, 1):
+                a, b = i + di, j + dj
+                if (di or dj) and 0 <= a < n and 0 <= b < n and room[a, b] > 0:
+                    through = done + CELL * np.hypot(di, dj) * (weight[i, j] + weight[a, b]) / 2
+                    if through < cost[a, b] - 1e-9:
+                        cost[a, b] = through
+                        heapq.heappush(queue, (through, a, b))
+    return cost
+
+
+@pytest.mark.parametrize(("name", "radius", "care"), [("blobs", 20.0, 3.0), ("s-maze 130", 30.0, 0.0)])
+def test_costs_equal_a_plain_dijkstra(name, radius, care):
+    game = ball_game(name)
+    found = cost_to_go(game.field.clearance, radius, game.layout.goal, care)
+    np.testing.assert_allclose(found, naive_costs(game.field.clearance, radius, game.layout.goal, care), rtol=1e-5)
+
+
+def test_costs_in_the_open_by_hand():
+    game = ball_game(open_field())
+    # Without care: from x = 540 it is 300 straight to the goal at x = 840; on the border no ball fits.
+    cost = cost_to_go(game.field.clearance, 10.0, game.layout.goal, 0.0)
+    assert cost[900 // CELL, 540 // CELL] == pytest.approx(300)
+    assert np.isinf(cost[0, 0])
+    # Eight neighbours: 300 across and 300 down is 300 √2 on the diagonal.
+    assert cost[540 // CELL, 540 // CELL] == pytest.approx(300 * np.sqrt(2))
+    # With room of 70 everywhere on the way, care changes nothing.
+    careful = cost_to_go(game.field.clearance, 10.0, game.layout.goal, 3.0)
+    assert careful[540 // CELL, 540 // CELL] == pytest.approx(300 * np.sqrt(2), rel=1e-6)
+
+
+def test_she_goes_along_the_corridor_and_never_aims_through_a_wall():
+    assert choose_heading(FIELD, 3, 300, 80, 50) == EAST
+    assert choose_heading(FIELD, 3, 920, 300, 50) == SOUTH
+    assert choose_heading(FIELD, 3, 500, 500, 50) == WEST
+    # Above a wall of 20 units, with the goal right behind it: a move of 70 would leap over, and the ball cannot.
+    thin = Layout("thin", (((0, 500), (900, 500), (900, 520), (0, 520)),), (500, 100), (450, 600, 550, 700))
+    field = ball_game(thin, care=0.0).field
+    assert choose_heading(field, 0, 500, 480, 70) == EAST
+    assert choose_heading(field, 0, 800, 480, 70) == EAST
+
+
+@pytest.mark.parametrize("field", [FIELD, STAYS], ids=["slides", "stays"])
+@pytest.mark.parametrize(("speed", "kind"), [(30, 0), (50, 3), (70, 5)])
+def test_of_her_choices_none_is_cheaper(speed, kind, field):
+    free = np.argwhere(FIELD.clearance > FIELD.radius[kind])
+    for y, x in free[:: len(free) // 200]:
+        worth = []
+        for dx, dy in MOVES.tolist():
+            moved = naive_slide(FIELD.clearance, FIELD.radius[kind], x, y, dx, dy, speed)
+            x1, y1 = x + dx * moved, y + dy * moved
+            in_goal = x1 >= 840 and y1 >= 840
+            if field.stays and moved < speed:
+                x1, y1 = x, y
+            cost = FIELD.cost[kind, (y1 + 2) // CELL, (x1 + 2) // CELL] + STOPPED * (moved < speed)
+            worth.append(-1.0 if in_goal else cost)
+        assert choose_heading(field, kind, x, y, speed) == int(np.argmin(worth))
+
+
+def test_everybody_reaches_the_goal_and_small_balls_hardly_collide():
+    generator = np.random.default_rng(0)
+    kinds = np.arange(6).repeat(20)
+    steps, hits = play(GAME, kinds, 2, generator)
+    assert (steps < 400).mean() > 0.98
+    # Along the middles it is 840 + 420 + 840 + 420 + 760 = 3,280 units: 66 steps of 50, less what corners save.
+    assert 50 <= steps[kinds == 0].mean() <= 75
+    assert hits[kinds == 0].mean() < 2 < hits[kinds == 5].mean()
+
+
+def test_many_players_move_as_one_would():
+    generator = np.random.default_rng(3)
+    kinds = np.array([0, 3, 5, 2])
+    random = random_states(generator, 4)
+    together = new_balls(GAME, kinds, [0.3, 2.0, 5.0, 8.0], random)
+    speed = np.array([0, 2, 4, 1])
+    heading, before = np.empty(4, np.int64), np.empty((4, 2), np.int64)
+    for _ in range(30):
+        advance(FIELD, together, speed, 0, 400, heading, before)
+    for i in range(4):
+        alone = new_balls(GAME, kinds[i : i + 1], together.sigma[i], random[i : i + 1])
+        for _ in range(30):
+            advance(FIELD, alone, speed[i : i + 1], 0, 400, heading, before)
+        assert (alone.x[0], alone.y[0]) == (together.x[i], together.y[i])
+        assert alone.hits[0] == together.hits[i]
+
+
+def test_an_episode_is_cut_and_started_anew():
+    balls = new_balls(GAME, [0, 0], 1.0, random_states(np.random.default_rng(0), 2))
+    heading, before = np.empty(2, np.int64), np.empty((2, 2), np.int64)
+    for _ in range(3):
+        advance(FIELD, balls, np.array([0, 0]), 0, 2, heading, before)
+    assert not balls.playing.any()
+    assert balls.steps.tolist() == [2, 2]
+    assert heading.tolist() == [-1, -1]
+    restart(GAME, balls, np.array([1]), 2.0, random_states(np.random.default_rng(1), 1))
+    assert balls.playing.tolist() == [False, True]
+    assert (balls.x[1], balls.y[1], balls.steps[1], balls.sigma[1]) == (80, 80, 0, 2.0)
+
+
+def test_she_adapts_to_a_new_speed_after_the_lag():
+    balls = new_balls(GAME, [0], 0.3, random_states(np.random.default_rng(0), 1))
+    heading, before = np.empty(1, np.int64), np.empty((1, 2), np.int64)
+    adapted = []
+    for speed in (2, 2, 4, 4, 4, 1, 4):
+        advance(FIELD, balls, np.array([speed]), 2, 400, heading, before)
+        adapted.append(int(balls.adapted[0]))
+    # The first speed is known at once; 4 is reckoned with from its third step; 1 comes and goes unnoticed.
+    assert adapted == [2, 2, 2, 2, 4, 4, 4]
+
+
+def test_loss_by_hand():
+    assert LossScale().loss([100, 400], [5, 20]).tolist() == [0.5, 2.0]
+    scale = LossScale.from_episodes([[50, 80]], [[2, 4]])
+    assert (scale.time, scale.hits) == (80, 4)
+    assert LossScale.from_episodes([50], [0]).hits == 1
+    with pytest.raises(InputError, match="time and hits must be positive"):
+        LossScale(0.0, 1.0)
+
+
+def test_players_that_cannot_be():
+    random = random_states(np.random.default_rng(0), 1)
+    for kinds in ([6], [-1], []):
+        with pytest.raises(InputError, match=r"kinds must be numbers in \[0, 6\)"):
+            new_balls(GAME, kinds, 1.0, random)
+
+
+PLAIN = """
+import numpy as np
+from lifelore.domains.ball_game.ball_game import ball_game
+from lifelore.domains.ball_game.moves import read_moves
+from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
+for blocked in ("slides", "stays"):
+    field = ball_game(blocked=blocked).field
+    random = random_states(np.random.default_rng(1), 6)
+    balls = new_balls(ball_game(blocked=blocked), range(6), 6.0, random)
+    heading, before, signal = np.empty(6, np.int64), np.empty((6, 2), np.int64), np.empty(6, np.int64)
+    for _ in range(60):
+        speed = np.array([0, 1, 2, 3, 4, 4])
+        advance(field, balls, speed, 2, 400, heading, before)
+        read_moves(field, before, heading, speed, balls.x, balls.y, signal)
+        print(heading.tolist(), balls.x.tolist(), balls.y.tolist(), balls.hits.tolist(), signal.tolist())
+"""
+
+
+def test_compiled_and_plain_python_agree():
+    def said(disabled):
+        command = [sys.executable, "-W", "error", "-c", PLAIN]
+        environment = os.environ | {"NUMBA_DISABLE_JIT": disabled}
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        return done.stdout.splitlines()
+
+    compiled = said("0")
+    assert len(compiled) == 120
+    assert compiled[:60] != compiled[60:]
+    assert compiled == said("1")

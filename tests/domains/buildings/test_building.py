@@ -1,0 +1,352 @@
+"""Buildings from maps: small floors worked by hand, and a twin that follows the definition pixel by pixel."""
+
+import os
+from collections import deque
+from math import floor
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.domains.buildings import building
+from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap, read_occupancy_map
+
+NORTH, SOUTH, EAST, WEST = range(4)
+STATE_OF = {".": FREE, "#": OCCUPIED, "?": UNKNOWN}
+
+
+def floor_plan(text: str, resolution: float = 0.1, origin=(0.0, 0.0, 0.0)) -> OccupancyMap:
+    rows = [[STATE_OF[mark] for mark in line.strip()] for line in text.split()]
+    return OccupancyMap(np.array(rows, np.uint8), resolution, origin)
+
+
+def test_a_wall_one_pixel_thin_is_not_walked_through():
+    # Cells of 3 pixels; the wall lies beside the second cell's centre, which sampling would find free.
+    plan = floor_plan("""
+        ...#.....
+        ...#.....
+        ...#.....
+    """)
+    world = building_from_map(plan, cell=0.3, robot_radius=0)
+    assert world.cells.tolist() == [[0, 1], [0, 2]]
+    assert world.neighbour.tolist() == [[-1, -1, 1, -1], [-1, -1, -1, 0]]
+
+
+def test_a_wall_on_the_far_side_of_the_border_refuses_the_move_too():
+    plan = floor_plan("""
+        ......
+        ..#...
+        ..#...
+        ......
+        ......
+        ......
+    """)
+    world = building_from_map(plan, cell=0.3, robot_radius=0)
+    # Top left and top right touch in the first row alone; without it they would not.
+    assert world.neighbour[0].tolist() == [-1, 2, 1, -1]
+    plan.state[0, 2] = OCCUPIED
+    world = building_from_map(plan, cell=0.3, robot_radius=0)
+    assert world.neighbour.tolist() == [[-1, 2, -1, -1], [-1, 3, -1, -1], [0, -1, 3, -1], [1, -1, -1, 2]]
+
+
+def test_a_door_one_pixel_off_the_centre_is_found():
+    plan = floor_plan("""
+        .....#....
+        ..........
+        .....#....
+        .....#....
+        .....#....
+    """)
+    world = building_from_map(plan, cell=0.5, robot_radius=0)
+    assert world.neighbour.tolist() == [[-1, -1, 1, -1], [-1, -1, -1, 0]]
+
+
+def test_a_cell_of_two_pieces_is_the_larger_one():
+    # The middle cell's left column is cut off from its right part: it is reached from the right only.
+    plan = floor_plan("""
+        .....#.........
+        .....#.........
+        ......#........
+        ......#........
+        ......#........
+    """)
+    world = building_from_map(plan, cell=0.5, robot_radius=0)
+    assert world.cells.tolist() == [[0, 1], [0, 2]]
+    assert world.neighbour.tolist() == [[-1, -1, 1, -1], [-1, -1, -1, 0]]
+
+
+def test_of_equal_pieces_the_first_in_reading_order_is_taken():
+    # The left cell has two pieces of three pixels; only the upper one counts, so only the lower plan joins.
+    parted = """
+        ...#..
+        ###...
+        ......
+    """
+    joined = """
+        ......
+        ###...
+        ...#..
+    """
+    with pytest.raises(InputError, match="only one cell"):
+        building_from_map(floor_plan(parted), cell=0.3, robot_radius=0)
+    assert building_from_map(floor_plan(joined), cell=0.3, robot_radius=0).n_states == 2
+
+
+def test_diagonal_pixels_do_not_touch():
+    with pytest.raises(InputError, match="only one cell"):  # across cells
+        building_from_map(floor_plan(".#\n#."), cell=0.1, robot_radius=0)
+    with pytest.raises(InputError, match="only one cell"):  # within the left cell
+        building_from_map(floor_plan(".#..\n#..."), cell=0.2, robot_radius=0)
+
+
+def test_cells_are_counted_from_the_lower_left_corner():
+    # Four rows of pixels, cells of three: the upper cell row holds the single top row of pixels.
+    plan = floor_plan("""
+        ...
+        ...
+        ...
+        ..#
+    """)
+    world = building_from_map(plan, cell=0.3, robot_radius=0)
+    assert world.shape == (2, 1)
+    assert np.allclose(world.positions(np.array([0, 1])), [[0.15, 0.45], [0.15, 0.15]])
+
+
+def test_positions_turn_with_the_origin():
+    plan = floor_plan("....\n....", 0.5, origin=(10.0, 20.0, np.pi / 2))
+    world = building_from_map(plan, cell=0.5, robot_radius=0)
+    # A quarter turn: x of the map points to the world's y. Lower left cell centre (0.25, 0.25) in the map.
+    lower_left, upper_right = world.state_of[1, 0], world.state_of[0, 3]
+    assert np.allclose(world.positions(np.array([lower_left])), [[10 - 0.25, 20 + 0.25]])
+    assert np.allclose(world.positions(np.array([upper_right])), [[10 - 0.75, 20 + 1.75]])
+
+
+def test_a_cell_need_not_be_a_multiple_of_a_pixel():
+    # Cells of 0.25 m over pixels of 0.1 m: centres 0.05 0.15 | 0.25 0.35 0.45 | 0.55 0.65 | …; 0.25 goes up.
+    plan = floor_plan(".." + "#.." + "..", 0.1)
+    world = building_from_map(plan, cell=0.25, robot_radius=0)
+    assert world.shape == (1, 3)
+    assert world.cells.tolist() == [[0, 1], [0, 2]]
+
+
+def test_obstacles_grow_by_the_radius_and_unknown_does_not():
+    # The obstacle blocks three pixels on each side (0.3 m, centre to centre); the unknown blocks itself.
+    for plan, cells in (
+        ("......#......?..", [0, 1, 2]),
+        ("......#.........", [10, 11, 12, 13, 14, 15]),
+    ):
+        assert building_from_map(floor_plan(plan), 0.1, 0.3).cells[:, 1].tolist() == cells
+
+
+def test_the_percept_sees_a_thin_wall():
+    plan = floor_plan("""
+        ....
+        ....
+        .#..
+        .#..
+    """)
+    world = building_from_map(plan, cell=0.2, robot_radius=0)
+    lower_left = world.state_of[1, 0]
+    assert world.percepts[lower_left] & 0b1111 == 0b0001  # north alone; the cell to the east exists
+
+
+def test_min_free_leaves_small_pieces_out():
+    plan = floor_plan("""
+        ....##
+        ....#.
+    """)
+    assert building_from_map(plan, cell=0.2, robot_radius=0).n_states == 2
+    plan = floor_plan("""
+        .....#
+        ....##
+    """)
+    assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0).n_states == 3
+    assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0.25).n_states == 3
+    assert building_from_map(plan, cell=0.2, robot_radius=0, min_free=0.26).n_states == 2
+
+
+def test_a_beam_through_a_window_is_no_place_for_a_robot():
+    # One free pixel between unknown ones: narrower than the robot, whose disc would reach into the unknown.
+    plan = floor_plan("""
+        ......??????
+        ............
+        ......??????
+    """)
+    assert building_from_map(plan, cell=0.3, robot_radius=0, min_free=0).n_states == 4
+    assert building_from_map(plan, cell=0.1, robot_radius=0.1).cells[:, 1].max() == 5
+
+
+def test_specks_of_unknown_are_not_free_and_do_not_grow():
+    plan = floor_plan("""
+        .......
+        ...?...
+        .......
+        .??....
+        .??....
+    """)
+    world = building_from_map(plan, cell=0.1, robot_radius=0.1)
+    free = world.state_of >= 0
+    assert not free[1, 3]
+    assert free[0, 3]  # beside a speck of 0.01 m²
+    assert not free[3, 3]  # beside an island of 0.04 m²
+
+
+def test_what_makes_the_world_is_in_its_fingerprint():
+    plan = floor_plan("..........\n" * 10)
+    prints = {building_from_map(plan, cell, radius).fingerprint for cell in (0.2, 0.25) for radius in (0.1, 0.2)}
+    assert len(prints) == 4
+    assert building_from_map(plan, 0.2, 0.1).fingerprint in prints
+
+
+def unknown_specks(state, resolution: float) -> set:
+    """Unknown pixels whose island, corners included, covers at most 0.01 m²."""
+    left = {tuple(at) for at in np.argwhere(state == UNKNOWN).tolist()}
+    specks = set()
+    while left:
+        island = [left.pop()]
+        for r, c in island:
+            near = {(r + i, c + j) for i in (-1, 0, 1) for j in (-1, 0, 1)} & left
+            left -= near
+            island += near
+        if len(island) * resolution**2 <= 0.01 + 1e-9:
+            specks |= set(island)
+    return specks
+
+
+def build_slowly(occupancy: OccupancyMap, cell: float, radius: float):
+    """The definition, pixel by pixel: cells and neighbours."""
+    state, resolution = occupancy.state, occupancy.resolution
+    rows, columns = state.shape
+    specks = unknown_specks(state, resolution)
+    obstacles = np.array([at for at in np.argwhere(state != FREE).tolist() if tuple(at) not in specks])
+
+    def is_free(r, c):
+        if not (0 <= r < rows and 0 <= c < columns and state[r, c] == FREE):
+            return False
+        if not len(obstacles):
+            return True
+        distance = np.sqrt(((obstacles - (r, c)) ** 2).sum(axis=1)) * resolution
+        return not (distance <= radius + 1e-9).any()
+
+    free = {(r, c) for r in range(rows) for c in range(columns) if is_free(r, c)}
+    last_row = floor((rows - 0.5) * resolution / cell + 1e-9)
+
+    def cell_of(pixel):
+        from_bottom = floor((rows - pixel[0] - 0.5) * resolution / cell + 1e-9)
+        return last_row - from_bottom, floor((pixel[1] + 0.5) * resolution / cell + 1e-9)
+
+    def beside(pixel):
+        return [(pixel[0] + dr, pixel[1] + dc) for dr, dc in ((-1, 0), (1, 0), (0, 1), (0, -1))]
+
+    pieces = {}
+    for piece in regions(free, lambda p: [q for q in beside(p) if q in free and cell_of(q) == cell_of(p)]):
+        key = cell_of(piece[0])
+        if len(piece) > len(pieces.get(key, ())):
+            pieces[key] = piece
+    owner = {pixel: key for key, piece in pieces.items() for pixel in piece}
+    joined = {
+        key: {owner[q] for p in piece for q in beside(p) if q in owner} - {key} for key, piece in pieces.items()
+    }
+    largest = max(regions(pieces, lambda key: joined[key]), key=len, default=[])
+    order = {key: number for number, key in enumerate(sorted(largest))}
+    return sorted(largest), [
+        [order[n] if n in joined[key] else -1 for n in beside(key)] for key in sorted(largest)
+    ]
+
+
+def regions(places, beside):
+    """Connected regions in reading order of their first place."""
+    seen = set()
+    for start in sorted(places):
+        if start in seen:
+            continue
+        region, queue = [], deque([start])
+        seen.add(start)
+        while queue:
+            place = queue.popleft()
+            region.append(place)
+            for other in beside(place):
+                if other not in seen:
+                    seen.add(other)
+                    queue.append(other)
+        yield sorted(region)
+
+
+@pytest.mark.parametrize("seed", range(60))
+def test_equals_the_twin(seed):
+    rng = np.random.default_rng(seed)
+    shape = rng.integers(4, 22, size=2)
+    state = rng.choice([FREE, OCCUPIED, UNKNOWN], size=shape, p=[0.86, 0.09, 0.05]).astype(np.uint8)
+    occupancy = OccupancyMap(state, float(rng.choice([0.05, 0.1, 0.3])))
+    cell = occupancy.resolution * float(rng.choice([1.0, 2.0, 2.5, 3.0, 3.7]))
+    radius = occupancy.resolution * float(rng.choice([0.0, 1.0, 1.5]))
+    cells, neighbour = build_slowly(occupancy, cell, radius)
+    if len(cells) < 2:
+        with pytest.raises(InputError):
+            building_from_map(occupancy, cell, radius, min_free=0)
+        return
+    world = building_from_map(occupancy, cell, radius, min_free=0)
+    assert world.cells.tolist() == [list(place) for place in cells]
+    assert world.neighbour.tolist() == neighbour
+
+
+def test_moves_go_both_ways_and_the_building_is_connected():
+    rng = np.random.default_rng(5)
+    state = rng.choice([FREE, OCCUPIED], size=(80, 90), p=[0.9, 0.1]).astype(np.uint8)
+    world = building_from_map(OccupancyMap(state, 0.1), 0.3, 0.0)
+    for move, back in ((NORTH, SOUTH), (EAST, WEST)):
+        here = np.flatnonzero(world.neighbour[:, move] >= 0)
+        there = world.neighbour[here, move]
+        assert np.array_equal(world.neighbour[there, back], here)
+    neighbours = world.neighbour
+    assert len(list(regions(range(world.n_states), lambda s: [n for n in neighbours[s].tolist() if n >= 0]))) == 1
+
+
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        ({"cell": float("nan")}, "cell must lie in"),
+        ({"cell": -1.0}, "cell must lie in"),
+        ({"cell": 0.0}, "cell must lie in"),
+        ({"cell": 1e9}, "cell must lie in"),
+        ({"cell": 0.09}, "cell must be at least a pixel"),
+        ({"cell": 900.0}, "only one cell"),
+        ({"robot_radius": float("nan")}, "robot_radius must lie in"),
+        ({"robot_radius": -0.1}, "robot_radius must lie in"),
+        ({"robot_radius": 1e6}, "robot_radius must lie in"),
+        ({"robot_radius": 99.0}, "no free cell is left for robot_radius"),
+        ({"min_free": -0.1}, "min_free must be a share"),
+        ({"min_free": float("nan")}, "min_free must be a share"),
+        ({"discount": 1.0}, "discount must lie in"),
+        ({"goal_reward": float("inf")}, "goal_reward must be a finite number"),
+    ],
+)
+def test_each_broken_rule_is_one_clear_line(changes, words):
+    plan = floor_plan("....#\n.....\n.....")
+    with pytest.raises(InputError) as caught:
+        building_from_map(plan, **({"cell": 0.2, "robot_radius": 0.0} | changes))
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
+def test_nothing_free_and_too_many_states(monkeypatch):
+    with pytest.raises(InputError, match="no free cell"):
+        building_from_map(floor_plan("??\n??"), 0.1, 0.0)
+    monkeypatch.setattr(building, "MAX_STATES", 3)
+    with pytest.raises(InputError, match="at most 3 cells are supported, got 4"):
+        building_from_map(floor_plan("..\n.."), 0.1, 0.0)
+
+
+@pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
+def test_the_willow_building():
+    willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")
+    world = building_from_map(willow)
+    assert (world.n_states, len(np.unique(world.percepts))) == (4461, 177)
+    whole = building_from_map(willow, min_free=0)
+    assert whole.n_states == 5360
+    # Leaving slivers out loses no square metre of room: what goes is thinner than a quarter of a cell.
+    kept = {tuple(cell) for cell in world.cells.tolist()}
+    assert kept < {tuple(cell) for cell in whole.cells.tolist()}
+    assert building_from_map(willow, cell=1.0).n_states > 1200

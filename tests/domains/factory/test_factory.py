@@ -1,0 +1,234 @@
+"""The factory: by hand, against a robot that keeps sets of what it has done, and solved exactly."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import COLLISION, NOTHING, TERMINAL
+from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, PROCURE, PROCURED, RAW, FactoryRewards
+from lifelore.domains.factory.layout import factory
+from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.domains.grids.grid_world import MOVES
+
+NORTH, SOUTH, EAST, WEST = range(4)
+LINE = """
+########
+#S+12.a#
+###b####
+########
+"""
+"""Cells 0 to 5 from S to a, and 6, the b under the 1."""
+
+
+class Robot:
+    """A factory robot as one would tell it to a child: where it is, and what it has done."""
+
+    def __init__(self, factory, components):
+        self.factory, self.wanted = factory, set(components)
+        self.at = tuple(factory.floor.cells[factory.start].tolist())
+        self.procured, self.assembled = set(), set()
+
+    def act(self, action) -> tuple[float, int]:
+        pay, here = self.factory.rewards, self.factory.floor.state_of[self.at]
+        if action < PROCURE:
+            there = self.at[0] + int(MOVES[action][0]), self.at[1] + int(MOVES[action][1])
+            cell = self.factory.floor.state_of[there]
+            if cell < 0:
+                return pay.collision, COLLISION
+            self.at = there
+            return (pay.express if self.factory.express[cell] else pay.move), NOTHING
+        points = self.factory.procure_at if action == PROCURE else self.factory.assemble_at
+        component = list(points).index(here) if here in points else None
+        if component not in self.wanted:
+            return pay.misuse, NOTHING
+        if action == PROCURE and component not in self.procured:
+            self.procured.add(component)
+            return pay.use, NOTHING
+        if action == ASSEMBLE and component in self.procured - self.assembled:
+            self.assembled.add(component)
+            done = self.assembled == self.wanted
+            return (pay.use + pay.completion, TERMINAL) if done else (pay.use, NOTHING)
+        return pay.misuse, NOTHING
+
+    @property
+    def state(self) -> int:
+        stage = [(c in self.procured) + (c in self.assembled) for c in sorted(self.wanted)]
+        configuration = sum(s * 3**i for i, s in enumerate(stage))
+        return configuration * self.factory.n_cells + int(self.factory.floor.state_of[self.at])
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 10**6), st.integers(1, 9), st.booleans())
+def test_same_as_a_robot_that_keeps_sets(seed, k, modified):
+    random = np.random.default_rng(seed)
+    world = modified_factory(random) if modified else factory()
+    task = world.task(world.draw_components(random, k))
+    robot, step = Robot(world, task.components), getattr(task.domain.step, "py_func", task.domain.step)
+    state, ended = int(task.starts[0]), False
+    assert robot.state == state
+    for t in range(600):
+        if t % 3 == 0:  # now and then to a point, or nothing would ever be assembled
+            component = random.choice(task.components)
+            done = component in robot.procured
+            cell = int((world.assemble_at if done else world.procure_at)[component])
+            robot.at = tuple(world.floor.cells[cell].tolist())
+            state, action = state // world.n_cells * world.n_cells + cell, PROCURE + done
+        else:
+            action = int(random.integers(6))
+        expected = robot.act(action)
+        state, reward, event = step(task.params, int(state), action, 0.5)
+        assert (int(state), (reward, event)) == (robot.state, expected)
+        ended = event & TERMINAL != 0
+        if ended:
+            break
+    assert ended
+    assert task.completed[state]
+
+
+def test_the_printed_rewards_one_by_one():
+    world = factory(LINE)
+    task = world.task([0])
+    story = [
+        (NORTH, -100.0, COLLISION),
+        (ASSEMBLE, -10.0, NOTHING),
+        (PROCURE, -10.0, NOTHING),
+        (EAST, -1.0, NOTHING),  # onto the express route
+        (WEST, -1.0, NOTHING),  # the start lies on it as well
+        (EAST, -1.0, NOTHING),
+        (EAST, -2.0, NOTHING),
+        (PROCURE, 10.0, NOTHING),
+        (PROCURE, -10.0, NOTHING),  # procured already
+        (EAST, -2.0, NOTHING),
+        (PROCURE, -10.0, NOTHING),  # not on the list
+        (EAST, -2.0, NOTHING),
+        (EAST, -2.0, NOTHING),
+        (ASSEMBLE, 110.0, TERMINAL),
+    ]
+    state = int(task.starts[0])
+    for action, reward, event in story:
+        state, *what = task.domain.step(task.params, state, action, 0.0)
+        assert what == [reward, event], (action, what)
+    assert state == 2 * world.n_cells + 5
+    # It is over: whatever one does now ends at once, for nothing.
+    assert [task.domain.step(task.params, state, a, 0.0) for a in range(6)] == [(state, 0.0, TERMINAL)] * 6
+
+
+@pytest.mark.parametrize("discount", [0.5, 0.99])
+def test_one_component_on_a_line_by_hand(discount):
+    task = factory(LINE, discount=discount).task([0])
+    rewards = [-1.0, -2.0, 10.0, -2.0, -2.0, -2.0, 110.0]
+    worth = sum(r * discount**t for t, r in enumerate(rewards))
+    q = task.optimal_q()
+    assert q[task.starts[0], EAST] == pytest.approx(worth, rel=1e-12)
+    assert best_actions(q)[task.starts[0]].tolist() == [a == EAST for a in range(6)]
+    assert not q[task.completed].any()
+
+
+@pytest.mark.parametrize("components", [[4], [0, 8], [1, 3, 5]])
+def test_layer_by_layer_same_as_sweeps_over_everything(components):
+    task = factory().task(components)
+    tables = task.tables()
+    found, swept, plan = task.optimal_q(tables), optimal_q(tables, 0.99), task.plan()
+    assert found == pytest.approx(swept, abs=1e-9)
+    best = best_actions(found)
+    assert np.array_equal(best, best_actions(swept))
+    for configuration in (task.n_configurations - 2, 1, 0):
+        here = slice(configuration * task.factory.n_cells, (configuration + 1) * task.factory.n_cells)
+        assert np.array_equal(plan.q(configuration), found[here])
+        assert np.array_equal(plan.best_actions(configuration), best[here])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_modified_factories_are_solved_the_same_way(seed):
+    world = modified_factory(np.random.default_rng(seed), discount=0.95)
+    task = world.task([0, 4])
+    tables = task.tables()
+    found, swept = task.optimal_q(tables), optimal_q(tables, 0.95)
+    assert found == pytest.approx(swept, abs=1e-9)
+    assert np.array_equal(best_actions(found), best_actions(swept))
+
+
+def test_rows_of_one_configuration_are_those_of_the_whole():
+    task = factory().task([2, 7, 8])
+    whole = task.tables()
+    for configuration in (0, 13, 26):
+        here = slice(configuration * task.factory.n_cells, (configuration + 1) * task.factory.n_cells)
+        part = task.configuration_tables(configuration)
+        for name in ("next_state", "reward", "event"):
+            assert np.array_equal(getattr(part, name), getattr(whole, name)[here])
+        assert np.array_equal(part.outcome_cum, whole.outcome_cum)
+    assert whole.outcome_cum.tolist() == [1.0]
+
+
+def test_nine_components_on_demand():
+    task = factory().task(range(9))
+    # All assembled but two, which are procured: either, then the other, and what follows that is the end.
+    configuration = 3**9 - 1 - 3**0 - 3**8
+    plan = task.plan()
+    values = plan.values(configuration)
+    assert plan.solved.sum() == 3
+    small = task.factory.task([0, 8])
+    assert values == pytest.approx(small.plan().values(1 + 3), abs=1e-12)
+
+
+def test_leaving_out_what_is_not_on_the_list_changes_no_value():
+    """The thesis's state holds all components; one that is not listed may be procured there, for -10."""
+    world = factory(LINE.replace("#S+12.a#", "#S+1..a#").replace("###b####", "###2.b##"))
+    task, both = world.task([0]), world.task([0, 1])
+    n = world.n_cells
+    tables = both.tables()
+    next_state, reward, event = (table.copy() for table in tables[:3])
+    reward[(reward == 110.0) | (reward == 10.0)] = 10.0
+    for s, a in np.ndindex(9 * n, 6):
+        before, after = s // n, next_state[s, a, 0] // n
+        event[s, a] &= 255 - TERMINAL
+        if after - before in (3, 6):  # the other component
+            reward[s, a] = -10.0
+        if after % 3 == ASSEMBLED:
+            reward[s, a], event[s, a] = (0.0, TERMINAL) if before % 3 == ASSEMBLED else (110.0, TERMINAL)
+    full = optimal_q(tables._replace(reward=reward, event=event), 0.99).reshape(3, 3, n, 6)
+    local = task.optimal_q().reshape(3, n, 6)
+    for other in range(3):
+        assert full[other].max(axis=-1) == pytest.approx(local.max(axis=-1), abs=1e-9)
+
+
+def test_stages_and_numbers():
+    task = factory().task([5, 2])
+    assert task.components == (2, 5)
+    assert task.stages.tolist()[:5] == [[RAW, RAW], [PROCURED, RAW], [ASSEMBLED, RAW], [RAW, PROCURED], [1, 1]]
+    assert (task.n_configurations, task.domain.n_states) == (9, 9 * 275)
+    assert task.completed.sum() == 275
+    assert task.completed[-275:].all()
+
+
+def test_random_tasks():
+    world, random = factory(), np.random.default_rng(0)
+    drawn = {world.draw_components(random, 2) for _ in range(1500)}
+    assert len(drawn) == 36  # 9 · 8 / 2; one is missed with probability 36 · (35/36)^1500 < 1e-16
+    assert all(first < second for first, second in drawn)
+    assert world.draw_components(random, 9) == tuple(range(9))
+    for wrong in (0, 10):
+        with pytest.raises(InputError, match=r"k must lie in \[1, 9\]"):
+            world.draw_components(random, wrong)
+
+
+def test_misuse_is_told():
+    world = factory()
+    for wrong in ([], [1, 1], [9], [-1]):
+        with pytest.raises(InputError, match=r"components must be distinct and lie in \[0, 9\)"):
+            world.task(wrong)
+    for wrong in ([], [275], [-1]):
+        with pytest.raises(InputError, match=r"starts must be cells in \[0, 275\)"):
+            world.task([0], starts=wrong)
+    assert world.task([0], starts=[3, 4]).starts.tolist() == [3, 4]
+
+
+def test_rewards_and_layout_are_part_of_the_fingerprint():
+    assert factory().fingerprint == factory().fingerprint
+    others = [factory(rewards=FactoryRewards(completion=90.0)), factory(LINE), factory(discount=0.9)]
+    assert len({world.fingerprint for world in (factory(), *others[:2])}) == 3
+    paid = others[0].task([0])
+    assert paid.tables().reward.max() == 100.0

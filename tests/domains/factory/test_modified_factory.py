@@ -1,0 +1,85 @@
+"""Random layouts keep what the thesis says of them."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lifelore.domains.factory.knowledge import distances
+from lifelore.domains.factory.modified_factory import INNER_WALLS, SIDE, modified_factory
+
+ROWS, COLUMNS = np.indices((SIDE, SIDE))
+BETWEEN = ((ROWS % 7 == 0) | (COLUMNS % 7 == 0)) & (ROWS % 21 > 0) & (COLUMNS % 21 > 0)
+
+
+def zones_of(cells) -> list[tuple[int, int]]:
+    return [(int(row) // 7, int(column) // 7) for row, column in cells]
+
+
+@given(st.integers(0, 10**6))
+def test_every_layout(seed):
+    world = modified_factory(np.random.default_rng(seed))
+    free = world.floor.state_of >= 0
+    assert free.shape == (22, 22)
+    assert not free[[0, -1]].any()
+    assert not free[:, [0, -1]].any()
+    # Connected; gaps of one cell in 8 to 11 of the 12 walls, none where walls cross.
+    assert distances(world, np.arange(world.n_cells) == world.start).max() < world.n_cells
+    gaps = np.argwhere(free & BETWEEN)
+    assert 8 <= len(gaps) <= 11
+    assert not (gaps % 7 == 0).all(axis=1).any()
+    across = [(row // 7, column // 7, row % 7 == 0) for row, column in gaps.tolist()]
+    assert len(set(across)) == len(gaps)
+    # Four zones have points: four in one of a pair, five in the other, all in zones and on different cells.
+    zones = {}
+    for kind, points, area in (
+        ("procure", world.procure_at, world.procure_area),
+        ("assemble", world.assemble_at, world.assemble_area),
+    ):
+        cells = world.floor.cells[points]
+        assert not (cells % 7 == 0).any()
+        inside = zones_of(cells)
+        zones[kind] = set(inside)
+        assert sorted(inside.count(zone) for zone in zones[kind]) == [4, 5]
+        assert area[points].all()
+        assert set(zones_of(world.floor.cells[area])) == zones[kind]
+    assert not zones["procure"] & zones["assemble"]
+    assert len({*world.procure_at.tolist(), *world.assemble_at.tolist()}) == 18
+    assert world.start not in {*world.procure_at.tolist(), *world.assemble_at.tolist()}
+    assert not world.express.any()
+
+
+def test_zones_have_inner_walls_and_layouts_differ():
+    worlds = [modified_factory(np.random.default_rng(seed)) for seed in range(30)]
+    assert len({world.fingerprint for world in worlds}) == 30
+    walled = []
+    for world in worlds:
+        wall = world.floor.state_of < 0
+        for row in range(3):
+            for column in range(3):
+                zone = wall[row * 7 + 1 : row * 7 + 7, column * 7 + 1 : column * 7 + 7]
+                walled.append(int(zone.sum()))
+    # At least two walls of two cells, at most four of four, as far as they find room.
+    assert max(walled) <= INNER_WALLS[1] * 4
+    assert np.mean(np.array(walled) >= 4) > 0.99
+    # Every component is somewhere else each time.
+    places = np.array([world.floor.cells[world.procure_at[0]] for world in worlds])
+    assert len(np.unique(places, axis=0)) > 20
+
+
+def test_the_same_stream_gives_the_same_layout():
+    one, other = (modified_factory(np.random.default_rng(5)) for _ in range(2))
+    assert one.fingerprint == other.fingerprint
+    assert one.floor.discount == 0.99
+    assert modified_factory(np.random.default_rng(5), discount=0.5).floor.discount == 0.5
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_some_wall_between_zones_stays_whole(seed):
+    free = modified_factory(np.random.default_rng(seed)).floor.state_of >= 0
+    whole = 0
+    for line in (7, 14):
+        for start in (1, 8, 15):
+            whole += not free[line, start : start + 6].any()
+            whole += not free[start : start + 6, line].any()
+    assert 1 <= whole <= 4

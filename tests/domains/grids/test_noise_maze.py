@@ -1,0 +1,82 @@
+"""Noise mazes: the exact number of obstacles, always connected, nothing kept that could be walled up."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy import ndimage
+
+from lifelore.core.errors import InputError
+from lifelore.domains.grids.noise_maze import _can_spare, noise_maze
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 10**6), st.integers(4, 15), st.floats(0, 0.99))
+def test_count_and_connectedness(seed, size, density):
+    inside = (size - 2) ** 2
+    if round(density * inside) > inside - 2:
+        with pytest.raises(InputError, match="obstacles must lie in"):
+            noise_maze(np.random.default_rng(seed), size, density)
+        return
+    world = noise_maze(np.random.default_rng(seed), size, density)
+    free = world.state_of >= 0
+    assert free.sum() == inside - round(density * inside)
+    assert ndimage.label(free)[1] == 1
+    assert not free[[0, -1]].any()
+    assert not free[:, [0, -1]].any()
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_a_cell_is_spared_exactly_when_the_rest_stays_connected(seed):
+    rng = np.random.default_rng(seed)
+    free = noise_maze(rng, 9, float(rng.uniform(0, 0.8))).state_of >= 0
+    for row, column in np.argwhere(free):
+        without = free.copy()
+        without[row, column] = False
+        connected = ndimage.label(without)[1] == 1
+        assert _can_spare(bytearray(free.tobytes()), row * 9 + column, 9) == connected
+
+
+def test_the_maze_of_figure_3_1():
+    # Walled 7 × 7 with 6 obstacles: 19 free cells, 76 state-action pairs.
+    world = noise_maze(np.random.default_rng(0), size=7, obstacles=6)
+    assert world.n_states == 19
+    assert world.neighbour.size == 76
+
+
+def test_the_thesis_range_and_defaults():
+    worlds = [noise_maze(np.random.default_rng(seed)) for seed in range(20)]
+    shares = np.array([1 - world.n_states / 441 for world in worlds])
+    assert ((shares > 0.498) & (shares < 0.802)).all()
+    # Uniform on [.5, .8]: the mean of 20 has a standard error of .0194; 4 of them.
+    assert abs(shares.mean() - 0.65) < 0.078
+    assert (worlds[0].discount, worlds[0].goal_reward, worlds[0].wall_reward) == (0.95, 100.0, -10.0)
+
+
+def test_obstacles_fall_anywhere():
+    # 200 mazes with one obstacle among 25 cells: each cell is hit 8 times on average, P(never) = 0.04 %.
+    hits = sum(noise_maze(np.random.default_rng(s), 7, obstacles=1).state_of < 0 for s in range(200))
+    assert (hits[1:-1, 1:-1] > 0).all()
+
+
+def test_the_same_generator_state_is_the_same_maze():
+    a, b, c = (noise_maze(np.random.default_rng(seed), 11, 0.6).fingerprint for seed in (1, 1, 2))
+    assert a == b != c
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"size": 3}, "size of a noise maze"),
+        ({"size": 10**6}, "size of a noise maze"),
+        ({"density": 1.0}, "density must lie in"),
+        ({"density": -0.1}, "density must lie in"),
+        ({"density": float("nan")}, "density must lie in"),
+        ({"density": 0.5, "obstacles": 3}, "not both"),
+        ({"obstacles": -1}, "obstacles must lie in"),
+        ({"obstacles": 440}, "obstacles must lie in"),
+    ],
+)
+def test_each_broken_rule_is_one_clear_line(arguments, words):
+    with pytest.raises(InputError, match=words):
+        noise_maze(np.random.default_rng(0), **arguments)

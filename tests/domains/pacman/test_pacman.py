@@ -1,0 +1,199 @@
+"""Pacman's maze, ghosts, sight and moves, by hand; the learners' rows and the exact values against rollouts."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.learning.q_learning import cumulative
+from lifelore.core.mdp import COLLISION, TERMINAL
+from lifelore.core.planning.episode_value import best_episode_value, return_moments
+from lifelore.core.planning.episodes import episode_returns
+from lifelore.core.streams import stream
+from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze, PacmanTask, step
+
+NORTH, SOUTH, EAST, WEST = range(4)
+SMALL = PacmanMaze(5, 5)
+#  0  1  2  3  4
+#  5           6
+#  7  8  9 10 11     the centre is 9
+# 12          13
+# 14 15 16 17 18
+FOODS = (0, 4, 8, 18)
+EVERY = pytest.mark.parametrize("strategy", STRATEGIES)
+
+
+def state_of(task, own, phase, left=0b1111):
+    return (left * task.n_phases + phase) * task.maze.n_cells + own
+
+
+def moved(task, own, phase, action, left=0b1111, u=0.0):
+    """Own cell, phase, foods left, reward and event after one move."""
+    s2, reward, event = step.py_func(task.params, state_of(task, own, phase, left), action, u)
+    rest = s2 // task.maze.n_cells
+    return s2 % task.maze.n_cells, rest % task.n_phases, rest // task.n_phases, reward, event
+
+
+def test_the_maze_is_a_figure_eight():
+    assert (SMALL.n_cells, SMALL.centre) == (19, 9)
+    # Two corridors meet at two cells of three neighbours, the ends of the middle row; all others have two.
+    degrees = (SMALL.grid.neighbour >= 0).sum(axis=1)
+    assert np.flatnonzero(degrees == 3).tolist() == [7, 11]
+    assert (np.delete(degrees, [7, 11]) == 2).all()
+    assert SMALL.rim.tolist() == [0, 1, 2, 3, 4, 6, 11, 13, 18, 17, 16, 15, 14, 12, 7, 5]
+
+
+def test_sight_ends_at_walls():
+    assert np.flatnonzero(SMALL.sees[9]).tolist() == [7, 8, 9, 10, 11]
+    assert np.flatnonzero(SMALL.sees[0]).tolist() == [0, 1, 2, 3, 4, 5, 7, 12, 14]
+    # 2, 9 and 16 share a column with walls between.
+    assert not SMALL.sees[2, 9]
+    assert not SMALL.sees[2, 16]
+    assert (SMALL.sees == SMALL.sees.T).all()
+
+
+def test_ghosts_move_as_their_strategies_say():
+    paths = {}
+    for strategy in STRATEGIES[:3]:
+        _, _, cells, following, outcome_cum = PacmanTask(SMALL, FOODS, strategy).params
+        assert outcome_cum.tolist() == [1.0]
+        phase, path = 0, []
+        for _ in range(9):
+            path.append(int(cells[phase]))
+            phase = following[phase, 0]
+        paths[strategy] = path
+    assert paths["top row"] == [0, 1, 2, 3, 4, 3, 2, 1, 0]
+    assert paths["clockwise"] == [0, 1, 2, 3, 4, 6, 11, 13, 18]
+    assert paths["anticlockwise"] == [5, 7, 12, 14, 15, 16, 17, 18, 13]
+
+
+def test_a_random_ghost_goes_to_each_neighbour_alike():
+    _, _, cells, following, outcome_cum = PacmanTask(SMALL, FOODS, "random").params
+    assert cells.tolist() == list(range(19))
+    assert np.allclose(outcome_cum, np.arange(1, 7) / 6)
+    assert sorted(following[7].tolist()) == [5, 5, 8, 8, 12, 12]
+    assert sorted(following[0].tolist()) == [1, 1, 1, 5, 5, 5]
+
+
+def test_moves_foods_and_ends_by_hand():
+    task = PacmanTask(SMALL, FOODS, "clockwise")  # phases 0.. at cells 0 1 2 3 4 6 11 13 18 ...
+    assert moved(task, 9, 0, EAST) == (10, 1, 0b1111, 0.0, 0)
+    assert moved(task, 9, 0, NORTH) == (9, 1, 0b1111, 0.0, COLLISION)
+    assert moved(task, 9, 0, WEST) == (8, 1, 0b1011, 10.0, 0)
+    # The third food was the last one left: 10 and 100.
+    assert moved(task, 9, 0, WEST, left=0b0100) == (8, 1, 0, 110.0, TERMINAL)
+    # Food that is gone brings nothing.
+    assert moved(task, 9, 0, WEST, left=0b1011) == (8, 1, 0b1011, 0.0, 0)
+
+
+def test_meeting_the_ghost():
+    task = PacmanTask(SMALL, FOODS, "clockwise")
+    # Into the cell where the ghost arrives, from 10 and from 6's other side.
+    assert moved(task, 10, 5, EAST)[3:] == (-100.0, TERMINAL)
+    # Changing places: Pacman north from 6 to 4, the ghost from 4 to 6; the food at 4 is not eaten.
+    assert moved(task, 6, 4, NORTH) == (4, 5, 0b1111, -100.0, TERMINAL)
+    # Following close behind is safe, and so is the cell that the ghost leaves.
+    assert moved(task, 3, 4, EAST) == (4, 5, 0b1101, 10.0, 0)
+    # Waiting at a wall while the ghost comes.
+    assert moved(task, 6, 4, EAST) == (6, 5, 0b1111, -100.0, TERMINAL | COLLISION)
+
+
+@EVERY
+def test_episodes_start_in_the_centre_with_the_ghost_elsewhere(strategy):
+    task = PacmanTask(SMALL, FOODS, strategy)
+    own, ghost, left = task.parts(task.starts)
+    assert (own == 9).all()
+    assert (ghost != 9).all()
+    assert (left == 0b1111).all()
+    assert len(task.starts) == {"top row": 8, "clockwise": 16, "anticlockwise": 16, "random": 18}[strategy]
+
+
+@EVERY
+def test_an_observation_tells_own_cell_foods_and_a_ghost_in_sight_and_nothing_else(strategy):
+    task = PacmanTask(SMALL, FOODS, strategy)
+    own, ghost, left = task.parts(np.arange(task.n_states))
+    seen = np.where(SMALL.sees[own, ghost], ghost, -1)
+    told = np.unique(np.column_stack([task.observation_of, own, left, seen]), axis=0)
+    # One number for each triple, and one triple for each number.
+    assert len(np.unique(told[:, 0])) == len(told) == len(np.unique(told[:, 1:], axis=0))
+    assert task.observation_of.max() < task.n_observations == 16 * 19 * 20
+
+
+def test_the_same_is_observed_by_the_same_number_whatever_the_type():
+    names = []
+    for strategy in STRATEGIES:
+        task = PacmanTask(SMALL, FOODS, strategy)
+        phase = int(np.flatnonzero(task.params[2] == 1)[0])
+        names.append(task.observation_of[state_of(task, 3, phase)])
+    assert len(set(names)) == 1
+
+
+@EVERY
+def test_tables_are_the_step_enumerated(strategy):
+    task = PacmanTask(SMALL, FOODS, strategy)
+    tables = task.tables()
+    generator = np.random.default_rng(4)
+    for _ in range(3000):
+        s = int(generator.integers(task.n_states // 16, task.n_states))
+        a, u = int(generator.integers(4)), float(generator.random())
+        k = int(np.searchsorted(tables.outcome_cum, u, side="right"))
+        row = tables.next_state[s, a, k], tables.reward[s, a, k], tables.event[s, a, k]
+        assert row == step(task.params, s, a, u) == step.py_func(task.params, s, a, u)
+
+
+@EVERY
+def test_exact_moments_agree_with_episodes(strategy):
+    task = PacmanTask(SMALL, FOODS, strategy)
+    tables = task.tables()
+    probs = np.random.default_rng(1).dirichlet(np.ones(4), task.n_observations)
+    mean, deviation = return_moments(tables, task.observation_of, probs, 60)
+    n = 20_000
+    returns = episode_returns(
+        tables, task.observation_of, cumulative(probs), 60, n, world=stream(1, "w"), own=stream(1, "o")
+    )
+    # Five standard errors; of a deviation σ it is at most about σ √(kurtosis / 4n), returns lie within 240.
+    assert abs(returns.mean() - mean) < 5 * deviation / np.sqrt(n)
+    assert abs(returns.std() - deviation) < 5 * 240 / np.sqrt(4 * n)
+    assert best_episode_value(tables, 60) >= mean
+
+
+def test_a_walk_known_by_hand():
+    # East for ever from the centre: food at 10 at once, then at 11, and the clockwise ghost is met there
+    # if it stands on the rim's cell 11, or comes; over 16 phases it passes 11 within 16 steps of waiting.
+    task = PacmanTask(SMALL, (10, 11, 0, 14), "clockwise")
+    east = np.tile([0.0, 0.0, 1.0, 0.0], (task.n_observations, 1))
+    # Cell 11 is phase 6. Pacman arrives at step 2 and is met there at once from phase 4, before it eats; from any
+    # other it eats both, and is met later.
+    expected = (1 * (10 - 100) + 15 * (20 - 100)) / 16
+    assert return_moments(task.tables(), task.observation_of, east, 200)[0] == pytest.approx(expected)
+    # Cut after two steps, only one of 16 is lost.
+    assert return_moments(task.tables(), task.observation_of, east, 2)[0] == pytest.approx((-90 + 15 * 20) / 16)
+
+
+def test_discounted_value_by_hand():
+    task = PacmanTask(SMALL, (10, 11, 0, 14), "top row")
+    east = np.tile([0.0, 0.0, 1.0, 0.0], (task.n_observations, 1))
+    mean, deviation = return_moments(task.tables(), task.observation_of, east, 200, 0.5)
+    assert (mean, deviation) == (pytest.approx(10 + 0.5 * 10), pytest.approx(0.0, abs=1e-6))
+
+
+def test_drawn_foods_are_four_cells_without_the_centre():
+    drawn = [SMALL.draw_foods(stream(0, "foods", i)) for i in range(50)]
+    assert all(len(set(foods)) == 4 and SMALL.centre not in foods for foods in drawn)
+    assert len(set().union(*drawn)) == 18
+
+
+@pytest.mark.parametrize(("rows", "columns", "name"), [(4, 5, "rows"), (3, 5, "rows"), (5, 2, "columns")])
+def test_mazes_that_are_no_figure_eight(rows, columns, name):
+    with pytest.raises(InputError, match=f"{name} must be odd"):
+        PacmanMaze(rows, columns)
+
+
+@pytest.mark.parametrize("foods", [(0, 1, 2), (0, 0, 1, 2), (0, 1, 2, 9), (0, 1, 2, 19), (0, 1, 2, -1)])
+def test_foods_that_cannot_be(foods):
+    with pytest.raises(InputError, match="foods must be 4 different cells"):
+        PacmanTask(SMALL, foods, "random")
+
+
+def test_unknown_strategy():
+    with pytest.raises(InputError, match="strategy must be one of top row, clockwise"):
+        PacmanTask(SMALL, FOODS, "asleep")

@@ -1,0 +1,141 @@
+"""Conformance of every registered environment: one definition, three ways to run it."""
+
+import gymnasium
+import numpy as np
+import pytest
+from gymnasium.utils import seeding
+from gymnasium.utils.env_checker import check_env
+
+from lifelore.core.errors import InputError
+from lifelore.core.mdp import COLLISION, TERMINAL, _enumerate_with
+from lifelore.domains import ENVIRONMENTS
+from lifelore.domains.factory.contexts import features
+from lifelore.domains.grid_environment import GridEnvironment
+from lifelore.domains.worlds import domain_names
+
+CASES = {
+    "lifelore/AdviceMaze-v0": {"size": 12, "seed": 2},
+    "lifelore/Building-v0": {"seed": 3, "cell": 0.8},
+    "lifelore/Factory-v0": {"components": 2, "seed": 1},
+    "lifelore/Lattice-v0": {"size": 11},
+    "lifelore/ModifiedFactory-v0": {"components": 2, "seed": 3},
+    "lifelore/NoiseMaze-v0": {"size": 13, "seed": 2},
+}
+"""Arguments that keep the plain enumeration short."""
+CHOSEN_FOR = {"lifelore/Golf-v0", "lifelore/Surveillance-v0", "lifelore/Telephone-v0"}
+"""Worlds a policy is chosen for, without tables of states: test_policy_worlds.py has them."""
+HIDDEN = {"lifelore/BallGame-v0", "lifelore/Pacman-v0"}
+"""Worlds whose observation is less than the state: test_ball_game_environment.py, test_pacman_environment.py."""
+EVERY = pytest.mark.parametrize("name", sorted(CASES))
+
+
+def plain(name: str, **changes):
+    return gymnasium.make(f"lifelore.domains:{name}", **(CASES[name] | changes)).unwrapped
+
+
+def percepts(env):
+    """The entry of ``info`` that tells what the agent perceives, and its value in each state."""
+    if isinstance(env, GridEnvironment):
+        return "percept", env.world.percepts.tolist()
+    return "features", list(map(tuple, features(env.factory_task).tolist()))
+
+
+def test_every_registered_environment_and_domain_is_covered():
+    registered = {name for name in gymnasium.registry if name.startswith("lifelore/")}
+    assert registered == set(ENVIRONMENTS) == set(CASES) | CHOSEN_FOR | HIDDEN
+    grids = [env.world.name for env in map(plain, CASES) if isinstance(env, GridEnvironment)]
+    assert set(grids) == set(domain_names())
+
+
+@EVERY
+def test_gymnasium_finds_nothing_to_say(name):
+    check_env(plain(name))
+    check_env(plain(name, render_mode="rgb_array"))
+    check_env(gymnasium.make(name).unwrapped, skip_render_check=True)
+
+
+@EVERY
+def test_environment_tables_and_step_agree_bit_for_bit(name):
+    env = plain(name)
+    task, tables = env.task, env.task.tables()
+    ends = (tables.event & TERMINAL > 0).mean(axis=(1, 2))
+    near_the_end = np.flatnonzero((ends > 0) & (ends < 1))
+    entry, percept_of = percepts(env)
+    uniforms, _ = seeding.np_random(11)
+    actions = np.random.default_rng(5)
+    seen = {"terminal": 0, "collision": 0}
+    state, info = env.reset(seed=11)
+    assert state == tables.starts[int(uniforms.random() * len(tables.starts))]
+    for _ in range(2000):
+        assert info[entry] == percept_of[state]
+        action, u = int(actions.integers(task.domain.n_actions)), uniforms.random()
+        outcome = int(np.searchsorted(tables.outcome_cum, u, side="right"))
+        index = (state, action, outcome)
+        row = (int(tables.next_state[index]), float(tables.reward[index]), int(tables.event[index]))
+        assert task.domain.step(task.params, state, action, u) == row
+        state, reward, terminated, truncated, info = env.step(action)
+        event = TERMINAL * terminated | COLLISION * info["collision"]
+        assert (state, reward, event) == row
+        assert (type(state), type(reward), truncated) == (int, float, False)
+        seen["terminal"] += terminated
+        seen["collision"] += info["collision"]
+        if terminated or actions.random() < 0.05:
+            state, info = env.reset(options={"state": actions.choice(near_the_end)})
+            uniforms.random()
+    assert min(seen.values()) > 10
+
+
+@EVERY
+def test_the_compiled_table_equals_the_plain_enumeration(name):
+    task = plain(name).task
+    compiled = task.tables()
+    for fast, slow in zip(compiled[:3], _enumerate_with(task.domain)(task.params, [0.5]), strict=True):
+        assert fast.dtype == slow.dtype
+        assert np.array_equal(fast, slow)
+
+
+@EVERY
+def test_an_episode_is_cut_at_its_limit(name):
+    env = gymnasium.make(name, **CASES[name])
+    limit = ENVIRONMENTS[name][1]
+    env.reset(seed=0)
+    # Against one wall for ever: never to the end.
+    state, action, _ = np.argwhere(env.unwrapped.task.tables().event == COLLISION)[0].tolist()
+    env.reset(options={"state": state})
+    outcomes = [env.step(action)[2:4] for _ in range(limit)]
+    assert outcomes[-1] == (False, True)
+    assert not any(truncated for _, truncated in outcomes[:-1])
+
+
+@EVERY
+def test_pictures(name):
+    env = plain(name, render_mode="rgb_array")
+    here = env.task.starts[0]
+    there = next(s for s in env.task.tables().next_state[here, :, 0] if s != here)
+    env.reset(options={"state": here})
+    first = env.render()
+    assert first.dtype == np.uint8
+    assert first.shape[2] == 3
+    env.reset(options={"state": there})
+    assert (env.render() != first).any()
+    assert plain(name).render() is None
+
+
+def test_the_goal_may_be_a_state_or_a_cell():
+    env = plain("lifelore/Lattice-v0", goal=7)
+    cell = tuple(env.world.cells[7].tolist())
+    assert env.task.goal == plain("lifelore/Lattice-v0", goal=cell).task.goal == 7
+    for wrong in ((0, 0), (-1, 1), (99, 1)):
+        with pytest.raises(InputError, match="goal must be a free cell"):
+            plain("lifelore/Lattice-v0", goal=wrong)
+    with pytest.raises(InputError, match="goal must be a state"):
+        plain("lifelore/Lattice-v0", goal=10_000)
+    assert len({plain("lifelore/Lattice-v0", seed=seed).task.goal for seed in range(6)}) > 1
+
+
+@EVERY
+def test_docstrings_have_gymnasiums_headings(name):
+    headings = ["Action Space", "Observation Space", "Rewards", "Starting State", "Episode End", "Arguments"]
+    documented = type(plain(name)).__doc__
+    places = [documented.index(f"## {heading}") for heading in headings]
+    assert places == sorted(places)

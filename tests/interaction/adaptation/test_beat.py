@@ -1,0 +1,251 @@
+"""BEAT by hand, against Algorithm 9 as printed, and as a special case of policy reuse."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.adaptation.beat import EPSILONS, Adaptation, Beat, epsilon_of
+from lifelore.interaction.adaptation.beat_users import BeatUsers
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.transition_signal import TransitionSignal
+
+N_TYPES, N_SETS, N_STATES = 4, 3, 5
+
+
+def library(seed=0, n_actions=2):
+    """Types × action sets with random transitions over five states."""
+    generator = np.random.default_rng(seed)
+    probs = generator.dirichlet(np.ones(N_STATES), (N_TYPES, N_SETS, N_STATES, n_actions))
+    value = generator.normal(size=(N_TYPES, N_SETS))
+    return PolicyLibrary.from_means(value, np.ones_like(value), signal=TransitionSignal(probs)), probs, value
+
+
+def move(generator, probs, type_, policy, state):
+    action = int(generator.integers(probs.shape[3]))
+    return state, action, int(generator.choice(N_STATES, p=probs[type_, policy, state, action]))
+
+
+def test_belief_and_choice_by_hand():
+    # Two types: the first moves on with 0.9, the second with 0.5. Prior (0.5, 0.5); two moves made:
+    # 0.81 to 0.25, so β = (0.764, 0.236). V: set 0 is worth (1, 0), set 1 (0, 2): 0.764 to 0.472.
+    stay = [[0.1, 0.9], [0.0, 1.0]]
+    other = [[0.5, 0.5], [0.0, 1.0]]
+    signal = TransitionSignal(np.array([stay, other])[:, :, None, :], 2)
+    beat = Beat(PolicyLibrary.from_means([[1.0, 0.0], [0.0, 2.0]], 1.0, signal=signal))
+    assert beat.select() == 1  # Eq. 4.8: 0.5 to 1.0
+    for _ in range(2):
+        beat.update(1, [(0, 1)])
+    assert beat.belief == pytest.approx([0.81 / 1.06, 0.25 / 1.06])
+    assert beat.select() == 0
+    assert (beat.step, beat.episode) == (2, 0)
+
+
+def test_a_move_that_no_type_explains_keeps_the_belief():
+    signal = TransitionSignal(np.array([[[[1.0, 0.0]], [[0.0, 1.0]]]] * 2), 1)
+    beat = Beat(PolicyLibrary.from_means([[1.0], [0.0]], 1.0, signal=signal, prior=[0.3, 0.7]))
+    beat.update(0, [(0, 0, 1)])
+    assert beat.belief == pytest.approx([0.3, 0.7])
+    assert beat.surprises == 1
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.3, "1/n", "by episode"])
+def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
+    """Algorithm 9 with products and no normalisation, for as long as floats can hold them."""
+    lib, probs, value = library()
+    beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(9))
+    draws, world = np.random.default_rng(9), np.random.default_rng(1)
+    belief, state = np.full(N_TYPES, 1 / N_TYPES), 0
+    schedule = epsilon_of(epsilon)
+    for step in range(60):
+        episode = step // 20
+        chosen = beat.select()
+        explores = draws.random() < schedule(step, episode)
+        assert chosen == int((draws.random(N_SETS) if explores else belief @ value).argmax())
+        triple = move(world, probs, 2, chosen, state)
+        belief = belief * probs[:, chosen, triple[0], triple[1], triple[2]]
+        beat.update(chosen, [triple])
+        state = triple[2]
+        assert beat.belief == pytest.approx(belief / belief.sum(), abs=1e-12)
+        if step % 20 == 19:
+            beat.end_episode()
+
+
+@pytest.mark.parametrize("epsilon", [0.0, 0.4])
+def test_beat_is_policy_reuse(epsilon):
+    """C4.16: ε-greedy, transition signal, action sets as policies, same generator."""
+    for seed in range(5):
+        lib, probs, _ = library(seed)
+        beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(seed))
+        reuse = BayesianPolicyReuse(lib, EpsilonGreedy(epsilon), seed=np.random.default_rng(seed))
+        world, state = np.random.default_rng(100 + seed), 0
+        for _ in range(400):
+            chosen = beat.select()
+            assert reuse.select() == chosen
+            triple = move(world, probs, seed % N_TYPES, chosen, state)
+            beat.update(chosen, [triple])
+            reuse.update(chosen, [triple])
+            state = triple[2]
+        assert np.array_equal(beat.log_belief, reuse.log_belief)
+
+
+def test_logs_hold_what_products_lose():
+    lib, probs, _ = library()
+    beat, world, state, product = Beat(lib), np.random.default_rng(2), 0, np.ones(N_TYPES)
+    for _ in range(3000):
+        triple = move(world, probs, 1, 0, state)
+        beat.update(0, [triple])
+        product *= probs[:, 0, triple[0], triple[1], triple[2]]
+        state = triple[2]
+    assert (product == 0).all()  # the printed belief
+    assert beat.belief.sum() == pytest.approx(1)
+    assert beat.belief.argmax() == 1
+    assert beat.log_belief.min() < -745  # less than any float
+
+
+def test_actions_are_a_second_factor_judged_by_the_set_she_is_adapted_to():
+    lib, _, _ = library()
+    # Actions tell the type under set 0 only.
+    told = np.full((N_TYPES, N_SETS, 2), 0.5)
+    told[:, 0] = [[0.9, 0.1], [0.2, 0.8], [0.5, 0.5], [0.5, 0.5]]
+    plain, with_actions, lagging = (
+        Beat(lib),
+        Beat(lib, actions=CategorySignal(told)),
+        Beat(lib, actions=CategorySignal(told), lag=3),
+    )
+    for beat in (plain, with_actions, lagging):
+        for policy in (0, 1):  # the second move is made under set 1; who lags still acts by set 0
+            beat.update(policy, [(0, 0, 1)], *(() if beat is plain else (0,)))
+    odds = np.exp(with_actions.log_belief - plain.log_belief)
+    assert odds[0] / odds[1] == pytest.approx(0.9 / 0.2)
+    odds = np.exp(lagging.log_belief - plain.log_belief)
+    assert odds[0] / odds[1] == pytest.approx((0.9 / 0.2) ** 2)
+
+
+def test_adaptation_by_hand():
+    adapts = Adaptation(2)
+    assert [adapts.after_step(p) for p in (2, 2, 4, 4, 4, 1, 4)] == [2, 2, 2, 2, 4, 4, 4]
+    at_once = Adaptation(0)
+    assert [at_once.after_step(p) for p in (2, 4, 1)] == [2, 4, 1]
+
+
+def test_printed_schedules_by_hand():
+    assert [epsilon_of("1/n")(step, 0) for step in range(3)] == [1, 1 / 2, 1 / 3]
+    assert [epsilon_of("by episode")(7, episode) for episode in range(7)] == pytest.approx(
+        [0.5, 0.4, 0.3, 0.2, 0.1, 0, 0]
+    )
+    # Σ 1/n diverges as Algorithm 9 asks; the experiments' schedule sums to 1.5 steps' worth an episode and stops.
+    assert sum(EPSILONS["1/n"](step, 0) for step in range(10_000)) > 9
+    assert sum(EPSILONS["by episode"](0, episode) for episode in range(10_000)) == pytest.approx(1.5)
+    assert epsilon_of(0.2)(5, 5) == 0.2
+    assert epsilon_of(lambda step, episode: 0.1 * episode)(0, 3) == pytest.approx(0.3)
+
+
+def test_bad_input():
+    lib, _, _ = library()
+    for arguments, rule in (
+        ({"epsilon": 1.5}, "epsilon must lie in"),
+        ({"epsilon": "never"}, "epsilon must be a number or one of 1/n, by episode"),
+        ({"lag": -1}, "lag must be at least 0"),
+        ({"prior": [0.5, 0.5]}, "prior must be"),
+    ):
+        with pytest.raises(InputError, match=rule):
+            Beat(lib, **arguments)
+    beat = Beat(lib)
+    with pytest.raises(InputError, match="no model of actions"):
+        beat.update(0, [(0, 0, 1)], 1)
+    with pytest.raises(NotFoundError):
+        beat.update("none such", [(0, 0, 1)])
+    assert beat.step == 0
+    for told in (np.full((1, N_SETS, 2), 0.5), np.full((N_TYPES, 1, 2), 0.5)):
+        with pytest.raises(InputError, match="actions has n_"):
+            Beat(lib, actions=CategorySignal(told))
+
+
+def test_a_refused_move_changes_nothing():
+    lib, _, _ = library()
+    told = np.full((N_TYPES, N_SETS, 2), 0.5)
+    told[:, 0] = [[0.9, 0.1], [0.2, 0.8], [0.5, 0.5], [0.5, 0.5]]
+    spared, refused = (Beat(lib, actions=CategorySignal(told), lag=1) for _ in range(2))
+    for beat in (spared, refused):
+        beat.update(0, [(0, 0, 1)], 0)
+    for bad in ((1, [(0, 0, 99)], 0), (1, [(0, 0, 1)], 7)):
+        with pytest.raises(InputError):
+            refused.update(*bad)
+    # The first move under set 1 is the one that counts as adaptation, not those refused.
+    for beat in (spared, refused):
+        beat.update(1, [(0, 0, 1)], 0)
+    assert np.array_equal(refused.log_belief, spared.log_belief)
+    assert refused.step == 2
+
+
+def test_a_model_that_answers_for_many_at_once_is_named():
+    lib, _, _ = library()
+    lib.signal = type("Twice", (), {"log_likelihood": lambda self, policy, signal: np.zeros((2, N_TYPES))})()
+    with pytest.raises(InputError, match="signal model Twice must give"):
+        Beat(lib).update(0, [(0, 0, 1)])
+
+
+def tables(probs):
+    """Log likelihood of each (s, a, s') by number, (sets, signals, types)."""
+    return np.log(probs).reshape(N_TYPES, N_SETS, -1).transpose(1, 2, 0)
+
+
+def test_many_users_equal_single_ones():
+    lib, probs, value = library(3)
+    users, world = BeatUsers(value, tables(probs), 20), np.random.default_rng(5)
+    singles = [Beat(lib) for _ in range(20)]
+    for _ in range(100):
+        playing = np.flatnonzero(world.random(20) < 0.7)
+        chosen = users.select(playing)
+        assert chosen.tolist() == [singles[u].select() for u in playing]
+        triples = [move(world, probs, u % N_TYPES, p, 0) for u, p in zip(playing, chosen, strict=True)]
+        signals = np.array([(s * 2 + a) * N_STATES + s1 for s, a, s1 in triples])
+        users.update(playing, chosen, signals)
+        for u, p, triple in zip(playing, chosen, triples, strict=True):
+            singles[u].update(int(p), [triple])
+    for u, beat in enumerate(singles):
+        np.testing.assert_allclose(users.log_belief[u], beat.log_belief, atol=1e-12)
+
+
+def test_many_users_explore_as_often_as_asked_and_take_a_second_factor():
+    _, probs, value = library()
+    users = BeatUsers(value, tables(probs), 30_000, prior=[1.0, 0, 0, 0], seed=1)
+    every, best = np.arange(30_000), value[0].argmax()
+    others = (users.select(every, 0.6) != best).mean()
+    assert others == pytest.approx(0.6 * 2 / 3, abs=0.012)  # 4 deviations of a binomial
+    assert (users.select(every) == best).all()
+    flat = BeatUsers(value, tables(probs), 1)
+    extra = np.log([[0.1, 0.2, 0.3, 0.4]])
+    flat.update(np.array([0]), np.array([1]), np.array([3]), extra)
+    expected = np.exp(tables(probs)[1, 3] + extra[0])
+    assert np.exp(flat.log_belief[0]) == pytest.approx(expected / expected.sum())
+
+
+def test_tables_must_fit():
+    _, probs, value = library()
+    with pytest.raises(InputError, match="log_table must be"):
+        BeatUsers(value, tables(probs)[:2], 1)
+    for change, rule in (
+        ({"prior": [1.0]}, "prior must be"),
+        ({"prior": np.full((2, N_TYPES), 0.25)}, "prior must be"),
+        ({"log_table": np.full((N_SETS, 2, N_TYPES), np.nan)}, "log_table must be below infinity"),
+        ({"value": value[0]}, "value must be"),
+        ({"value": value * np.nan}, "value must be"),
+    ):
+        with pytest.raises(InputError, match=rule):
+            BeatUsers(**({"value": value, "log_table": tables(probs), "n_users": 3} | change))
+
+
+def test_many_users_refuse_what_they_would_get_wrong():
+    _, probs, value = library()
+    users = BeatUsers(value, tables(probs), 3)
+    before, zeros = users.log_belief.copy(), np.zeros(2, int)
+    with pytest.raises(InputError, match="users must be distinct"):
+        users.update(np.array([1, 1]), zeros, zeros)
+    for bad in (np.nan, np.inf):
+        with pytest.raises(InputError, match="extra must be"):
+            users.update(np.array([0, 1]), zeros, zeros, np.array([[0.0] * 4, [bad] * 4]))
+    assert np.array_equal(users.log_belief, before)

@@ -1,0 +1,39 @@
+"""Tables of signals: what they refuse, clean, and know of their entropy."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+
+
+def test_entropy_by_hand():
+    table = SignalTable([[[0.5, 0.25, 0.25], [1.0, 0.0, 0.0]]])
+    np.testing.assert_allclose(table.conditional_entropy, [[1.5 * np.log(2), 0.0]])
+    assert (table.n_policies, table.n_types, table.n_signals) == (1, 2, 3)
+
+
+def test_what_is_too_small_becomes_zero_and_rows_sum_to_one():
+    table = SignalTable([[[1 - 3e-10, 3e-10], [0.5, 0.5]]])
+    assert table.probs[0, 0].tolist() == [1.0, 0.0]
+    small = SignalTable(np.array([[[1.0, 1e-40]]], np.float32))
+    assert small.probs.dtype == np.float32
+    assert small.probs[0, 0, 1] == 0
+    assert small.conditional_entropy.dtype == np.float32
+
+
+def test_the_callers_array_is_left_alone_unless_offered():
+    probs = np.array([[[1 - 1e-12, 1e-12]]])
+    assert SignalTable(probs).probs is not probs
+    assert probs[0, 0, 1] == 1e-12
+    assert SignalTable(probs, copy=False).probs is probs
+    assert probs[0, 0, 1] == 0
+
+
+@pytest.mark.parametrize(
+    "probs",
+    [[[[0.5, 0.6]]], [[[1.5, -0.5]]], [[[np.nan, 1.0]]], [[0.5, 0.5]], np.empty((0, 1, 1)), [[[np.inf, 0.0]]]],
+)
+def test_what_is_no_distribution_is_refused(probs):
+    with pytest.raises(InputError, match="probs must be"):
+        SignalTable(probs)

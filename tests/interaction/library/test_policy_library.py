@@ -1,0 +1,223 @@
+"""The library: from samples, means and tables; names, priors; types and policies that come and go."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.outcomes.outcome_kinds import KINDS
+from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction.signals.return_signal import ReturnSignal
+
+MEAN = [[10.0, 0.0], [0.0, 8.0], [4.0, 5.0]]
+
+
+def library(**options):
+    return PolicyLibrary.from_means(MEAN, 2.0, **options)
+
+
+def test_defaults():
+    made = library()
+    assert (made.n_types, made.n_policies) == (3, 2)
+    assert made.types == ("type 0", "type 1", "type 2")
+    assert made.policies == ("policy 0", "policy 1")
+    np.testing.assert_allclose(made.prior, 1 / 3)
+    assert isinstance(made.signal, ReturnSignal)
+    assert made.signal.outcomes is made.performance
+
+
+@pytest.mark.parametrize("model", sorted(KINDS))
+def test_from_samples(model):
+    samples = np.random.default_rng(0).integers(-2, 3, (3, 2, 8)) + np.array(MEAN)[..., None]
+    made = PolicyLibrary.from_samples(samples, types=["a", "b", "c"], model=model, prior=[0.5, 0.5, 0])
+    assert made.performance.mean.argmax(axis=1).tolist()[:2] == [0, 1]
+    assert made.types == ("a", "b", "c")
+    assert made.prior.tolist() == [0.5, 0.5, 0.0]
+
+
+def test_options_reach_the_model():
+    wide = PolicyLibrary.from_samples([[[1.0, 1.2], [5.0, 9.0]]], shrinkage=1000.0)
+    assert wide.performance.deviation[0, 0] == pytest.approx(wide.performance.deviation[0, 1], rel=0.01)
+    edged = PolicyLibrary.from_samples([[[1.0]]], model="histogram", edges=[0.0, 2.0], pseudo_count=1.0)
+    assert edged.performance.bounds() == (0.0, 2.0)
+    with pytest.raises(InputError, match="model must be one of"):
+        PolicyLibrary.from_samples([[[1.0]]], model="cauchy")
+
+
+COLUMNS = {
+    "type": ["young", "old", "young", "old", "young"],
+    "policy": ["A", "A", "B", "B", "A"],
+    "outcome": [1.0, 2.0, 3.0, 4.0, 5.0],
+}
+
+
+def test_from_columns_by_hand():
+    made = PolicyLibrary.from_frame(COLUMNS)
+    assert made.types == ("young", "old")
+    assert made.policies == ("A", "B")
+    np.testing.assert_allclose(made.performance.mean, [[3.0, 3.0], [2.0, 4.0]])
+    renamed = {"who": COLUMNS["type"], "what": COLUMNS["policy"], "paid": COLUMNS["outcome"]}
+    other = PolicyLibrary.from_frame(renamed, type="who", policy="what", outcome="paid", shrinkage=2.0)
+    np.testing.assert_allclose(other.performance.mean, made.performance.mean)
+
+
+def test_a_table_equals_samples():
+    table = PolicyLibrary.from_frame(COLUMNS)
+    filled = PolicyLibrary.from_samples([[[1.0, 5.0], [3.0, np.nan]], [[2.0, np.nan], [4.0, np.nan]]])
+    np.testing.assert_allclose(table.performance.deviation, filled.performance.deviation)
+
+
+def test_a_data_frame_quacks():
+    class Frame:
+        """As much of a DataFrame as is used: columns by name, iteration over names."""
+
+        def __getitem__(self, name):
+            return np.array(COLUMNS[name])
+
+        def __iter__(self):
+            return iter(COLUMNS)
+
+    assert PolicyLibrary.from_frame(Frame()).policies == ("A", "B")
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"outcome": [1.0, 2.0, np.nan, 4.0, 5.0]}, "row 2 is nan"),
+        ({"outcome": [1.0, 2.0]}, "one length"),
+        ({"outcome": ["x"] * 5}, "must hold numbers"),
+        ({"type": ["a", "a", "a", "a", "b"]}, "type 1 with policy 1"),
+        ({"type": [], "policy": [], "outcome": []}, "at least 1"),
+    ],
+)
+def test_tables_that_cannot_be_used_are_refused(change, message):
+    with pytest.raises(InputError, match=message):
+        PolicyLibrary.from_frame(COLUMNS | change)
+
+
+def test_a_missing_column_is_named():
+    with pytest.raises(InputError, match="no column 'reward'; its columns are"):
+        PolicyLibrary.from_frame(COLUMNS, outcome="reward")
+
+
+@pytest.mark.parametrize(
+    "prior",
+    [[0.5, 0.5, 0.1], [1.5, -0.5, 0.0], [np.nan, 0.5, 0.5], [0.5, 0.5], [np.inf, 0, 0], [1 / 3 + 1e-8] * 3],
+)
+def test_priors_that_are_none_are_refused(prior):
+    with pytest.raises(InputError, match="prior must be"):
+        library(prior=prior)
+
+
+def test_names_must_be_distinct_and_enough():
+    with pytest.raises(InputError, match="3 distinct names of type"):
+        library(types=["a", "b"])
+    with pytest.raises(InputError, match="2 distinct names of policy"):
+        library(policies=["a", "a"])
+
+
+def test_policies_are_found_by_name_and_number():
+    made = library(policies=["left", "right"])
+    assert made.index_of_policy("right") == made.index_of_policy(1) == made.index_of_policy(np.int64(1)) == 1
+    assert made.index_of_type("type 2") == 2
+    for unknown in ("up", 2, -1, None, 0.0):
+        with pytest.raises(NotFoundError, match="unknown policy"):
+            made.index_of_policy(unknown)
+
+
+def test_signal_and_performance_must_be_of_one_size():
+    coin = CategorySignal(np.full((2, 2, 2), 0.5))
+    with pytest.raises(InputError, match="signal has n_types 2, performance has 3"):
+        library(signal=coin)
+    with pytest.raises(InputError, match="signal has n_policies"):
+        library(signal=CategorySignal(np.full((3, 1, 2), 0.5)))
+
+
+def test_tables_are_kept_until_the_model_learns():
+    made = PolicyLibrary.from_means(MEAN, 2.0, count=3)
+    first = made.table()
+    assert made.table() is first
+    assert made.table(4) is not first
+    made.observe("type 0", 1, 50.0)
+    assert made.performance.mean[0, 1] > 5
+    assert made.table() is not first
+    with pytest.raises(NotFoundError, match="unknown type"):
+        made.observe("nobody", 1, 0.0)
+
+
+def test_a_signal_without_an_alphabet_has_no_table():
+    own = library(signal=LikelihoodSignal(lambda policy, signal: [0, 0, 0], 3))
+    with pytest.raises(InputError, match="LikelihoodSignal has no finite alphabet"):
+        own.table()
+
+
+def test_a_type_and_a_policy_later():
+    made = library(prior=[0.6, 0.4, 0.0])
+    grown = made.with_type([[1.0, 2.0], [3.0, 4.0]], "late", mass=0.1)
+    assert grown.types[-1] == "late"
+    np.testing.assert_allclose(grown.prior, [0.54, 0.36, 0.0, 0.1])
+    assert grown.signal.log_likelihood(0, 1.0).shape == (4,)
+    assert grown.with_type([[1.0], [2.0]]).types[-1] == "type 4"
+    wider = made.with_policy([[1.0], [2.0], [3.0]])
+    assert wider.policies[-1] == "policy 2"
+    np.testing.assert_array_equal(wider.prior, made.prior)
+    assert made.n_policies == 2
+    with pytest.raises(InputError, match=r"mass must lie in \[0, 1\)"):
+        made.with_type([[1.0], [2.0]], mass=1.0)
+    with pytest.raises(InputError, match="distinct names"):
+        made.with_type([[1.0], [2.0]], "type 0")
+
+
+def test_a_policy_retires():
+    made = library(policies=["left", "right"]).without_policy("left")
+    assert made.policies == ("right",)
+    np.testing.assert_array_equal(made.performance.mean, np.array(MEAN)[:, [1]])
+    assert made.signal.outcomes is made.performance
+    with pytest.raises(InputError, match="what to take"):
+        made.without_policy("right")
+    with pytest.raises(NotFoundError):
+        made.without_policy("left")
+
+
+def test_other_signals_are_cut_down_or_asked_for():
+    coin = CategorySignal(np.random.default_rng(0).dirichlet([1, 1], (3, 2)))
+    made = library(signal=coin)
+    cut = made.without_policy(0)
+    np.testing.assert_array_equal(cut.signal.log_likelihood(0, 1), coin.log_likelihood(1, 1))
+    with pytest.raises(InputError, match="give the new library's signal model"):
+        made.with_type([[1.0], [2.0]])
+    given = made.with_type([[1.0], [2.0]], signal=CategorySignal(np.full((4, 2, 2), 0.5)))
+    assert given.n_types == 4
+
+    class Own:
+        def log_likelihood(self, policy, signal):
+            return np.zeros(3)
+
+    with pytest.raises(InputError, match="Own cannot be cut down"):
+        library(signal=Own()).without_policy(0)
+
+
+def test_some_types_share_the_prior_anew():
+    some = library(prior=[0.5, 0.3, 0.2]).take(types=[2, 1])
+    np.testing.assert_allclose(some.prior, [0.4, 0.6])
+    assert some.types == ("type 2", "type 1")
+    with pytest.raises(InputError, match="no prior mass"):
+        library(prior=[1.0, 0.0, 0.0]).take(types=[1, 2])
+
+
+def test_one_type_and_identical_types_make_a_library():
+    one = PolicyLibrary.from_means([[1.0, 2.0]], 1.0)
+    assert one.prior.tolist() == [1.0]
+    assert one.signal.log_likelihood(0, 0.3).shape == (1,)
+    same = PolicyLibrary.from_means([[1.0, 2.0]] * 4, 1.0)
+    likelihood = same.signal.log_likelihood(1, 0.3)
+    assert (likelihood == likelihood[0]).all()
+
+
+def test_a_library_takes_any_performance_model():
+    made = PolicyLibrary(CategoricalOutcomes([3, 10], [[[0.5, 0.5]]]))
+    assert made.performance.mean[0, 0] == 6.5
+    assert isinstance(library().performance, GaussianOutcomes)

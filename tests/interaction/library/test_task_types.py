@@ -1,0 +1,205 @@
+"""ε-types and landmarks: the definition as printed, the tight bound 2 ε, overlap, and the full task space."""
+
+import itertools
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.task_types import (
+    epsilon_types,
+    every_task,
+    landmark_library,
+    landmark_regret,
+    landmark_regret_bound,
+    member_regret,
+    pooled_samples,
+)
+
+TABLES = st.tuples(st.integers(1, 12), st.integers(1, 5)).flatmap(
+    lambda shape: arrays(np.float64, shape, elements=st.integers(-20, 20).map(lambda k: k / 4))
+)
+"""Multiples of a quarter: sums and differences are exact, so that bounds can be tested without a tolerance."""
+EPSILONS = st.integers(0, 40).map(lambda k: k / 8)
+FORMS = st.sampled_from(["pairwise", "ball"])
+
+
+def distance(utilities, i, j):
+    return max(abs(a - b) for a, b in zip(utilities[i], utilities[j], strict=True))
+
+
+@settings(deadline=None, max_examples=200)
+@given(TABLES, EPSILONS, FORMS)
+def test_the_landmark_never_costs_more_than_two_epsilon(utilities, epsilon, form):
+    """The property that holds where the printed one, ε, does not (see the test below)."""
+    types = epsilon_types(utilities, epsilon, form)
+    assert (landmark_regret(utilities, types) <= landmark_regret_bound(epsilon)).all()
+
+
+@settings(deadline=None, max_examples=100)
+@given(TABLES, EPSILONS)
+def test_nor_does_any_other_member_in_the_landmarks_place(utilities, epsilon):
+    types = epsilon_types(utilities, epsilon)
+    worst = np.zeros(len(utilities))
+    for i, j in np.ndindex(len(utilities), len(utilities)):
+        if types.labels[i] == types.labels[j]:
+            best = [policy for policy, value in enumerate(utilities[i]) if value == max(utilities[i])]
+            worst[j] = max([worst[j], *(max(utilities[j]) - utilities[j][policy] for policy in best)])
+    np.testing.assert_array_equal(member_regret(utilities, types), worst)
+    assert (worst <= 2 * epsilon).all()
+    assert (landmark_regret(utilities, types) <= worst).all()
+
+
+def test_no_more_than_epsilon_as_printed_can_be_broken_and_two_epsilon_is_reached():
+    """On the landmark both policies are equally good; on the other task one is ε worse, the other ε better."""
+    utilities = np.array([[10.0, 10.0], [9.0, 11.0]])
+    types = epsilon_types(utilities, epsilon=1.0)
+    assert types.n_types == 1
+    assert landmark_regret(utilities, types).max() == 2.0 == landmark_regret_bound(1.0)
+
+
+def test_epsilon_is_broken_without_ties_too():
+    utilities = np.array([[10.0, 9.8], [9.0, 10.8], [10.0, 9.8]])
+    types = epsilon_types(utilities, epsilon=1.0)
+    regret = landmark_regret(utilities, types)
+    assert types.n_types == 1
+    assert regret[1] == pytest.approx(1.8)
+
+
+@settings(deadline=None, max_examples=200)
+@given(TABLES, EPSILONS)
+def test_any_two_tasks_of_a_type_are_equivalent_as_the_definition_says(utilities, epsilon):
+    types = epsilon_types(utilities, epsilon)
+    for i, j in itertools.combinations(range(len(utilities)), 2):
+        if types.labels[i] == types.labels[j]:
+            assert distance(utilities, i, j) <= epsilon
+
+
+@settings(deadline=None, max_examples=200)
+@given(TABLES, EPSILONS)
+def test_every_task_of_a_ball_is_near_its_landmark(utilities, epsilon):
+    types = epsilon_types(utilities, epsilon, "ball")
+    for task, label in enumerate(types.labels):
+        assert distance(utilities, task, types.landmarks[label]) <= epsilon
+
+
+@settings(deadline=None, max_examples=100)
+@given(TABLES, EPSILONS, FORMS)
+def test_every_task_has_one_type_whose_landmark_is_its_own_and_membership_holds(utilities, epsilon, form):
+    types = epsilon_types(utilities, epsilon, form)
+    assert types.labels[types.landmarks].tolist() == list(range(types.n_types))
+    assert types.membership[types.labels, np.arange(len(utilities))].all()
+    for type_, task in np.ndindex(types.membership.shape):
+        members = [types.landmarks[type_]] if form == "ball" else np.flatnonzero(types.labels == type_)
+        expected = all(distance(utilities, task, member) <= epsilon for member in members)
+        assert types.membership[type_, task] == expected
+    assert types.type_prior().sum() == pytest.approx(1)
+
+
+def test_equivalence_is_not_transitive_so_types_overlap():
+    """0 and 1 are near, 1 and 2 are near, 0 and 2 are not: the middle task belongs to both types."""
+    utilities = np.array([[0.0], [1.0], [2.0]])
+    types = epsilon_types(utilities, epsilon=1.0)
+    assert types.n_types == 2
+    assert types.membership[:, 1].all()
+    assert (types.membership.sum(axis=0) == [1, 2, 1]).all()
+
+
+def test_balls_are_fewer():
+    utilities = np.arange(5.0)[:, None]
+    assert epsilon_types(utilities, 1.0).n_types == 3
+    assert epsilon_types(utilities, 1.0, "ball").n_types == 2
+
+
+def test_zero_joins_duplicates_only_and_plenty_joins_all():
+    utilities = np.array([[1.0, 2.0], [1.0, 2.0], [1.0, 2.5]])
+    assert epsilon_types(utilities, 0.0).n_types == 2
+    assert epsilon_types(utilities, 0.5).n_types == 1
+    assert landmark_regret(utilities, epsilon_types(utilities, 0.0)).max() == 0
+
+
+def test_the_full_task_space_has_no_landmark_regret():
+    utilities = np.random.default_rng(0).normal(size=(7, 4))
+    types = every_task(utilities)
+    assert types.n_types == 7
+    assert (landmark_regret(utilities, types) == 0).all()
+    assert (types.membership == np.eye(7, dtype=bool)).all()
+
+
+def test_the_landmark_is_the_member_in_the_middle():
+    types = epsilon_types([[0.0], [1.0], [1.9]], epsilon=2.0)
+    assert types.landmarks.tolist() == [1]
+
+
+def test_library_of_landmarks():
+    library = PolicyLibrary.from_means(
+        [[0.0, 5.0], [0.5, 5.5], [9.0, 0.0]], 1.0, types=["a", "b", "c"], prior=[0.2, 0.3, 0.5]
+    )
+    reduced = landmark_library(library, epsilon_types(library.performance.mean, 1.0))
+    assert reduced.n_types == 2
+    by_name = dict(zip(reduced.types, reduced.prior, strict=True))
+    assert by_name.pop("c") == 0.5
+    assert next(iter(by_name.values())) == pytest.approx(0.5)
+    with pytest.raises(InputError, match="types must cover"):
+        landmark_library(library, every_task([[1.0]]))
+
+
+def test_samples_of_a_types_tasks_are_pooled():
+    samples = np.array([[[1.0, 2.0]], [[3.0, np.nan]], [[9.0, 9.5]]])
+    pooled = pooled_samples(samples, epsilon_types([[0.0], [0.0], [9.0]], 1.0))
+    assert pooled.shape == (2, 1, 4)
+    assert sorted(pooled[0, 0][~np.isnan(pooled[0, 0])]) == [1.0, 2.0, 3.0]
+    assert PolicyLibrary.from_samples(pooled).performance.mean[0, 0] == 2.0
+    with pytest.raises(InputError, match="samples must be"):
+        pooled_samples(samples[:2], every_task([[1.0]] * 3))
+
+
+def test_a_task_counts_in_every_type_it_could_belong_to_where_types_overlap():
+    types = epsilon_types([[0.0], [1.0], [2.0]], 1.0)
+    assert types.n_types == 2
+    assert types.membership.sum(axis=0).tolist() == [1, 2, 1]
+    samples = np.array([[[0.0]], [[1.0]], [[2.0]]])
+    apart, shared = pooled_samples(samples, types), pooled_samples(samples, types, overlapping=True)
+    assert sorted(np.isnan(apart).sum(axis=(1, 2))) == [0, 1]
+    assert sorted(np.nanmean(shared, axis=(1, 2))) == [0.5, 1.5]
+    assert PolicyLibrary.from_samples(shared).n_types == 2
+
+
+@settings(deadline=None, max_examples=100)
+@given(TABLES, EPSILONS, FORMS)
+def test_the_bound_holds_for_every_type_a_task_could_belong_to(utilities, epsilon, form):
+    types = epsilon_types(utilities, epsilon, form)
+    for landmark, members in zip(types.landmarks, types.membership, strict=True):
+        best = np.flatnonzero(utilities[landmark] == utilities[landmark].max())
+        for task in np.flatnonzero(members):
+            regret = utilities[task].max() - min(utilities[task, policy] for policy in best)
+            assert regret <= landmark_regret_bound(epsilon)
+
+
+def test_tasks_must_be_those_of_the_types():
+    types = epsilon_types([[0.0], [1.0], [9.0]], 1.0)
+    for regret in (landmark_regret, member_regret):
+        with pytest.raises(InputError, match="of the 3 tasks"):
+            regret([[0.0], [1.0]], types)
+    for prior in ([0.5, 0.5], [2.0, -1.0, 0.0], [np.nan, 0.5, 0.5]):
+        with pytest.raises(InputError, match="prior must be"):
+            types.type_prior(prior)
+
+
+@pytest.mark.parametrize(
+    ("utilities", "epsilon", "form", "message"),
+    [
+        ([[np.nan]], 1.0, "ball", "finite"),
+        ([1.0], 1.0, "ball", "finite"),
+        ([[1.0]], -1.0, "ball", "epsilon must be"),
+        ([[1.0]], np.nan, "ball", "epsilon must be"),
+        ([[1.0]], 1.0, "cube", "form must be"),
+    ],
+)
+def test_bad_input_is_refused(utilities, epsilon, form, message):
+    with pytest.raises(InputError, match=message):
+        epsilon_types(utilities, epsilon, form)

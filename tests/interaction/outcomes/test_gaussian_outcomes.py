@@ -1,0 +1,87 @@
+"""Gaussian outcomes by hand and against SciPy."""
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+
+
+def test_against_scipy():
+    model = GaussianOutcomes([[1.0, -2.0], [4.0, 0.0]], [[1.0, 3.0], [0.5, 2.0]])
+    truth = stats.norm(model.mean, model.deviation)
+    np.testing.assert_allclose(model.density(0.7), truth.pdf(0.7), rtol=1e-12)
+    np.testing.assert_allclose(model.exceedance(0.7), truth.sf(0.7), rtol=1e-12)
+    np.testing.assert_allclose(model.log_density(1, 0.7), truth.logpdf(0.7)[:, 1], rtol=1e-12)
+    np.testing.assert_allclose(model.cumulative(0, np.array([0.7]))[:, 0], truth.cdf(0.7)[:, 0], rtol=1e-12)
+
+
+def test_excess_at_the_mean_is_the_deviation_over_root_two_pi():
+    model = GaussianOutcomes([[3.0]], 2.0)
+    assert model.expected_excess(3.0)[0, 0] == pytest.approx(2 / np.sqrt(2 * np.pi))
+    # Far above the threshold the excess is the distance; far below, nothing.
+    assert model.expected_excess(-97.0)[0, 0] == pytest.approx(100)
+    assert model.expected_excess(103.0)[0, 0] == 0
+
+
+def test_deviations_are_shrunk_by_hand():
+    # Pair variances 2 and 18 (n = 2 each); pooled (2 + 18) / 2 = 10; (5 · 10 + 2) / 6 and (5 · 10 + 18) / 6.
+    model = GaussianOutcomes.from_samples([[[1.0, 3.0], [-3.0, 3.0]]])
+    np.testing.assert_allclose(model.mean, [[2.0, 0.0]])
+    np.testing.assert_allclose(model.deviation**2, [[52 / 6, 68 / 6]])
+    almost_raw = GaussianOutcomes.from_samples([[[1.0, 3.0], [-3.0, 3.0]]], shrinkage=1e-9)
+    np.testing.assert_allclose(almost_raw.deviation**2, [[2.0, 18.0]], rtol=1e-6)
+
+
+def test_observed_outcomes_by_hand():
+    model = GaussianOutcomes([[1.0]], 2.0, count=3)
+    model.observe(0, 0, 5.0)
+    # Mean (3 · 1 + 5) / 4 = 2; variance (3 · 4 + (5 - 1)(5 - 2)) / 4 = 6.
+    assert model.mean[0, 0] == 2.0
+    assert model.deviation[0, 0] == pytest.approx(np.sqrt(6))
+    assert model.log_density(0, 2.0)[0] == pytest.approx(stats.norm(2, np.sqrt(6)).logpdf(2))
+
+
+def test_an_exact_model_learns_nothing_and_says_so():
+    model = GaussianOutcomes([[1.0]], 2.0)
+    with pytest.raises(InputError, match="known exactly"):
+        model.observe(0, 0, 5.0)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (([[np.nan]], 1.0), "mean must be finite"),
+        (([[1e101]], 1.0), "mean must be finite"),
+        (([1.0], 1.0), "mean must be"),
+        (([[1.0]], 0.0), "deviation must be positive"),
+        (([[1.0]], np.inf), "deviation must be positive"),
+        (([[1.0]], [1.0, 2.0]), "deviation must be one number or of mean's shape"),
+        (([[1.0]], 1.0, 0.0), "count must be positive"),
+        (([[1.0]], 1.0, np.nan), "count must be positive"),
+    ],
+)
+def test_what_is_no_model_is_refused(arguments, message):
+    with pytest.raises(InputError, match=message):
+        GaussianOutcomes(*arguments)
+
+
+def test_shrinkage_must_be_positive():
+    for shrinkage in (0.0, -1.0, np.nan, np.inf):
+        with pytest.raises(InputError, match="shrinkage must be positive"):
+            GaussianOutcomes.from_samples([[[1.0, 2.0]]], shrinkage=shrinkage)
+
+
+def test_a_thousand_types_and_policies_need_a_few_arrays_only():
+    """No array of types × policies × types: that alone would be 8 GB."""
+    import tracemalloc
+
+    mean = np.random.default_rng(0).normal(size=(1000, 1000))
+    tracemalloc.start()
+    model = GaussianOutcomes(mean, 1.0)
+    assert model.expected_excess(0.5).shape == (1000, 1000)
+    assert model.log_density(3, 0.5).shape == (1000,)
+    _, peak = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert peak < 200e6

@@ -1,0 +1,271 @@
+"""The agent: Algorithms 7 and 8 by hand, late signals, bad input, and what it says for itself."""
+
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.evidence import KEPT, MOST_SURPRISE
+from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+
+INF = math.inf
+
+
+def coin_library(**options) -> PolicyLibrary:
+    """Two types told apart by 8 to 2; each has a policy of its own."""
+    probs = np.array([[[0.8, 0.2], [0.5, 0.5]], [[0.2, 0.8], [0.5, 0.5]]])
+    return PolicyLibrary.from_means(
+        [[1.0, 0.0], [0.0, 1.0]], 0.5, types=["a", "b"], policies=["left", "right"], signal=CategorySignal(probs),
+        **options,
+    )  # fmt: skip
+
+
+def grid_library(n: int = 8, deviation: float = 1.0) -> PolicyLibrary:
+    """A policy's return falls with its distance from the type."""
+    place = np.arange(n)
+    return PolicyLibrary.from_means(-np.abs(place[:, None] - place).astype(float), deviation)
+
+
+def test_two_episodes_by_hand():
+    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy())
+    assert agent.select() == 0
+    agent.update("left", 1)
+    assert agent.belief == pytest.approx(np.array([0.12, 0.32]) / 0.44)
+    assert agent.select() == 1
+    agent.update(1, 0)
+    assert agent.belief == pytest.approx(np.array([0.12, 0.32]) / 0.44)
+    assert agent.expected_utility() == pytest.approx(np.array([0.12, 0.32]) / 0.44)
+    assert agent.surprise == pytest.approx(-math.log(0.44) - math.log(0.5))
+    assert (agent.episode, agent.unexplained) == (2, 0)
+    assert np.exp(agent.log_belief) == pytest.approx(agent.belief)
+
+
+def test_what_it_says_for_itself():
+    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy())
+    assert agent.explain().selected is None
+    assert agent.explain().evidence == {"a": [], "b": []}
+    agent.update("left", 1)
+    agent.update("right", 0)
+    agent.select()
+    told = agent.explain()
+    assert (told.selected, told.runner_up) == ("right", "left")
+    assert (told.score, told.runner_up_score) == pytest.approx((0.32 / 0.44, 0.12 / 0.44))
+    assert list(told.belief) == ["b", "a"]
+    assert told.evidence["b"] == [0.0, 0.0]
+    assert told.evidence["a"] == pytest.approx([math.log(0.25), 0.0])
+    assert told.policies == ["left", "right"]
+    assert told.log_evidence == pytest.approx([math.log(0.44), math.log(0.5)])
+    assert told.to_dict()["surprise"] == agent.surprise
+    for _ in range(50):
+        agent.update(0, 0)
+    assert len(agent.explain().policies) == KEPT
+
+
+def test_a_single_policy_has_no_runner_up():
+    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0], [0.0]], 1.0))
+    assert agent.select() == 0
+    assert agent.explain().runner_up is None
+
+
+def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
+    probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]]])
+    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=CategorySignal(probs)))
+    agent.update(0, 0)
+    before, surprise = agent.log_belief, agent.surprise
+    agent.update(0, 2)
+    assert np.array_equal(agent.log_belief, before)
+    assert agent.surprise == surprise + MOST_SURPRISE
+    assert agent.unexplained == 1
+    assert agent.explain().evidence == {"type 0": [0.0, 0.0], "type 1": [pytest.approx(-math.log(2)), 0.0]}
+    agent.update(0, 1)
+    assert agent.belief.tolist() == [0.0, 1.0]
+
+
+@settings(deadline=None, max_examples=30)
+@given(st.permutations(range(10)), st.integers(0, 2**32 - 1))
+def test_late_signals_in_any_order_lead_to_the_same_belief(order, seed):
+    random = np.random.default_rng(seed)
+    library = grid_library()
+    signals = [(int(random.integers(8)), float(random.normal(-3, 3))) for _ in range(10)]
+    at_once, late = BayesianPolicyReuse(library), BayesianPolicyReuse(library)
+    for policy, signal in signals:
+        at_once.select()
+        at_once.update(policy, signal)
+    for _ in range(4):
+        late.select()
+    for place in order:
+        late.update(*signals[place])
+    assert late.belief == pytest.approx(at_once.belief, abs=1e-12)
+    assert late.surprise == pytest.approx(at_once.surprise, rel=1e-9)
+
+
+@pytest.mark.parametrize("name", RULES)
+def test_every_rule_finds_the_type_of_a_plain_task(name):
+    library = grid_library()
+    random, agent = np.random.default_rng(1), BayesianPolicyReuse(library, rule_named(name), horizon=30, seed=3)
+    for _ in range(30):
+        policy = agent.select()
+        agent.update(policy, library.performance.sample(random, 5, policy))
+    if name != "greedy":
+        assert agent.belief.argmax() == 5
+        assert agent.probabilities().argmax() == 5
+    assert agent.probabilities().sum() == pytest.approx(1)
+
+
+def test_the_same_seed_selects_the_same_and_another_another():
+    library = grid_library()
+
+    def run(seed):
+        agent = BayesianPolicyReuse(library, rule_named("sampling"), seed=seed)
+        return [agent.select() for _ in range(30)]
+
+    assert run(4) == run(4) == run(np.int64(4))
+    assert run(4) != run(5)
+    assert run(np.random.default_rng(4)) == run(np.random.default_rng(4))
+
+
+def test_the_horizon_counts_the_episodes_that_follow():
+    agent = BayesianPolicyReuse(coin_library(), KnowledgeGradient(), horizon=3)
+    left = []
+    for _ in range(4):
+        left.append(agent.episodes_left)
+        agent.update(0, 0)
+    assert left == [2, 1, 0, 0]
+    assert BayesianPolicyReuse(coin_library()).episodes_left is None
+
+
+def test_types_that_change_take_their_step_after_each_signal():
+    changing = TypeDynamics.hazard(0.1, [0.5, 0.5])
+    agent = BayesianPolicyReuse(coin_library(), dynamics=changing)
+    agent.update(0, 0)
+    assert agent.belief == pytest.approx([0.77, 0.23])
+
+
+def test_what_is_given_out_cannot_change_the_agent():
+    agent = BayesianPolicyReuse(coin_library())
+    agent.belief[:] = 7
+    agent.log_belief[:] = 7
+    agent.library.prior[:] = 7
+    assert agent.belief.tolist() == [0.5, 0.5]
+
+
+# ---- bad input -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("bad", [math.nan, INF, -INF, 1.7e308, "much", None])
+def test_signals_that_are_none_leave_everything_as_it_was(bad):
+    agent = BayesianPolicyReuse(grid_library())
+    agent.update(0, -1.0)
+    before = agent.log_belief
+    with pytest.raises(InputError):
+        agent.update(0, bad)
+    assert np.array_equal(agent.log_belief, before)
+    assert agent.episode == 1
+
+
+def test_unknown_policies_are_named():
+    agent = BayesianPolicyReuse(coin_library())
+    for unknown in ("up", 2, -1):
+        with pytest.raises(NotFoundError, match="unknown policy"):
+            agent.update(unknown, 0)
+
+
+class Broken:
+    """A signal model that answers with whatever it was given."""
+
+    def __init__(self, answer):
+        self.answer = answer
+
+    def log_likelihood(self, policy, signal):
+        return np.array(self.answer)
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        ([0.0, math.nan], "gave NaN or infinity"),
+        ([INF, 0.0], "gave NaN or infinity"),
+        ([0.0], r"must give \(2,\)"),
+    ],
+)
+def test_a_model_that_answers_wrongly_is_named(answer, message):
+    library = coin_library()
+    library.signal = Broken(answer)
+    agent = BayesianPolicyReuse(library)
+    with pytest.raises(InputError, match=f"Broken.*{message}"):
+        agent.update(0, 0)
+    assert agent.belief.tolist() == [0.5, 0.5]
+
+
+def test_an_own_likelihood_serves_as_a_signal():
+    signal = LikelihoodSignal(lambda policy, words: [len(words) * -1.0, -INF if "no" in words else -2.0], 2)
+    agent = BayesianPolicyReuse(PolicyLibrary.from_means(np.eye(2), 1.0, signal=signal), Greedy())
+    agent.update(0, ["yes"])
+    assert agent.belief == pytest.approx(np.exp([-1, -2]) / np.exp([-1, -2]).sum())
+    agent.update(0, ["no"])
+    assert agent.belief.tolist() == [1.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ({"prior": [0.5, 0.6]}, "prior must sum to 1"),
+        ({"prior": [1.0]}, r"prior must be \(2,\)"),
+        ({"horizon": 0}, "horizon must be at least 1"),
+        ({"horizon": math.nan}, "horizon must be at least 1"),
+        ({"dynamics": TypeDynamics.hazard(0.1, [0.2, 0.3, 0.5])}, "dynamics are for 3 types"),
+    ],
+)
+def test_settings_that_break_their_rule_are_refused(options, message):
+    with pytest.raises(InputError, match=message):
+        BayesianPolicyReuse(coin_library(), **options)
+
+
+def test_one_type_and_identical_types_are_valid():
+    alone = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0, 2.0]], 1.0))
+    assert alone.select() == 1
+    alone.update(1, -40.0)
+    assert alone.belief.tolist() == [1.0]
+    for name in RULES:
+        twins = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0, 2.0]] * 3, 1.0), rule_named(name))
+        for _ in range(5):
+            twins.update(twins.select(), 1.5)
+        assert twins.belief == pytest.approx(np.full(3, 1 / 3)), name
+
+
+@settings(deadline=None, max_examples=8)
+@given(st.integers(0, 2**32 - 1), st.sampled_from(list(RULES)))
+def test_hundreds_of_hostile_signals_leave_a_belief(seed, name):
+    random = np.random.default_rng(seed)
+    library = grid_library(5, 1e-3)
+    agent = BayesianPolicyReuse(library, rule_named(name), horizon=1000)
+    for _ in range(150):
+        policy = agent.select()
+        size = 10.0 ** random.uniform(-300, 100)
+        agent.update(policy, float(random.choice([size, -size, 0.0, -2.0, 1e99])))
+        belief = agent.belief
+        assert not np.isnan(belief).any()
+        assert belief.sum() == pytest.approx(1)
+    assert math.isfinite(agent.surprise)
+
+
+def test_evidence_is_kept_where_a_model_answers_in_one_array_each_time():
+    answer = np.empty(2)
+
+    class Same:
+        def log_likelihood(self, policy, signal):
+            answer[:] = [0.0, -signal]
+            return answer
+
+    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[1.0], [2.0]], 1.0, signal=Same()))
+    agent.update(0, 1.0)
+    agent.update(0, 3.0)
+    assert agent.explain().evidence["type 1"] == [-1.0, -3.0]

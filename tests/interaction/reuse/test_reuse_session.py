@@ -1,0 +1,142 @@
+"""Saved agents go on to the bit; files that are none are refused."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, StoreError
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.reuse_session import load_session, save_session, session_bytes, session_from_bytes
+from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+
+
+def library(**options) -> PolicyLibrary:
+    place = np.arange(6)
+    return PolicyLibrary.from_means(-np.abs(place[:, None] - place).astype(float), 2.0, **options)
+
+
+def played(agent: BayesianPolicyReuse, n: int) -> tuple[list[int], bytes]:
+    """Policies of `n` episodes, and all bits of what is believed after each."""
+    chosen, bits = [], b""
+    for number in range(n):
+        policy = agent.select()
+        chosen.append(policy)
+        agent.update(policy, float(np.sin(number + policy)))
+        bits += agent.log_belief.tobytes()
+    return chosen, bits + np.float64(agent.surprise).tobytes()
+
+
+@pytest.mark.parametrize("name", RULES)
+@pytest.mark.parametrize("kind", ["static", "hazard", "transitions"])
+def test_a_loaded_agent_goes_on_to_the_bit(name, kind, tmp_path):
+    matrix = np.full((6, 6), 0.02) + 0.88 * np.eye(6)
+    dynamics = {
+        "static": TypeDynamics.static(),
+        "hazard": TypeDynamics.hazard(0.02, np.full(6, 1 / 6)),
+        "transitions": TypeDynamics.transitions(matrix),
+    }[kind]
+    agent = BayesianPolicyReuse(library(), rule_named(name), dynamics=dynamics, horizon=40, seed=5)
+    played(agent, 7)
+    agent.select()
+    save_session(agent, tmp_path / "agent.npz")
+    loaded = load_session(tmp_path / "agent.npz")
+    assert session_bytes(loaded) == session_bytes(agent)
+    assert loaded.explain() == agent.explain()
+    assert loaded.rule == agent.rule
+    assert played(loaded, 12) == played(agent, 12)
+
+
+def test_settings_zeros_and_other_generators_survive(tmp_path):
+    probs = np.array([[[1.0, 0.0]], [[0.5, 0.5]], [[0.0, 1.0]]])
+    model = PolicyLibrary.from_means([[0.0], [1.0], [2.0]], 1.0, signal=CategorySignal(probs), prior=[0, 0.5, 0.5])
+    for source in (np.random.MT19937, np.random.Philox, np.random.SFC64):
+        agent = BayesianPolicyReuse(
+            model, KnowledgeGradient(mass=0.9, lookahead=3.0), seed=np.random.Generator(source(1))
+        )
+        agent.update(0, 0)
+        agent.update(0, 1)
+        agent.update(0, 0)
+        save_session(agent, tmp_path / "agent.npz")
+        loaded = load_session(tmp_path / "agent.npz")
+        assert np.array_equal(loaded.log_belief, agent.log_belief)
+        assert loaded.rule == KnowledgeGradient(mass=0.9, lookahead=3.0)
+        assert loaded.generator.random(5).tolist() == agent.generator.random(5).tolist()
+
+
+def test_a_type_certain_after_a_change_comes_back(tmp_path):
+    one = PolicyLibrary.from_means([[1.0, 2.0]], 1.0)
+    for rate in np.linspace(0.001, 0.02, 20):
+        agent = BayesianPolicyReuse(one, dynamics=TypeDynamics.hazard(rate, [1.0]))
+        agent.update(0, 1.0)
+        assert session_from_bytes(session_bytes(agent)).log_belief.tobytes() == agent.log_belief.tobytes()
+
+
+def test_an_own_signal_model_is_given_again(tmp_path):
+    signal = LikelihoodSignal(lambda policy, x: [0.0, -abs(x), -1.0, -2.0, -3.0, -4.0], 6)
+    agent = BayesianPolicyReuse(library(signal=signal), Greedy())
+    agent.update(0, 3.0)
+    save_session(agent, tmp_path / "agent.npz")
+    with pytest.raises(InputError, match="give it as signal="):
+        load_session(tmp_path / "agent.npz")
+    loaded = load_session(tmp_path / "agent.npz", signal)
+    loaded.update(1, 0.5)
+    agent.update(1, 0.5)
+    assert np.array_equal(loaded.log_belief, agent.log_belief)
+
+
+def repacked(content: bytes, change) -> bytes:
+    import io
+
+    with np.load(io.BytesIO(content)) as packed:
+        arrays = {name: packed[name] for name in packed.files}
+    header = json.loads(arrays["about"].tobytes())
+    change(header, arrays)
+    arrays["about"] = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    stream = io.BytesIO()
+    np.savez(stream, **arrays)
+    return stream.getvalue()
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 1"),
+        (lambda h, a: h.update(format="else"), "another kind of file"),
+        (lambda h, a: h.update(rule="best"), "rule must be one of"),
+        (lambda h, a: h.update(settings={"wish": 1}), "wish"),
+        (lambda h, a: h.update(horizon=0), "horizon must be at least 1"),
+        (lambda h, a: h["generator"].update(bit_generator="Dice"), "unknown random generator"),
+        (lambda h, a: a.update(log_belief=np.zeros(3)), "log_belief has shape"),
+        (lambda h, a: a.update(log_belief=np.zeros(6)), "log_belief is no belief"),
+        (lambda h, a: a.update(log_belief=np.full(6, np.nan)), "log_belief is no belief"),
+        (lambda h, a: a.pop("library"), "library"),
+    ],
+)
+def test_files_that_are_none_are_refused(change, message):
+    content = session_bytes(BayesianPolicyReuse(library()))
+    with pytest.raises(InputError, match=message):
+        session_from_bytes(repacked(content, change))
+
+
+def test_no_file_damage_and_full_disks_are_said(tmp_path):
+    with pytest.raises(InputError, match="cannot be read"):
+        load_session(tmp_path / "none.npz")
+    content = session_bytes(BayesianPolicyReuse(library()))
+    for cut in (0, 10, len(content) // 2, len(content) - 5):
+        with pytest.raises(InputError, match="no session that can be read"):
+            session_from_bytes(content[:cut])
+    with pytest.raises(StoreError, match="cannot be written"):
+        save_session(BayesianPolicyReuse(library()), tmp_path / "no" / "folder.npz")
+
+
+def test_a_rule_of_ones_own_cannot_be_saved():
+    class Mine(Greedy):
+        pass
+
+    with pytest.raises(InputError, match="rule must be one of"):
+        session_bytes(BayesianPolicyReuse(library(), Mine()))

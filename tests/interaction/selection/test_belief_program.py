@@ -1,0 +1,105 @@
+"""The exact program over beliefs: by hand, as plain recursion, and no rule above it."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import RULES, EpsilonGreedy, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
+from lifelore.interaction.signals.category_signal import CategorySignal
+
+from . import naive_selection as naive
+
+
+def naive_value(belief, mean, laws, horizon):
+    """Eq. 4.3 under the belief and with a horizon, by recursion over normalised posteriors."""
+    if horizon == 0:
+        return 0.0
+    worth = []
+    for policy, law in enumerate(laws):
+        total = naive.utility(belief, mean, policy)
+        for signal in range(len(law[0])):
+            after = naive.posterior(belief, law, signal)
+            if after is not None:
+                total += naive.chance(belief, law, signal) * naive_value(after, mean, laws, horizon - 1)
+        worth.append(total)
+    return max(worth)
+
+
+def small_library(seed: int) -> PolicyLibrary:
+    random = np.random.default_rng(seed)
+    probs = random.dirichlet(np.full(3, 0.5), (3, 3))
+    probs[0, 0] = [0.0, 0.3, 0.7]
+    return PolicyLibrary.from_means(
+        random.normal(scale=10, size=(3, 3)), 1.0, signal=CategorySignal(probs), prior=random.dirichlet(np.ones(3))
+    )
+
+
+def test_looking_once_is_worth_it_by_hand():
+    # Types equally likely; the third policy costs 3 and names the type; guessing earns 5 on average, knowing 10.
+    probs = np.array([[[0.5, 0.5], [0.5, 0.5], [1, 0]], [[0.5, 0.5], [0.5, 0.5], [0, 1]]], float)
+    library = PolicyLibrary.from_means([[10, 0, -3], [0, 10, -3]], 1.0, signal=CategorySignal(probs))
+    # Guessing K times earns 5 K; looking first earns -3 + 10 (K - 1): better from K = 3.
+    assert best_plan(library, 1).value == pytest.approx(5)
+    assert best_plan(library, 2).value == pytest.approx(10)
+    three = best_plan(library, 3)
+    assert (three.value, three.first) == (pytest.approx(17), 2)
+    # Guessing first and looking then leaves one episode to know: 5 - 3 + 10; less than guessing three times.
+    assert three.worth == pytest.approx([15, 15, 17])
+    assert value_of_rule(library, Greedy(), 3) == pytest.approx(15)
+    # With two episodes left the gradient weighs what is learnt, 5, twice: -3 + 10 beats 5.
+    assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(17)
+    assert best_plan(library, 3, np.array([1.0, 0.0])).value == pytest.approx(30)
+
+
+@settings(deadline=None, max_examples=15)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 3))
+def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
+    library = small_library(seed)
+    mean, laws = library.performance.mean.tolist(), library.table().probs.tolist()
+    plan = best_plan(library, horizon)
+    assert plan.value == pytest.approx(naive_value(library.prior.tolist(), mean, laws, horizon), rel=1e-9)
+    assert plan.worth[plan.first] == plan.value
+    for name in RULES:
+        assert value_of_rule(library, rule_named(name), horizon) <= plan.value + 1e-9, name
+
+
+def test_a_random_rule_by_hand():
+    library = small_library(1)
+    # ε = 1 selects each policy a third of the time whatever it has seen.
+    expected = 2 * (library.prior @ library.performance.mean).mean()
+    assert value_of_rule(library, EpsilonGreedy(1.0), 2) == pytest.approx(expected)
+
+
+def test_the_value_of_a_rule_is_what_playing_it_earns():
+    library = small_library(6)
+    exact = value_of_rule(library, KnowledgeGradient(), 3)
+    random = np.random.default_rng(0)
+    from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+
+    earned = []
+    for _ in range(1500):
+        agent = BayesianPolicyReuse(library, KnowledgeGradient(), horizon=3, seed=random)
+        type_, total = random.choice(3, p=library.prior), 0.0
+        for _ in range(3):
+            policy = agent.select()
+            total += library.performance.mean[type_, policy]
+            agent.update(policy, int(library.signal.sample(random, type_, policy)))
+        earned.append(total)
+    # Five standard errors of the mean.
+    assert np.mean(earned) == pytest.approx(exact, abs=5 * np.std(earned) / np.sqrt(1500))
+
+
+def test_horizons_below_one_and_trees_too_large_are_refused():
+    library = small_library(0)
+    with pytest.raises(InputError, match="horizon must be at least 1"):
+        best_plan(library, 0)
+    with pytest.raises(InputError, match="too large"):
+        best_plan(library, 12)
+    for belief in ([2.0, -1.0], [1.0], [np.nan, 1.0], [0.5, 0.6]):
+        for plan in (best_plan, lambda *given, **k: value_of_rule(given[0], Greedy(), given[1], **k)):
+            with pytest.raises(InputError, match="prior must be"):
+                plan(library, 2, belief=np.array(belief))

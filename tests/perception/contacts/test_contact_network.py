@@ -1,0 +1,99 @@
+"""Networks: the spanning tree against brute force, merging, and the way through networkx and back."""
+
+from itertools import combinations
+
+import networkx as nx
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.spatial.distance import pdist, squareform
+
+from lifelore.core.errors import InputError
+from lifelore.perception.contacts.contact_network import ContactPointNetwork, spanning_edges
+from lifelore.perception.contacts.contact_point import ContactPoint
+
+
+def contact(at, other=3):
+    return ContactPoint(np.array(at, float), np.array([0.0, 0, 1]), np.zeros(3), 1.0, 7, other)
+
+
+def lightest_tree(positions):
+    """Every set of k - 1 edges that joins all nodes; the least total length."""
+    k = len(positions)
+    pairs = list(combinations(range(k), 2))
+    totals = []
+    for edges in combinations(pairs, k - 1):
+        graph = nx.Graph(edges)
+        graph.add_nodes_from(range(k))
+        if nx.is_connected(graph):
+            totals.append(sum(np.linalg.norm(positions[i] - positions[j]) for i, j in edges))
+    return min(totals)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.lists(st.tuples(*[st.integers(-5, 5)] * 3), min_size=2, max_size=5))
+def test_edges_are_a_lightest_spanning_tree(places):
+    at = np.array(places, float)
+    edges = spanning_edges(at)
+    assert len(edges) == len(at) - 1
+    graph = nx.Graph(edges.tolist())
+    graph.add_nodes_from(range(len(at)))
+    assert nx.is_connected(graph)
+    total = sum(np.linalg.norm(at[i] - at[j]) for i, j in edges)
+    assert total == pytest.approx(lightest_tree(at))
+
+
+def edges_of_networkx(positions):
+    """The same tree by networkx over SciPy's distances, pairs in the order of their higher number."""
+    distance = squareform(pdist(positions))
+    graph = nx.Graph()
+    graph.add_weighted_edges_from((i, j, distance[i, j]) for i in range(len(positions)) for j in range(i))
+    return sorted(sorted(edge) for edge in nx.minimum_spanning_edges(graph, data=False))
+
+
+@settings(max_examples=200, deadline=None)
+@given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=12))
+def test_of_equally_short_edges_those_of_networkx_are_taken(places):
+    at = np.array(places, float) * 0.1
+    assert spanning_edges(at).tolist() == edges_of_networkx(at)
+
+
+@settings(deadline=None)
+@given(st.integers(0, 2**32 - 1), st.integers(2, 40))
+def test_edges_among_scattered_points_are_those_of_networkx(seed, n):
+    at = np.random.default_rng(seed).normal(0, 0.1, (n, 3))
+    assert spanning_edges(at).tolist() == edges_of_networkx(at)
+
+
+@pytest.mark.parametrize("shape", [(4, 4, 1), (3, 3, 3), (12, 1, 1)])
+def test_edges_in_a_lattice_are_those_of_networkx(shape):
+    at = np.stack(np.meshgrid(*map(np.arange, shape), indexing="ij"), axis=-1).reshape(-1, 3) * 0.05
+    for order in (slice(None), slice(None, None, -1), np.random.default_rng(0).permutation(len(at))):
+        assert spanning_edges(at[order]).tolist() == edges_of_networkx(at[order])
+
+
+def test_no_node_and_one_node_have_no_edges():
+    assert spanning_edges(np.empty((0, 3))).shape == (0, 2)
+    assert spanning_edges(np.zeros((1, 3))).shape == (0, 2)
+
+
+def test_merging_collects_the_points_and_builds_the_tree_anew():
+    above = ContactPointNetwork.from_contacts(2, [contact([0, 0, 1])])
+    below = ContactPointNetwork.from_contacts(2, [contact([0, 0, 0], other=1), contact([3, 0, 0], other=1)])
+    merged = above.merged(below)
+    assert len(merged.nodes) == 3
+    assert merged.edges.tolist() == [[0, 1], [1, 2]]
+    with pytest.raises(InputError, match="object 2"):
+        above.merged(ContactPointNetwork.from_contacts(4, [contact([0, 0, 0])]))
+
+
+def test_the_way_through_networkx_keeps_everything():
+    network = ContactPointNetwork.from_contacts(5, [contact([0, 0, 0]), contact([0, 2, 0]), contact([0, 1, 0])])
+    graph = network.to_networkx()
+    assert graph.edges[0, 2]["length"] == 1.0
+    back = ContactPointNetwork.from_networkx(graph)
+    assert back.object_id == 5
+    assert np.array_equal(back.edges, network.edges)
+    assert np.array_equal(back.positions, network.positions)
+    assert back.nodes[1].n_support == 7

@@ -1,0 +1,372 @@
+"""Models there and back bit for bit; files that are none of ours; the shipped one."""
+
+import io
+import json
+import subprocess
+import sys
+import zipfile
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_model_file import (
+    SHIPPED,
+    load_model,
+    model_about,
+    model_bytes,
+    model_from_bytes,
+    save_model,
+    shipped_model,
+)
+from lifelore.perception.trees.tree_training import TreeSettings
+
+
+def two_blocks(box, kind: str) -> LabelledCloud:
+    place = {ON: (0.01, 0.01, 0.052), ADJACENT: (0.09, 0, 0), NONE: (0.14, 0, 0)}[kind]
+    parts = [box((0, 0, 0), (0.08, 0.08, 0.05)), box(place, np.add(place, (0.05, 0.05, 0.05)))]
+    parts.append(box((-0.1, -0.1, -0.002), (0.3, 0.2, -0.002), 0.01))
+    return LabelledCloud(np.vstack(parts), np.repeat([2, 3, TABLE], [len(part) for part in parts]))
+
+
+@pytest.fixture
+def clouds(box) -> list[LabelledCloud]:
+    return [two_blocks(box, kind) for kind in (ON, ADJACENT, NONE)]
+
+
+TRUTHS = [[PairLabel(3, 2, kind), PairLabel(2, TABLE, ON)] for kind in (ON, ADJACENT, NONE)]
+
+
+@pytest.mark.parametrize(
+    "options",
+    [{"trees": TreeSettings(10, 10)}, {"method": "displacement"}, {"multi_label": True, "symmetric": ["none"]}],
+)
+def test_a_model_comes_back_bit_for_bit(clouds, tmp_path, options):
+    model = RelationClassifier(**options).fit(clouds, TRUTHS)
+    save_model(model, tmp_path / "model.npz", {"from": "blocks"})
+    again = RelationClassifier.load(tmp_path / "model.npz")
+    assert again.beliefs(clouds[0]) == model.beliefs(clouds[0])
+    assert (again.names, again.symmetric, again.settings) == (model.names, model.symmetric, model.settings)
+    assert model_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
+    assert model_about(tmp_path / "model.npz")["about"] == {"from": "blocks"}
+
+
+def test_the_settings_of_the_votes_come_back_too(clouds):
+    model = RelationClassifier("displacement", k=3, omega=0.05, weights="distance").fit(clouds, TRUTHS)
+    again = model_from_bytes(model_bytes(model))
+    assert again.neighbours == model.neighbours
+    assert again.fit(clouds[:2], TRUTHS[:2]).beliefs(clouds[2]) == model.fit(clouds[:2], TRUTHS[:2]).beliefs(
+        clouds[2]
+    )
+
+
+def test_a_file_that_does_not_tell_the_settings_of_the_votes_is_read(clouds):
+    model = RelationClassifier("displacement", k=3, weights="distance").fit(clouds, TRUTHS)
+    older = rewritten(model_bytes(model), neighbours=None)
+    assert model_from_bytes(older).neighbours == model.neighbours
+    assert model_from_bytes(older).beliefs(clouds[0]) == model.beliefs(clouds[0])
+
+
+def test_what_is_no_model_is_one_line(clouds, tmp_path):
+    content = model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
+    stream = io.BytesIO()
+    np.savez(stream, points=np.zeros((4, 3)))
+    for wrong in (b"", b"junk", content[:-40], content[:300], stream.getvalue()):
+        with pytest.raises(InputError, match="no relation model that can be read"):
+            model_from_bytes(wrong)
+    with pytest.raises(InputError, match="cannot be read"):
+        load_model(tmp_path / "none.npz")
+    with pytest.raises(InputError, match="fitted"):
+        model_bytes(RelationClassifier())
+
+
+def rewritten(content: bytes, **changes) -> bytes:
+    with np.load(io.BytesIO(content)) as packed:
+        arrays = dict(packed)
+    header = {**json.loads(arrays["about"].tobytes()), **changes}
+    return packed_again(arrays, header)
+
+
+def packed_again(arrays: dict, header) -> bytes:
+    stream = io.BytesIO()
+    text = np.frombuffer(json.dumps(header).encode(), np.uint8)
+    np.savez(stream, **{**arrays, "about": text})
+    return stream.getvalue()
+
+
+def taken_apart(content: bytes) -> tuple[dict, dict]:
+    with np.load(io.BytesIO(content)) as packed:
+        arrays = dict(packed)
+    return arrays, json.loads(arrays.pop("about").tobytes())
+
+
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"version": 2}, "version 2"),
+        ({"method": "magic"}, "method"),
+        ({"settings": {"voxel": -1}}, "voxel"),
+        (
+            {"models": {"objects": {"at": 0, "classes": ["on"], "columns": ["gap"], "temperature": 1}}},
+            "fit together",
+        ),
+        ({"models": {"objects": {"at": 9, "classes": ["on"], "columns": ["gap"], "temperature": 1}}}, "lacks"),
+        ({"names": 7}, "cannot be read|can be read"),
+    ],
+)
+def test_a_file_whose_parts_do_not_fit_is_refused(clouds, changes, said):
+    content = model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
+    with pytest.raises(InputError, match=said):
+        model_from_bytes(rewritten(content, **changes))
+
+
+def test_random_damage_never_comes_through_as_another_error(clouds):
+    content = bytearray(model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS)))
+    rng = np.random.default_rng(0)
+    for _ in range(300):
+        hurt = bytearray(content)
+        for at in rng.integers(0, len(hurt), 3):
+            hurt[at] = rng.integers(256)
+        try:
+            model_from_bytes(bytes(hurt)).predict(clouds[0])
+        except InputError:
+            continue
+
+
+def test_the_shipped_model_knows_the_blocks_and_is_small(clouds):
+    model = shipped_model()
+    assert SHIPPED.stat().st_size <= 2 * 2**20
+    assert {"scenes", "pairs", "lifelore"} <= set(model_about(SHIPPED)["about"])
+    found = {(one.a, one.b): one.relation for cloud in clouds[:1] for one in model.predict(cloud)}
+    assert found[3, 2] == ON
+    assert found[2, TABLE] == ON
+    assert model.predict(clouds[1])[0].relation == ADJACENT
+    assert model.predict(clouds[2])[0].relation == NONE
+
+
+def test_asking_a_model_needs_no_scikit_learn():
+    ask = (
+        "import sys; from lifelore.perception.relations.relation_model_file import shipped_model;"
+        "import numpy as np;"
+        "from lifelore.core.labelled_cloud import LabelledCloud as C;"
+        "x = np.random.default_rng(0).random((60, 3)) * 0.05;"
+        "shipped_model().predict(C(x, np.repeat([2, 3], 30))); print('sklearn' in sys.modules)"
+    )
+    said = subprocess.run([sys.executable, "-c", ask], capture_output=True, text=True, check=True)
+    assert said.stdout.strip() == "False"
+
+
+@pytest.fixture(scope="module")
+def learnt(box_clouds) -> dict[str, RelationClassifier]:
+    """A model of each kind, from the same three scenes."""
+    kinds = {
+        "trees": RelationClassifier(trees=TreeSettings(3, 3)),
+        "displacement": RelationClassifier("displacement", k=2, omega=0.05),
+        "several": RelationClassifier(multi_label=True, symmetric=["none"], trees=TreeSettings(3, 3)),
+    }
+    return {name: model.fit(box_clouds, TRUTHS) for name, model in kinds.items()}
+
+
+@pytest.fixture(scope="module")
+def box_clouds() -> list[LabelledCloud]:
+    from ..conftest import box_surface
+
+    return [two_blocks(box_surface, kind) for kind in (ON, ADJACENT, NONE)]
+
+
+def changed(array, **places):
+    """A copy with other numbers at some places, of the type that holds both."""
+    value = places["value"]
+    other = np.array(array, dtype=np.result_type(array.dtype, np.asarray(value).dtype))
+    other[places.get("at", 0)] = value
+    return other
+
+
+ONES = [
+    ("displacement", "0.displacements", lambda a: changed(a, value=np.nan), "finite"),
+    ("displacement", "0.displacements", lambda a: changed(a, value=1e200), "finite"),
+    ("displacement", "0.displacements", lambda a: a[:, :2], "three columns"),
+    ("displacement", "0.displacements", lambda a: a.ravel(), "three columns"),
+    ("displacement", "0.codes", lambda a: a.astype(float), "whole number"),
+    ("displacement", "0.codes", lambda a: a[1:], "whole number"),
+    ("displacement", "0.codes", lambda a: changed(a, value=99), "codes"),
+    ("displacement", "1.codes", None, "codes' is missing"),
+    ("trees", "0.shares", lambda a: changed(a, value=np.nan), "shares"),
+    ("trees", "0.shares", lambda a: a - 1, "shares"),
+    ("trees", "0.shares", lambda a: a[:, :1] * 0 + 1, "fit together"),
+    ("trees", "0.threshold", lambda a: changed(a, value=np.inf), "thresholds"),
+    ("trees", "0.threshold", lambda a: a.astype(int), "threshold hold something else"),
+    ("trees", "0.left", lambda a: a.astype(float), "left hold something else"),
+    ("trees", "0.roots", lambda a: np.repeat(a, 10_000), "10000"),
+    ("trees", "0.roots", lambda a: a[:0], "roots hold something else"),
+    ("trees", "0.depth", lambda a: np.asarray(10**9), "1000000000 steps, of at most"),
+    ("trees", "0.depth", lambda a: np.asarray(0), "leaf"),
+    ("trees", "0.depth", lambda a: np.asarray([1, 2]), "depth hold something else"),
+    ("trees", "0.left", lambda a: np.zeros_like(a), "leaf"),
+    ("trees", "0.n_features", lambda a: a + 1, "fit together"),
+    ("several", "0.feature", lambda a: a * 0, "leaf"),
+]
+
+
+@pytest.mark.parametrize(("kind", "name", "change", "said"), ONES)
+def test_numbers_that_are_none_are_refused_with_the_name_of_the_file(learnt, kind, name, change, said):
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    array = arrays.pop(name)
+    if change is not None:
+        arrays[name] = change(array)
+    with pytest.raises(InputError, match=said) as caught:
+        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
+    assert str(caught.value).startswith("spoilt.npz is no relation model")
+
+
+HEADERS = [
+    ("trees", ("models", "objects", "columns", 0), "colour", "features that are measured, got .'colour'"),
+    ("trees", ("models", "table", "columns", -1), "most_tall", "columns"),
+    ("trees", ("models", "objects", "classes", 0), "tall", "words that are learnt, got .'tall'"),
+    ("trees", ("models", "objects", "classes", 0), "~beside=", "both orders|words that are learnt"),
+    ("trees", ("models", "objects", "classes"), "adjacent", "classes of objects must be words"),
+    ("trees", ("models", "objects", "temperature"), float("nan"), "temperature"),
+    ("trees", ("models", "objects", "temperature"), 1e-300, "temperature"),
+    ("trees", ("models", "objects", "temperature"), "warm", "temperature"),
+    ("trees", ("models",), {}, "models"),
+    ("trees", ("models",), {"shelf": {"at": 0, "classes": ["on"]}}, "called objects and table"),
+    ("trees", ("models",), [1], "models must be a dict"),
+    ("trees", ("settings", "voxel"), 1e-300, "voxel"),
+    ("trees", ("settings", "near"), float("inf"), "near"),
+    ("trees", ("settings", "cost"), True, "cost"),
+    ("trees", ("settings", "wide_cost"), 0, "wide_cost"),
+    ("trees", ("settings", "colour"), 1, "colour"),
+    ("trees", ("names",), "on", "names must be a list"),
+    ("trees", ("names", 0), "~on", "names must neither"),
+    ("trees", ("symmetric",), [1], "symmetric must be words"),
+    ("trees", ("multi_label",), 1, "multi_label must be a bool"),
+    ("trees", ("adjacent_gap",), "wide", "adjacent_gap"),
+    ("trees", ("adjacent_gap",), None, "words that are learnt, got .'beside='"),
+    ("trees", ("method",), None, "method"),
+    ("several", ("models", "on", "classes"), ["perhaps"], "0 or 1 of a word"),
+    ("displacement", ("models", "objects", "k"), 10**400, "k must"),
+    ("displacement", ("neighbours", "omega"), "long", "omega"),
+    ("displacement", ("neighbours", "weights"), [1], "weights"),
+    ("displacement", ("neighbours",), {"q": 1}, "q"),
+]
+
+
+@pytest.mark.parametrize(("kind", "path", "value", "said"), HEADERS)
+def test_what_is_told_wrong_is_refused_with_the_name_of_the_file(learnt, kind, path, value, said):
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    put(header, path, value)
+    with pytest.raises(InputError, match=said) as caught:
+        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
+    assert str(caught.value).startswith("spoilt.npz is no relation model")
+
+
+def test_settings_told_as_whole_numbers_are_lengths_all_the_same(learnt, box_clouds):
+    arrays, header = taken_apart(model_bytes(learnt["trees"]))
+    header["settings"]["cost"] = 10
+    assert model_from_bytes(packed_again(arrays, header)).beliefs(box_clouds[0]) == learnt["trees"].beliefs(
+        box_clouds[0]
+    )
+
+
+def put(tree, path, value):
+    for step in path[:-1]:
+        tree = tree[step]
+    tree[path[-1]] = value
+
+
+def places(tree, path=()):
+    """Every place in a tree of dicts and lists, inner ones too; of long lists the first and the last."""
+    steps = list(tree) if isinstance(tree, dict) else [0, len(tree) - 1] if isinstance(tree, list) and tree else []
+    for step in steps:
+        yield (*path, step)
+        yield from places(tree[step], (*path, step))
+
+
+STRANGE = (None, True, -1, 0, 1, 0.5, 7, 1e9, 10**30, float("nan"), float("inf"), "", "on", "~on", [], ["on"], {})
+
+
+def spoilt(arrays: dict, header: dict, rng: np.random.Generator) -> bytes:
+    """One strange thing in the header, or in one of the arrays."""
+    arrays, header = dict(arrays), json.loads(json.dumps(header))
+    if rng.random() < 0.5:
+        where = [place for place in places(header) if place[0] != "about"]
+        put(header, where[rng.integers(len(where))], STRANGE[rng.integers(len(STRANGE))])
+        return packed_again(arrays, header)
+    name = sorted(arrays)[rng.integers(len(arrays))]
+    array = np.atleast_1d(arrays[name])
+    kinds = (
+        lambda: array[1:],
+        lambda: np.concatenate([array, array]),
+        lambda: array[None],
+        lambda: array.astype(rng.choice(["f8", "f2", "i1", "u4", "?", "S3", "c16"])),
+        lambda: rng.permutation(array),
+        lambda: changed(array, at=rng.integers(len(array)), value=rng.choice([-1, 0, 1, 5, 2**31 - 1])),
+        lambda: changed(array, at=rng.integers(len(array)), value=rng.choice([np.nan, np.inf, 1e300, 0.5])),
+        lambda: array * 0,
+        lambda: np.zeros(0, array.dtype),
+    )
+    arrays[name] = kinds[rng.integers(len(kinds))]()
+    if arrays[name].shape == (1,) and rng.random() < 0.5:
+        arrays[name] = arrays[name].reshape(())
+    return packed_again(arrays, header)
+
+
+@pytest.mark.filterwarnings("ignore:Casting complex:numpy.exceptions.ComplexWarning")
+@pytest.mark.parametrize("kind", ["trees", "displacement", "several"])
+def test_spoilt_files_are_refused_or_answer(learnt, box_clouds, kind):
+    """Seventy of each kind: an InputError that names the file, or shares that are numbers; nothing else."""
+    rng = np.random.default_rng(7)
+    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    scene = scene_pairs(box_clouds[0])
+    refused = 0
+    for _ in range(70):
+        try:
+            model = model_from_bytes(spoilt(arrays, header, rng), "spoilt.npz")
+        except InputError as error:
+            assert str(error).startswith("spoilt.npz ")  # noqa: PT017
+            refused += 1
+            continue
+        for belief in model.beliefs_of(scene):
+            assert all(0 <= share <= 1 + 1e-6 for share in belief.shares.values())
+        model.predict_pairs(scene)
+    assert 35 <= refused < 70
+
+
+@pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
+def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
+    """Bytes changed all over: also such as announce more than there is, or another way of packing."""
+    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
+    stream, rng = io.BytesIO(), np.random.default_rng(0)
+    with (
+        zipfile.ZipFile(io.BytesIO(packed_again(arrays, header))) as plain,
+        zipfile.ZipFile(stream, "w", method) as new,
+    ):
+        for entry in plain.namelist():
+            new.writestr(entry, plain.read(entry))
+    content = stream.getvalue()
+    assert model_from_bytes(content).names
+    for _ in range(100):
+        hurt = bytearray(content)
+        for at in rng.integers(0, len(hurt), 4):
+            hurt[at] = rng.integers(256)
+        try:
+            model_from_bytes(bytes(hurt), "spoilt.npz")
+        except InputError as error:
+            assert str(error).startswith("spoilt.npz ")  # noqa: PT017
+
+
+def test_an_array_that_announces_more_than_memory_is_refused(learnt):
+    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
+    content = packed_again(arrays, header)
+    stream = io.BytesIO()
+    huge = b"\x93NUMPY\x01\x00" + (118).to_bytes(2, "little")
+    huge += b"{'descr': '<f8', 'fortran_order': False, 'shape': (1000000000000000, 3), }".ljust(117) + b"\n"
+    with zipfile.ZipFile(io.BytesIO(content)) as plain, zipfile.ZipFile(stream, "w") as new:
+        for entry in plain.namelist():
+            new.writestr(entry, huge if entry == "0.displacements.npy" else plain.read(entry))
+    with pytest.raises(InputError, match="no relation model that can be read"):
+        model_from_bytes(stream.getvalue())

@@ -1,0 +1,42 @@
+"""The separator's kernels: compiled equals plain Python to the bit; few versions of each are compiled."""
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+
+RUN = Path(__file__).with_name("separator_kernels_run.py")
+
+
+def arrays(path: Path, disable_jit: str):
+    environment = os.environ | {"NUMBA_DISABLE_JIT": disable_jit}
+    command = [sys.executable, "-W", "error", str(RUN), str(path)]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    with np.load(path) as loaded:
+        return dict(loaded)
+
+
+def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
+    compiled, plain = arrays(tmp_path / "compiled.npz", "0"), arrays(tmp_path / "plain.npz", "1")
+    assert set(compiled) == set(plain)
+    for name in compiled:
+        assert compiled[name].size > 0, name
+        assert compiled[name].dtype == plain[name].dtype, name
+        assert np.array_equal(compiled[name], plain[name]), name
+
+
+def test_one_version_of_each_kernel_is_enough():
+    from lifelore.perception.separation import far_field, gaussian, nested_voxels, separator_smo
+    from lifelore.perception.separation.separator import separate
+
+    random = np.random.default_rng(0)
+    cloud = random.uniform(0, 0.1, (4000, 3))
+    separate(cloud, cloud + np.array([0.1, 0, 0])).decision(cloud)
+    separate(list(cloud[:5]), np.asfortranarray(cloud[:7]).astype(np.float32))
+    kernels = [gaussian.kernel_sums, far_field._expand, far_field._evaluate]
+    kernels += [nested_voxels._voxel_keys, separator_smo.ascend]
+    if os.environ.get("NUMBA_DISABLE_JIT") != "1":
+        assert [len(function.signatures) for function in kernels] == [1] * len(kernels)
