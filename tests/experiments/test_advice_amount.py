@@ -22,7 +22,9 @@ from lifelore.experiments.chapter3.c3_17_advice_cost.advice_amount import (
     greedy_policy,
     run_cell,
 )
-from lifelore.experiments.chapter3.c3_17_advice_cost.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.17").sizes["quick"])
 
 CELL = {"loops": 0.1, "maze": 0}
 

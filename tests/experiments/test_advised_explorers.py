@@ -15,8 +15,10 @@ from lifelore.experiments.chapter3.advised_explorers import (
     run_normalcy_cell,
     unadvised_normalcy,
 )
-from lifelore.experiments.chapter3.c3_15_advice_table.run import QUICK
-from lifelore.experiments.chapter3.c3_18_normalcy.run import QUICK as NORMALCY
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.15").sizes["quick"])
+NORMALCY = dict(claim_of("C3.18").sizes["quick"])
 
 CELL = {"loops": 0.1, "maze": 0}
 

@@ -7,7 +7,9 @@ import pytest
 
 from lifelore.experiments.chapter3.advice_grid import errands_of, maze_of
 from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand, learnt, run_cell
-from lifelore.experiments.chapter3.c3_16_advised_learning.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.16").sizes["quick"])
 
 CELL = {"loops": 0.1, "maze": 0}
 SCHEDULE = [1.0, 0.99, 0.05]

@@ -8,24 +8,26 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments.chapter2.c2_01_nearest_displacements import run as c2_1
-from lifelore.experiments.chapter2.c2_01_nearest_displacements.run import (
-    CLAIM,
-    PRINTED,
+from lifelore.experiments.chapter2.c2_01_nearest_displacements import measure as c2_1
+from lifelore.experiments.chapter2.c2_01_nearest_displacements.figure import PRINTED
+from lifelore.experiments.chapter2.c2_01_nearest_displacements.measure import (
     confusion,
     data_sets,
     given_order,
     hardest_margin,
     readings,
 )
-from lifelore.experiments.chapter2.c2_02_label_components import run as c2_2
+from lifelore.experiments.chapter2.c2_02_label_components import measure as c2_2
 from lifelore.experiments.chapter2.pair_validation import Reading, as_seen, told_by_neighbours
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, pair_features
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation import Relation
+
+CLAIM = claim_of("C2.1")
 
 NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 WEAK = NAMES[0]
@@ -249,7 +251,7 @@ def test_the_printed_matrix_is_of_132_and_neither_of_128_pictures_nor_of_165_rel
     assert (n, right) == (132, 96)
     assert (round(100 * right / n, 1), round(100 * right / 128, 1)) == (72.7, 75.0)
     # The split of the same pictures, as C2.2 quotes it: pictures add up to 128, relationships to something else.
-    train, learnt, test, told = map(int, re.findall(r"\d+", c2_2.CLAIM.thesis)[:4])
+    train, learnt, test, told = map(int, re.findall(r"\d+", claim_of("C2.2").thesis)[:4])
     assert (train + test, learnt + told) == (128, 165)
     # Read as predicted by actual, as ours is; simulated pairs are drawn by its columns.
     pairs = [pair for i, said in enumerate(CORE_RELATIONS) for j, true in enumerate(CORE_RELATIONS)
@@ -257,7 +259,7 @@ def test_the_printed_matrix_is_of_132_and_neither_of_128_pictures_nor_of_165_rel
     assert confusion(pairs) == PRINTED
     assert sum(pair.exact for pair in pairs) == right
     assert list(MIX.values()) == matrix.sum(axis=0).tolist()
-    assert CLAIM.sizes["full"]["pairs"] == c2_2.FULL["pairs"] == n
+    assert CLAIM.sizes["full"]["pairs"] == claim_of("C2.2").sizes["full"]["pairs"] == n
 
 
 def test_what_the_text_says_of_the_matrix_and_of_the_split_follows_from_the_counts():

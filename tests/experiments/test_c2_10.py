@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.c2_10_ball_on_block.ball_on_block import BALL, BLOCK, findings
-from lifelore.experiments.chapter2.c2_10_ball_on_block.run import measure
+from lifelore.experiments.chapter2.c2_10_ball_on_block.measure import measure
+from lifelore.experiments.chapter2.c2_10_ball_on_block.run import BALL, BLOCK, findings
 
 pytest.importorskip("mujoco")
 

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_11_distant_objects.run import CLAIM as C2_11
-from lifelore.experiments.chapter2.c2_11_distant_objects.run import (
+from lifelore.experiments.chapter2.c2_11_distant_objects.measure import (
     curves_of,
     gap_number,
     measure,
@@ -16,9 +15,12 @@ from lifelore.experiments.chapter2.c2_11_distant_objects.run import (
     support,
     table_of,
 )
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT
 from lifelore.perception.separation.separator import separate
+
+C2_11 = claim_of("C2.11")
 
 COUNTS = np.array(
     [

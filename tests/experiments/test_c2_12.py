@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.experiments.chapter2.c2_12_unlabelled_relations.measure import agreement, measure, rows
 from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters import (
     METHODS,
     Sighted,
@@ -17,10 +18,12 @@ from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters 
     rand_index_by_scene,
     sighted,
 )
-from lifelore.experiments.chapter2.c2_12_unlabelled_relations.run import CLAIM, agreement, measure, rows
 from lifelore.experiments.chapter2.pair_validation import Reading
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, kernel_name
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.pairs.pair_features import COLUMNS
+
+CLAIM = claim_of("C2.12")
 
 KERNEL_NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 MM = 0.001

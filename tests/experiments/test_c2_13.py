@@ -6,16 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_13_contacts_and_centres.ball_at_l_block import (
-    BALL,
-    BLOCK,
-    LESSON,
-    SCENE,
-    block_cells,
-    run_cell,
-)
-from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import (
-    CLAIM,
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import (
     centres_apart,
     given,
     node_counts,
@@ -24,7 +15,12 @@ from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import (
     strong,
     topmost_alone_remains,
 )
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import BALL, BLOCK, LESSON, SCENE, run_cell
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import cells as block_cells
 from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C2.13")
 
 FIGURE = [[0, 0, 0.2, 12], [0, 0, 0.0, 2], [0.1, 0, 0.03, 3]]
 """The thesis's: three nodes, one of which is strong."""

@@ -5,11 +5,10 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
-from lifelore.experiments.chapter2.c2_02_label_components import run as c2_2
-from lifelore.experiments.chapter2.c2_02_label_components.run import (
-    CLAIM,
+from lifelore.experiments.chapter2.c2_02_label_components import measure as c2_2
+from lifelore.experiments.chapter2.c2_02_label_components.figure import PRINTED
+from lifelore.experiments.chapter2.c2_02_label_components.measure import (
     COMPONENTS,
-    PRINTED,
     component_answers,
     measure,
     rows,
@@ -17,6 +16,9 @@ from lifelore.experiments.chapter2.c2_02_label_components.run import (
 )
 from lifelore.experiments.chapter2.pair_validation import Reading, Told
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C2.2")
 
 NAMES = [kernel_name(*kernel) for kernel in KERNELS]
 SETTINGS = {**CLAIM.settings("quick"), "pairs": 12, "test": 3, "splits": 20}

@@ -5,11 +5,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ON, PairLabel
-from lifelore.experiments.chapter2.c2_01_nearest_displacements.run import FULL as SIZES_OF_C2_1
-from lifelore.experiments.chapter2.c2_03_displacements_by_relation.run import (
+from lifelore.experiments.chapter2.c2_03_displacements_by_relation.measure import (
     CHOICES,
-    CLAIM,
-    FULL,
     clustered_share,
     measure,
     plotted,
@@ -18,7 +15,12 @@ from lifelore.experiments.chapter2.c2_03_displacements_by_relation.run import (
 )
 from lifelore.experiments.chapter2.pair_validation import displacements
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name, pair_cells, pair_rows
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.pairs.pair_features import column_names
+
+SIZES_OF_C2_1 = dict(claim_of("C2.1").sizes["full"])
+CLAIM = claim_of("C2.3")
+FULL = dict(claim_of("C2.3").sizes["full"])
 
 RIGHT, BEHIND = (column_names(2).index(name) for name in ("right", "behind"))
 

@@ -4,17 +4,16 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.chapter2.c2_04_time_per_image import image_timing
-from lifelore.experiments.chapter2.c2_04_time_per_image.image_timing import (
-    DENSE,
-    KINDS,
-    made_dense,
-    run_cell,
-    timed_image,
-    timing_cells,
-)
-from lifelore.experiments.chapter2.c2_04_time_per_image.run import CLAIM, FULL, QUICK, measure, rows
+from lifelore.experiments.chapter2.c2_04_time_per_image import run as image_timing
+from lifelore.experiments.chapter2.c2_04_time_per_image.measure import measure, rows
+from lifelore.experiments.chapter2.c2_04_time_per_image.run import DENSE, KINDS, made_dense, run_cell, timed_image
+from lifelore.experiments.chapter2.c2_04_time_per_image.run import cells as timing_cells
 from lifelore.experiments.chapter2.perception_stages import STAGES
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C2.4")
+FULL = dict(claim_of("C2.4").sizes["full"])
+QUICK = dict(claim_of("C2.4").sizes["quick"])
 
 
 def image(kind, seconds, points=100):

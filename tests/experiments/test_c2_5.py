@@ -5,19 +5,21 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.c2_05_discarded_points.run import (
-    CLAIM,
+from lifelore.experiments.chapter2.c2_05_discarded_points.figure import panels_of
+from lifelore.experiments.chapter2.c2_05_discarded_points.measure import (
     judged_views,
     less_majority,
     lost,
     measure,
-    panels_of,
     rows,
     scene_of,
     taught,
 )
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.relations.relation import Relation
+
+CLAIM = claim_of("C2.5")
 
 UP, ASIDE = [[0.0, 0.0, 0.01]] * 4, [[0.03, 0.0, 0.0]] * 4
 """Displacements χ_2 - χ_3: of 2 on 3, and of 2 beside 3; four each, as many as neighbours vote."""

@@ -7,8 +7,11 @@ from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_06_same_hole.hole_scenes import findings, objects_only, split_contact
-from lifelore.experiments.chapter2.c2_06_same_hole.run import CLAIM, measure, rows
+from lifelore.experiments.chapter2.c2_06_same_hole.measure import measure, rows
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.topology.holes import contact_loops
+
+CLAIM = claim_of("C2.6")
 
 pytest.importorskip("mujoco")
 

@@ -6,7 +6,7 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ON
 from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import measure
+from lifelore.experiments.chapter2.c2_07_oversegmented_stack.measure import measure
 from lifelore.experiments.chapter2.stack_skeletons import KINDS, simulated
 
 pytest.importorskip("mujoco")

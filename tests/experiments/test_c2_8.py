@@ -5,12 +5,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.c2_08_oversegmented_object.cut_scenes import (
-    free_standing,
-    said_of,
-    simulated_cuts,
-)
-from lifelore.experiments.chapter2.c2_08_oversegmented_object.run import macro_f1, measure, shared_by_scene
+from lifelore.experiments.chapter2.c2_08_oversegmented_object.measure import macro_f1, measure, shared_by_scene
+from lifelore.experiments.chapter2.c2_08_oversegmented_object.run import free_standing, said_of, simulated_cuts
 from lifelore.perception.relations.relation import Relation
 
 pytest.importorskip("mujoco")

@@ -9,15 +9,17 @@ from scipy import ndimage
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.experiments.chapter3.c3_01_useful_actions import run as c3_1
+from lifelore.experiments.chapter3.c3_01_useful_actions.measure import measure
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import (
-    CLAIM,
-    FULL,
-    measure,
     prior_of,
     quantile_estimate,
     run_cell,
     uniform_maze,
 )
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.1")
+FULL = dict(claim_of("C3.1").sizes["full"])
 
 
 def corridor():

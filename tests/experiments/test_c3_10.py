@@ -7,24 +7,21 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import best_actions
-from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import (
-    CLAIM,
+from lifelore.experiments.chapter3.c3_10_selection_over_tasks.measure import (
     GOAL,
-    QUICK,
     measure,
     rows,
     settled_after,
     shares,
 )
-from lifelore.experiments.chapter3.c3_10_selection_over_tasks.selected_features import (
-    SERIES,
-    cells,
-    mask_of,
-    run_cell,
-)
+from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, cells, mask_of, run_cell
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
 from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent, counted
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.10")
+QUICK = dict(claim_of("C3.10").sizes["quick"])
 
 SETTINGS = {**QUICK, "runs": 4, "tasks": 4, "last": 2}
 ALL = (1 << 10) - 1

@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import CLAIM, NUMBERS, QUICK, measure, pay_of, rows
+from lifelore.experiments.chapter3.c3_11_forms_of_prior.measure import NUMBERS, measure, pay_of, rows
 from lifelore.experiments.chapter3.factory_forms import AS_PRINTED, DIRICHLET, FORMS, KEYS, PLAIN, PROPORTION, hows
 from lifelore.experiments.engine.open_choices import plain_how
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.11")
+QUICK = dict(claim_of("C3.11").sizes["quick"])
 
 SETTINGS = {
     **QUICK,

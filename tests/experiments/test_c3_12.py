@@ -4,8 +4,8 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import CLAIM, QUICK, is_comparable, measure, rows
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import (
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.measure import is_comparable, measure, rows
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import (
     KEYS,
     PEOPLE,
     PLAIN,
@@ -15,6 +15,10 @@ from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import
     hows,
 )
 from lifelore.experiments.engine.open_choices import plain_how
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.12")
+QUICK = dict(claim_of("C3.12").sizes["quick"])
 
 SETTINGS = {
     **QUICK, "runs": 4, "episodes": 3, "early": 2, "features": ["phi3"], "schedules": [[1.0, 0.95, 0.01]],

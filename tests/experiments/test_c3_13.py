@@ -3,7 +3,11 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_13_futile_goals.run import CLAIM, QUICK, measure, rows, slope
+from lifelore.experiments.chapter3.c3_13_futile_goals.measure import measure, rows, slope
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.13")
+QUICK = dict(claim_of("C3.13").sizes["quick"])
 
 SETTINGS = {
     **QUICK, "runs": 3, "draws": 1000, "actions": [2], "alpha0": [1.0], "tasks": [0, 1, 10], "alike": [2],

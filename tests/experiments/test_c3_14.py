@@ -4,8 +4,12 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning import WHOLE, WITHIN
-from lifelore.experiments.chapter3.c3_14_minimised_domains.run import CLAIM, FORMS, QUICK, measure, rows, worst
+from lifelore.experiments.chapter3.c3_14_minimised_domains.measure import measure, rows, worst
+from lifelore.experiments.chapter3.c3_14_minimised_domains.run import FORMS, WHOLE, WITHIN
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.14")
+QUICK = dict(claim_of("C3.14").sizes["quick"])
 
 FIRST, LAST = "lattice, every start", "random, few starts"
 SETTINGS = {**QUICK, "kinds": [FIRST, LAST], "runs": 4}

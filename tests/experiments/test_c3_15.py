@@ -4,7 +4,13 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.experiments.chapter3.advice_grid import AGENTS
-from lifelore.experiments.chapter3.c3_15_advice_table.run import CLAIM, FULL, PRINTED, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_15_advice_table.figure import PRINTED
+from lifelore.experiments.chapter3.c3_15_advice_table.measure import measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.15")
+FULL = dict(claim_of("C3.15").sizes["full"])
+QUICK = dict(claim_of("C3.15").sizes["quick"])
 
 SETTINGS = {**QUICK, "tasks": 4, "loops": [0.1, 0.4]}
 ARRIVED = {"none": 1, "thesis": 3, "better": 4, "uniform only": 2, "goal unknown": 1}

@@ -3,8 +3,12 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_16_advised_learning.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_16_advised_learning.measure import measure, rows
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.16")
+QUICK = dict(claim_of("C3.16").sizes["quick"])
 
 SETTINGS = {**QUICK, "tasks": 2, "episodes": 100, "schedules": [[1.0, 0.999, 0.05]]}
 N_BLOCKS = len(block_edges(100)) - 1

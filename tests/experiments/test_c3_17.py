@@ -3,7 +3,12 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_17_advice_cost.run import CLAIM, FULL, QUICK, agents_of, measure, rows
+from lifelore.experiments.chapter3.c3_17_advice_cost.measure import agents_of, measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.17")
+FULL = dict(claim_of("C3.17").sizes["full"])
+QUICK = dict(claim_of("C3.17").sizes["quick"])
 
 SETTINGS = {**QUICK, "kappas": [0.0, 0.5, 1.4]}
 FALLING = {

@@ -4,7 +4,11 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.c3_18_normalcy.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_18_normalcy.measure import measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.18")
+QUICK = dict(claim_of("C3.18").sizes["quick"])
 
 SETTINGS = {**QUICK, "tasks": 2, "max_steps": 4, "blocks": 2}
 

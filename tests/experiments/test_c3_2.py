@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid import PLAIN, configurations
-from lifelore.experiments.chapter3.c3_02_lattice_prior.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_02_lattice_prior.measure import measure, rows
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import PLAIN, configurations
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.2")
+QUICK = dict(claim_of("C3.2").sizes["quick"])
 
 SETTINGS = {
     **QUICK,

@@ -4,16 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import (
-    COMPARED,
-    KEYS,
-    METHODS,
-    PLAIN,
-    hows,
-)
-from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.measure import measure, rows
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import COMPARED, KEYS, METHODS, PLAIN, hows
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.open_choices import plain_how
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.3")
+QUICK = dict(claim_of("C3.3").sizes["quick"])
 
 SETTINGS = {
     **QUICK,

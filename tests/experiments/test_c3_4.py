@@ -4,9 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_04_factory_priors.factory_priors import cells, makes, run_cell, uses
-from lifelore.experiments.chapter3.c3_04_factory_priors.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_04_factory_priors.measure import measure, rows
+from lifelore.experiments.chapter3.c3_04_factory_priors.run import cells, makes, run_cell, uses
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.4")
+QUICK = dict(claim_of("C3.4").sizes["quick"])
 
 SETTINGS = {**QUICK, "encodings": ["global", "phase"], "alpha0": [0.1], "ties": ["uniform", "prior"]}
 """A grid of four cells: two encodings, two ways with ties."""

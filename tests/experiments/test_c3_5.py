@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_05_one_component.run import CLAIM
-from lifelore.experiments.chapter3.c3_06_four_components import run as c3_6
+from lifelore.experiments.chapter3.c3_06_four_components import measure as c3_6
 from lifelore.experiments.chapter3.factory_gains import QUICK, measure, rows
 from lifelore.experiments.chapter3.factory_series import cells, run_cell, uses
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.5")
 
 SETTINGS = {**QUICK, "components": [1], "encodings": ["global", "phase"], "ties": ["uniform"]}
 """Sequences of seven tasks, the last two late; a grid of two cells."""
@@ -150,4 +152,4 @@ def test_settings_that_cannot_be_run(overrides, rule):
 def test_four_components_are_compared_with_one():
     for wrong in ("[4]", "[4, 2]", "[4, 1, 1]"):
         with pytest.raises(InputError, match="components must be a number and 1"):
-            c3_6.CLAIM.settings("quick", {"components": wrong})
+            claim_of("C3.6").settings("quick", {"components": wrong})

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.factory.factory import RAW
-from lifelore.experiments.chapter3.c3_07_feature_sets.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.chapter3.c3_07_feature_sets.measure import measure, rows
 from lifelore.experiments.chapter3.feature_priors import KEYS, METHODS, cells, hows, method_how, run_cell
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.chapter3.modified_factory_tasks import (
@@ -15,6 +15,10 @@ from lifelore.experiments.chapter3.modified_factory_tasks import (
     learn_problem,
     problem_of,
 )
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.7")
+QUICK = dict(claim_of("C3.7").sizes["quick"])
 
 SETTINGS = {
     **QUICK,

@@ -6,7 +6,8 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.domains.factory.contexts import PHI
-from lifelore.experiments.chapter3.c3_08_feature_importance.feature_importance import (
+from lifelore.experiments.chapter3.c3_08_feature_importance.measure import gaps, measure, rows
+from lifelore.experiments.chapter3.c3_08_feature_importance.run import (
     cells,
     counted_actions,
     counted_states,
@@ -14,8 +15,11 @@ from lifelore.experiments.chapter3.c3_08_feature_importance.feature_importance i
     importance,
     run_cell,
 )
-from lifelore.experiments.chapter3.c3_08_feature_importance.run import CLAIM, QUICK, gaps, measure, rows
 from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, contexts_of, problem_of
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.8")
+QUICK = dict(claim_of("C3.8").sizes["quick"])
 
 SETTINGS = {**QUICK, "runs": 4, "policies": [3], "over": ["all", "way"], "actions": ["tied"]}
 """A grid of two cells."""

@@ -3,8 +3,8 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_09_online_features.run import CLAIM, QUICK, measure, rows
-from lifelore.experiments.chapter3.c3_09_online_features.selected_learning import (
+from lifelore.experiments.chapter3.c3_09_online_features.measure import measure, rows
+from lifelore.experiments.chapter3.c3_09_online_features.run import (
     KEYS,
     METHODS,
     cells,
@@ -15,6 +15,10 @@ from lifelore.experiments.chapter3.c3_09_online_features.selected_learning impor
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.chapter3.modified_factory_tasks import learn_problem, problem_of
 from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent, defaults_and_others
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.9")
+QUICK = dict(claim_of("C3.9").sizes["quick"])
 
 SETTINGS = {
     **QUICK,

@@ -6,16 +6,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_01_golf_example.run import (
-    CLAIM,
-    QUICK,
-    follow_printed,
-    greedy_shares,
-    measure,
-    rows,
-    run_cell,
-)
+from lifelore.experiments.chapter4.c4_01_golf_example.measure import measure, rows
+from lifelore.experiments.chapter4.c4_01_golf_example.run import follow_printed, greedy_shares, run_cell
 from lifelore.experiments.chapter4.golf_runs import exact_library, learnt_library
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.1")
+QUICK = dict(claim_of("C4.1").sizes["quick"])
 
 SMALL = {**QUICK, "rounds": 60, "libraries": 5}
 

@@ -4,14 +4,16 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_10_landmark_regret import run as c4_10
 from lifelore.experiments.chapter4.c4_10_landmark_regret.landmark_tables import (
     RANDOM,
     parted,
     random_table,
     surveillance_table,
 )
-from lifelore.experiments.chapter4.c4_10_landmark_regret.run import CLAIM, EXAMPLE, example_regret, measure, rows
+from lifelore.experiments.chapter4.c4_10_landmark_regret.measure import EXAMPLE, example_regret, measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.10")
 
 TINY = {
     "tables": 2,
@@ -114,4 +116,4 @@ def test_tiny_run_draws_its_figure(tiny):
 def test_settings_that_cannot_be_run_are_refused():
     for bad in ({"families": ["odd"]}, {"tables": 0}, {"shares": [0.0]}, {"forms": ["ball"]}, {"policies": []}):
         with pytest.raises(InputError):
-            c4_10.CLAIM.settings("quick", bad)
+            claim_of("C4.10").settings("quick", bad)

@@ -4,17 +4,18 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_11_speeds.run import (
-    CLAIM,
+from lifelore.experiments.chapter4.c4_11_speeds.measure import (
     best_speeds,
-    cells,
     gains,
     has_transition,
     losses,
     measure,
     rows,
-    run_cell,
 )
+from lifelore.experiments.chapter4.c4_11_speeds.run import cells, run_cell
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.11")
 
 
 def made(best, n=40, noise=0.01):

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, Setting
-from lifelore.experiments.chapter4.c4_12_user_diversity.run import CLAIM, PRINTED, cells, measure, rows
+from lifelore.experiments.chapter4.c4_12_user_diversity.measure import PRINTED, measure, rows
+from lifelore.experiments.chapter4.c4_12_user_diversity.run import cells
 from lifelore.experiments.chapter4.diversity_runs import (
     HINDSIGHT,
     METHODS,
@@ -19,6 +20,9 @@ from lifelore.experiments.chapter4.diversity_runs import (
     run_cell,
     run_methods,
 )
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.12")
 
 
 def made(loss_of, runs=60):

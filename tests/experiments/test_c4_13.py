@@ -4,8 +4,12 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter4.ball_game_settings import DEFAULT
-from lifelore.experiments.chapter4.c4_13_type_naming.run import CLAIM, cells, measure, right_of, share
+from lifelore.experiments.chapter4.c4_13_type_naming.measure import measure, right_of, share
+from lifelore.experiments.chapter4.c4_13_type_naming.run import cells
 from lifelore.experiments.chapter4.type_naming import WAYS, confusion, run_cell
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.13")
 
 
 def test_confusion_and_shares_by_hand():

@@ -3,9 +3,13 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.c4_15_safety.run import CLAIM, cells, measure, rows, worst_ratio
+from lifelore.experiments.chapter4.c4_15_safety.measure import measure, rows, worst_ratio
+from lifelore.experiments.chapter4.c4_15_safety.run import cells
 from lifelore.experiments.chapter4.c4_15_safety.safety_runs import LAGGING, run_cell
 from lifelore.experiments.chapter4.diversity_runs import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.15")
 
 
 def made(n=30):

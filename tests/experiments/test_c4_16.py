@@ -4,7 +4,11 @@ import copy
 
 import pytest
 
-from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import CLAIM, EPSILONS, cells, measure, rows, run_cell
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.measure import measure, rows
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import EPSILONS, cells, run_cell
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.16")
 
 SETTINGS = CLAIM.settings("quick", {"training": 4})
 RESULTS = [run_cell(SETTINGS, cell, 0) for cell in cells(SETTINGS)[1:3]]

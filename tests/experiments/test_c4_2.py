@@ -7,10 +7,15 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.experiments.chapter4.c4_02_golf_holes.golf_programs import program_gaps
-from lifelore.experiments.chapter4.c4_02_golf_holes.run import CLAIM, QUICK, measure, rows, run_cell
+from lifelore.experiments.chapter4.c4_02_golf_holes.measure import measure, rows
+from lifelore.experiments.chapter4.c4_02_golf_holes.run import run_cell
 from lifelore.experiments.chapter4.golf_runs import exact_library, play_holes
 from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.selection import Greedy
+
+CLAIM = claim_of("C4.2")
+QUICK = dict(claim_of("C4.2").sizes["quick"])
 
 SMALL = {**QUICK, "groups": 3, "holes": 12, "shots": 3, "horizon": 2}
 

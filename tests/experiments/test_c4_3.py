@@ -7,12 +7,17 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.telephone.telephone import Telephone
-from lifelore.experiments.chapter4.c4_03_telephone_signals.run import CLAIM, QUICK, measure, orders, rows, run_cell
+from lifelore.experiments.chapter4.c4_03_telephone_signals.measure import measure, orders, rows
+from lifelore.experiments.chapter4.c4_03_telephone_signals.run import run_cell
 from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import (
     SIGNAL_OF_PATH,
     exact_library,
     learnt_library,
 )
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.3")
+QUICK = dict(claim_of("C4.3").sizes["quick"])
 
 SMALL = {
     **QUICK, "groups": 4, "users": 8, "calls": 30, "by_call": 20, "models": [3, 4], "default_models": 4,

@@ -5,10 +5,14 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.pacman.pacman import STRATEGIES
+from lifelore.experiments.chapter4.c4_04_pacman.measure import REUSERS, measure, rows
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import LEARNERS
-from lifelore.experiments.chapter4.c4_04_pacman.run import CLAIM, QUICK, REUSERS, measure, rows
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import reproduce
+
+CLAIM = claim_of("C4.4")
+QUICK = dict(claim_of("C4.4").sizes["quick"])
 
 SETTINGS = {**QUICK, "layouts": 3, "episodes": 10_000}
 N_BLOCKS = len(block_edges(10_000)) - 1

@@ -7,18 +7,20 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.surveillance.surveillance import NOISES
-from lifelore.experiments.chapter4.c4_06_regret_deviation.run import (
-    CLAIM,
+from lifelore.experiments.chapter4.c4_06_regret_deviation.measure import (
     PRINTED,
-    QUICK,
     READINGS,
     agreement,
     deviations,
     measure,
     rows,
-    run_cell,
 )
+from lifelore.experiments.chapter4.c4_06_regret_deviation.run import run_cell
 from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.6")
+QUICK = dict(claim_of("C4.6").sizes["quick"])
 
 SMALL = {**QUICK, "tasks": 3, "groups": 3}
 SHOWN = ("sampling", "EI", "eps-greedy")

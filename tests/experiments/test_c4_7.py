@@ -4,18 +4,14 @@ import json
 
 import pytest
 
-from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import (
-    CASES_SHOWN,
-    CLAIM,
-    QUICK,
-    REUSE,
-    best_gp,
-    measure,
-    rows,
-    run_cell,
-)
+from lifelore.experiments.chapter4.c4_07_bandit_baselines.measure import best_gp, measure, rows
+from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, REUSE, run_cell
 from lifelore.experiments.chapter4.surveillance_peers import PEERS
 from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.7")
+QUICK = dict(claim_of("C4.7").sizes["quick"])
 
 SMALL = {**QUICK, "tasks": 2, "groups": 3, "episodes": 12}
 

@@ -6,7 +6,12 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_08_library_size.run import CLAIM, QUICK, measure, rows, run_cell
+from lifelore.experiments.chapter4.c4_08_library_size.measure import measure, rows
+from lifelore.experiments.chapter4.c4_08_library_size.run import run_cell
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C4.8")
+QUICK = dict(claim_of("C4.8").sizes["quick"])
 
 SMALL = {**QUICK, "trials": 4, "shares": [0.1, 1.0], "episodes": [2, 6], "samples": 3}
 

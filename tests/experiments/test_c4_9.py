@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_09_model_storage.run import CLAIM, measure
+from lifelore.experiments.chapter4.c4_09_model_storage.measure import measure
 from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
     Application,
     pacman_application,
@@ -13,7 +13,10 @@ from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
     stored,
     telephone_application,
 )
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.library.storage_cost import StorageSizes
+
+CLAIM = claim_of("C4.9")
 
 TINY = {
     "states": [3, 8], "rewards": [2, 12], "draws": 2, "episodes": 5, "models": [3], "reserves": [[17, 5]],

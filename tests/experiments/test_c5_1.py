@@ -7,8 +7,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.experiments.chapter2.relation_scoring import wilson
-from lifelore.experiments.chapter5.c5_01_more_relations.run import CLAIM as C5_1
-from lifelore.experiments.chapter5.c5_01_more_relations.run import (
+from lifelore.experiments.chapter5.c5_01_more_relations.measure import (
     accuracy,
     both_orders,
     compound_counts,
@@ -24,8 +23,11 @@ from lifelore.experiments.chapter5.c5_01_more_relations.run import (
     word_counts,
 )
 from lifelore.experiments.chapter5.c5_01_more_relations.view_words import WORDS
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.pairs.pair_features import COLUMNS
 from lifelore.perception.relations.relation import Relation
+
+C5_1 = claim_of("C5.1")
 
 ROW = {
     "pairs": [[2, 3], [3, 2]],

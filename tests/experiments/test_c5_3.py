@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import (
+from lifelore.experiments.chapter5.c5_03_priors_in_search.measure import measure, rows
+from lifelore.experiments.chapter5.c5_03_priors_in_search.run import (
     BOTH,
     EVEN,
     FLAT,
@@ -18,7 +19,10 @@ from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import 
     PRUNED,
     WAYS,
 )
-from lifelore.experiments.chapter5.c5_03_priors_in_search.run import CLAIM, QUICK, measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C5.3")
+QUICK = dict(claim_of("C5.3").sizes["quick"])
 
 SETTINGS = {**QUICK, "mazes": 6, "forms": ["proportion", "support"], "other_strengths": []}
 """Two kinds, two forms, three ways and two numbers of simulations: 24 guided ways of tree search."""

@@ -9,7 +9,6 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.domains.factory.contexts import feature_codes, features
 from lifelore.experiments.chapter3 import factory_forms
-from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import FULL, QUICK
 from lifelore.experiments.chapter3.factory_forms import (
     FORMS,
     KEYS,
@@ -25,6 +24,10 @@ from lifelore.experiments.chapter3.factory_forms import (
     summary,
 )
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.engine.registry import claim_of
+
+FULL = dict(claim_of("C3.11").sizes["full"])
+QUICK = dict(claim_of("C3.11").sizes["quick"])
 
 SMALL = {**QUICK, "episodes": 6, "early": 2, "max_steps": [50, 100], "features": ["phi2", "phi3"]}
 SMALL["default"] = {**QUICK["default"], "max_steps": 100}

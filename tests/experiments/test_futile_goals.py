@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.action.search.domain_reduction import domain_futile_states
 from lifelore.core.learning.q_learning import uniform_rows
-from lifelore.experiments.chapter3.c3_13_futile_goals.futile_goals import (
+from lifelore.experiments.chapter3.c3_13_futile_goals.run import (
     best_in,
     constructed,
     constructed_cases,
@@ -13,7 +13,9 @@ from lifelore.experiments.chapter3.c3_13_futile_goals.futile_goals import (
     frequency,
     goal_tables,
 )
-from lifelore.experiments.chapter3.c3_13_futile_goals.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.13").sizes["quick"])
 
 SETTINGS = {**QUICK, "draws": 4000, "actions": [2, 4], "alpha0": [0.5], "tasks": [0, 1, 3], "alike": [2]}
 SETTINGS["default"] = {"actions": 4, "alpha0": 0.5}

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.mdp import TERMINAL
-from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import (
+from lifelore.experiments.chapter5.c5_03_priors_in_search.run import (
     BETA,
     EVEN,
     FLAT,
@@ -19,7 +19,9 @@ from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import 
     maze_of,
     run_cell,
 )
-from lifelore.experiments.chapter5.c5_03_priors_in_search.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C5.3").sizes["quick"])
 
 TINY = {
     **QUICK,

@@ -6,15 +6,18 @@ import numpy as np
 import pytest
 
 from lifelore.core.planning.planning import best_actions
-from lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid import (
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import (
     PLAIN,
     cells,
     configurations,
     online_priors,
     run_cell,
 )
-from lifelore.experiments.chapter3.c3_02_lattice_prior.run import FULL, QUICK
 from lifelore.experiments.chapter3.lattice_learning import learn_task, rows_of, run_of, schedule_of
+from lifelore.experiments.engine.registry import claim_of
+
+FULL = dict(claim_of("C3.2").sizes["full"])
+QUICK = dict(claim_of("C3.2").sizes["quick"])
 
 SMALL = {**QUICK, "episodes": 30, "runs": 1, "test_tasks": 2, "window": 5, "last": 5}
 

@@ -6,7 +6,6 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
 from lifelore.experiments.chapter3 import lattice_learning
-from lifelore.experiments.chapter3.c3_02_lattice_prior.run import QUICK
 from lifelore.experiments.chapter3.lattice_learning import (
     block_edges,
     block_means,
@@ -20,6 +19,9 @@ from lifelore.experiments.chapter3.lattice_learning import (
     summary,
 )
 from lifelore.experiments.engine import learning_run
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.2").sizes["quick"])
 
 SETTINGS = {**QUICK, "episodes": 40}
 

@@ -7,7 +7,15 @@ from lifelore.action.search.domain_reduction import minimised_domain
 from lifelore.core.learning.q_learning import Schedule
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning import (
+from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import (
+    KINDS,
+    Solved,
+    TaskSet,
+    random_tables,
+    task_set,
+    with_goal,
+)
+from lifelore.experiments.chapter3.c3_14_minimised_domains.run import (
     WHOLE,
     WITHIN,
     best_returns,
@@ -19,15 +27,9 @@ from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning im
     traps,
     values_within,
 )
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import (
-    KINDS,
-    Solved,
-    TaskSet,
-    random_tables,
-    task_set,
-    with_goal,
-)
-from lifelore.experiments.chapter3.c3_14_minimised_domains.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.14").sizes["quick"])
 
 DISCOUNT = 0.9
 SETTINGS = {**QUICK, "size": 7, "tasks": 3, "learnt_tasks": 1, "random_states": 12, "worlds": 1, "episodes": 12}
@@ -121,7 +123,7 @@ def test_renormalised_outcomes_change_the_printed_values():
 
 def test_two_ways_to_the_same_values():
     """The kernel's values where nothing leads out are those of the plain sweeps."""
-    from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning import _renormalised_values
+    from lifelore.experiments.chapter3.c3_14_minimised_domains.run import _renormalised_values
 
     for i in range(10):
         tasks = task_set("slippery, few starts", SETTINGS, (i, "twin"))

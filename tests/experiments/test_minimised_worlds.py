@@ -7,7 +7,9 @@ from lifelore.core.mdp import TERMINAL
 from lifelore.domains.factory.factory import ASSEMBLE, PROCURE
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import KINDS, task_set, with_list
-from lifelore.experiments.chapter3.c3_14_minimised_domains.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.14").sizes["quick"])
 
 
 def test_a_list_within_a_larger_domain_by_hand():

@@ -9,7 +9,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
 from lifelore.domains.grids.noise_maze import noise_maze
-from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import (
+from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import (
     COMPARED,
     KEYS,
     METHODS,
@@ -22,8 +22,11 @@ from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import 
     run_cell,
     run_of,
 )
-from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import FULL, QUICK
 from lifelore.experiments.chapter3.lattice_learning import learn_task, schedule_of
+from lifelore.experiments.engine.registry import claim_of
+
+FULL = dict(claim_of("C3.3").sizes["full"])
+QUICK = dict(claim_of("C3.3").sizes["quick"])
 
 SMALL = {**QUICK, "episodes": 30, "test_tasks": 2, "training_tasks": [2, 4], "last": 5}
 SMALL["default"] = {**QUICK["default"], "training_tasks": 4}

@@ -14,9 +14,11 @@ from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import (
     trained_policies,
 )
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import first_lasting, first_stretch, reused, run_cell
-from lifelore.experiments.chapter4.c4_04_pacman.run import QUICK
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
+
+QUICK = dict(claim_of("C4.4").sizes["quick"])
 
 MAZE = PacmanMaze(5, 5)
 TRAINED = {**QUICK, "training_episodes": 10_000}

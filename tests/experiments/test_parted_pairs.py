@@ -8,17 +8,17 @@ from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.c2_11_distant_objects import parted_pairs
-from lifelore.experiments.chapter2.c2_11_distant_objects.parted_pairs import (
+from lifelore.experiments.chapter2.c2_11_distant_objects import run as parted_pairs
+from lifelore.experiments.chapter2.c2_11_distant_objects.run import (
     away,
     bearing_pairs,
     counts,
     kernels,
-    pair_cells,
     parted,
     run_cell,
     shift_to,
 )
+from lifelore.experiments.chapter2.c2_11_distant_objects.run import cells as pair_cells
 
 SETTINGS = {
     "pairs": 1,

@@ -10,12 +10,14 @@ import pytest
 import lifelore.experiments
 from lifelore.core.errors import NotFoundError
 from lifelore.experiments.engine.ledger import entries
-from lifelore.experiments.engine.predicate import FOLDER, VERDICTS
+from lifelore.experiments.engine.predicate import VERDICTS, Predicate
 from lifelore.experiments.engine.registry import built_ids, claim_folders, claim_of, list_claims
 from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
 from lifelore.figures.style import MAX_BYTES as MAX_FIGURE_BYTES
 
 IDS = built_ids()
+FILED = Path(__file__).with_name("filed_predicates")
+"""The conditions and rules of every claim as they were committed before its first full run."""
 
 
 @pytest.fixture(scope="session")
@@ -28,7 +30,7 @@ def quick(tmp_path_factory):
 def test_registry_is_complete():
     names = {folder.name for folder in Path(lifelore.experiments.__file__).parent.glob("chapter*/c[0-9]_*")}
     assert names == {folder.name for folder in claim_folders().values()}
-    assert {path.stem for path in FOLDER.glob("*.json")} == set(IDS)
+    assert {path.stem for path in FILED.glob("*.json")} == set(IDS)
 
 
 def test_list_names_all_claims_built_or_not():
@@ -48,6 +50,10 @@ def test_claims_that_cannot_be_run(claim_id, rule):
 class TestEveryClaim:
     def test_names_itself(self, claim_id):
         assert claim_of(claim_id).id == claim_id
+
+    def test_predicates_are_those_filed(self, claim_id):
+        filed = json.loads((FILED / f"{claim_id}.json").read_text(encoding="utf-8"))
+        assert claim_of(claim_id).predicate == Predicate.from_data(filed)
 
     def test_modes_have_the_same_settings_of_the_same_types(self, claim_id):
         sizes = claim_of(claim_id).sizes

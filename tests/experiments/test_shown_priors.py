@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import QUICK
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import (
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import (
     PEOPLE,
     PLAIN,
     SELF,
@@ -16,6 +15,9 @@ from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import
     run_of,
     self_trained,
 )
+from lifelore.experiments.engine.registry import claim_of
+
+QUICK = dict(claim_of("C3.12").sizes["quick"])
 
 SETTINGS = {**QUICK, "trajectories": [2, 4], "episodes": 6, "early": 2, "max_steps": 60}
 HOW = {**{key: QUICK["default"][key] for key in ("features", "schedule", "ties")}, "alpha0": 0.1}

@@ -11,8 +11,8 @@ from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import choose_view, photograph
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.shapes import ball, box, cup
-from lifelore.experiments.chapter5.c5_01_more_relations import word_scenes
-from lifelore.experiments.chapter5.c5_01_more_relations.word_scenes import (
+from lifelore.experiments.chapter5.c5_01_more_relations import run as word_scenes
+from lifelore.experiments.chapter5.c5_01_more_relations.run import (
     KINDS,
     compound_counts,
     from_the_other_side,
@@ -23,8 +23,8 @@ from lifelore.experiments.chapter5.c5_01_more_relations.word_scenes import (
     run_cell,
     seen,
     true_compounds,
-    word_cells,
 )
+from lifelore.experiments.chapter5.c5_01_more_relations.run import cells as word_cells
 
 CUBE = box(0.06, 0.06, 0.06)
 

@@ -4,9 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure_displacement_scatter import (
-    draw_displacement_panels,
-)
+from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure import draw_displacement_panels
 
 PANEL = {"displacements": [[0, 8], [90, 0]], "relations": ["on", "adjacent"]}
 

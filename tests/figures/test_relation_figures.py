@@ -4,10 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure_displacement_scatter import (
-    draw_displacements,
-)
-from lifelore.experiments.chapter2.c2_05_discarded_points.figure_robustness_curves import draw_robustness
+from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure import draw_displacements
+from lifelore.experiments.chapter2.c2_05_discarded_points.figure import draw_robustness
 from lifelore.experiments.chapter2.confusion_matrix import draw_confusions
 from lifelore.experiments.chapter2.method_bars import draw_method_bars
 from lifelore.experiments.chapter2.scene_gallery import draw_gallery

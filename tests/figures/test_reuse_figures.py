@@ -7,8 +7,8 @@ from lifelore.core.errors import NotFoundError
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.surveillance.surveillance import BASE, SIDE, Surveillance
 from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
+from lifelore.experiments.chapter4.c4_03_telephone_signals.figure import EDGES as CALL_EDGES
 from lifelore.experiments.chapter4.c4_03_telephone_signals.figure_call_graph import PLACES, draw_call_graph
-from lifelore.experiments.chapter4.c4_03_telephone_signals.figure_telephone_curves import EDGES as CALL_EDGES
 from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import SIGNAL_OF_PATH
 from lifelore.experiments.chapter4.category_bars import draw_category_bars
 from lifelore.experiments.chapter4.reuse_palette import LOOKS, look_of

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_04_time_per_image.figure_stage_times import draw_stage_times
+from lifelore.experiments.chapter2.c2_04_time_per_image.figure import draw_stage_times
 
 
 def test_dots_and_bars_show_their_numbers():

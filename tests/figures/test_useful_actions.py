@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.experiments.chapter3.c3_01_useful_actions.figure_useful_actions import draw_useful_actions
+from lifelore.experiments.chapter3.c3_01_useful_actions.figure import draw_useful_actions
 
 
 def result(examples=True):

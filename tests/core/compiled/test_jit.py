@@ -89,7 +89,11 @@ def test_an_edit_elsewhere_is_never_answered_by_an_older_kernel(copied):
     assert draw() == first
     assert {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb*")} == kept  # nothing compiled again
     # A constant of a function that the kernel calls: other draws.
-    edit(package / "core" / "random_state.py", "np.uint64(37), np.uint64(27)", "np.uint64(36), np.uint64(28)")
+    edit(
+        package / "core" / "compiled" / "random_state.py",
+        "np.uint64(37), np.uint64(27)",
+        "np.uint64(36), np.uint64(28)",
+    )
     second = draw()
     assert second != first
     assert second == draw(NUMBA_DISABLE_JIT="1")
@@ -147,7 +151,7 @@ def test_imports_are_found_as_python_finds_them(tmp_path):
 
 def test_every_kernel_lies_in_the_cache_folder():
     from lifelore.core.learning import model_learning, q_learning
-    from lifelore.core.planning.planning import planning
+    from lifelore.core.planning import planning
 
     for function in (q_learning.learn, model_learning.explore, planning._sweep):
         assert Path(function.stats.cache_path).is_relative_to(kernel_cache_dir())  # type: ignore[attr-defined]

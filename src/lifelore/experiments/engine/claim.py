@@ -1,22 +1,35 @@
-"""A claim: settings and predicate as data, a pure run of one cell, and what is measured from the cells.
+"""A claim of the thesis as a folder: `claim.toml` and the modules `run`, `measure` and `figure`.
 
-Cells are the pieces a run is made of: independent, each a plain dictionary, run in any order on any thread.
-Everything that crosses a border here is plain data (what JSON can hold), so that a stored cell equals a fresh one.
+- ``claim.toml``: title, what the thesis reports, settings with their limits, and the conditions and rules of the
+  verdict.
+- ``run.py``: ``cells(settings)`` lists the cells of a run, ``run_cell(settings, cell, seed)`` computes one of
+  them. Cells are independent plain dictionaries, run in any order on any thread.
+- ``measure.py``: ``measure(settings, results)`` gives named estimates, ``rows(settings, results)`` compact rows.
+- ``figure.py``: ``draw(result)`` draws the finished result; it runs nothing again.
+
+Results of cells are plain data (what JSON can hold), so that a stored cell equals a fresh one.
 """
 
 import json
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
+from lifelore.experiments.engine.limits import check_limits
 from lifelore.experiments.engine.predicate import Predicate
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODES = ("quick", "full")
+REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
+OPTIONAL = {"limits", "named", "timed"}
+"""Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
 Cell = Mapping[str, Any]
@@ -32,27 +45,27 @@ class Claim:
     id, title : str
     thesis : str
         What the thesis reports.
+    where : str
+        Section, figure or table of the thesis.
+    ran : str
+        What was run, in two sentences.
     sizes : mapping
         Settings by mode, ``quick`` (for tests) and ``full`` (evidence); the same keys in both.
+    limits : mapping
+        What each setting may be, see `check_limits`.
     predicate : Predicate
-        What decides the verdict.
-    cells : callable
-        ``cells(settings)``: the cells of a run.
-    run_cell : callable
-        ``run_cell(settings, cell, seed)``: one cell's result; pure, and picklable by name.
-    measure : callable
-        ``measure(settings, results)``: named numbers from all cells' results, in the order of `cells`.
-    rows : callable
-        ``rows(settings, results)``: what is kept of the results, compact; the figure is drawn from it.
-    draw : callable
-        ``draw(result)``: the figure, from the finished result alone; nothing is run again.
+        Conditions and rules of the verdict.
     causes : mapping
-        Likely cause by condition, said where the condition is not met.
+        Likely cause by condition, reported where the condition is not met.
+    named : tuple of str
+        Measures beside those of conditions that a figure or a page reads; all others are stored in the rows.
+    cells, run_cell, measure, rows, draw : callable
+        The functions of the claim's modules, see above. `run_cell` is pure, and picklable by name.
     check : callable, optional
-        ``check(settings)`` raises `InputError` for overridden settings that cannot be run.
+        ``check(settings)`` of the module `run` raises `InputError` for settings that limits cannot describe.
     timed : bool
-        Whether it measures time, which no two runs share: measures whose names start with ``seconds`` may then
-        differ between runs of one seed; no other may.
+        Whether it measures time, which differs between runs of one seed: measures whose names start with
+        ``seconds`` may differ then; no other may.
     """
 
     id: str
@@ -65,9 +78,55 @@ class Claim:
     measure: Callable[[Settings, Sequence[CellResult]], dict[str, Estimate]]
     rows: Callable[[Settings, Sequence[CellResult]], list[dict]]
     draw: Callable[[Mapping], "Figure"]
+    where: str = ""
+    ran: str = ""
+    limits: Mapping[str, Mapping[str, Any]] = field(default_factory=dict)
     causes: Mapping[str, str] = field(default_factory=dict)
+    named: tuple[str, ...] = ()
     check: Callable[[Settings], None] | None = None
     timed: bool = False
+
+    @classmethod
+    def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
+        """The claim of a folder, its modules imported from `package`.
+
+        Raises
+        ------
+        InputError
+            ``claim.toml`` is no TOML, or a key of it is missing or unknown.
+        """
+        path = folder / "claim.toml"
+        try:
+            data = tomllib.loads(path.read_text(encoding="utf-8"))
+        except tomllib.TOMLDecodeError as error:
+            raise InputError(f"{path} is not TOML: {error}") from None
+        missing, unknown = REQUIRED - data.keys(), data.keys() - REQUIRED - OPTIONAL
+        if missing or unknown:
+            keys = (
+                f"missing {', '.join(sorted(missing)) or 'none'}, unknown {', '.join(sorted(unknown)) or 'none'}"
+            )
+            raise InputError(f"{path} must have the keys of a claim; {keys}")
+        run, measure, figure = (import_module(f"{package}.{name}") for name in ("run", "measure", "figure"))
+        full = data["settings"]["full"]
+        return cls(
+            id=claim_id,
+            title=data["title"],
+            thesis=data["thesis"],
+            where=data["where"],
+            ran=data["ran"],
+            sizes={"quick": full | data["settings"].get("quick", {}), "full": full},
+            limits=data.get("limits", {}),
+            predicate=Predicate.from_data(data),
+            causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
+            named=tuple(data.get("named", ())),
+            cells=run.cells,
+            run_cell=run.run_cell,
+            check=getattr(run, "check", None),
+            measure=measure.measure,
+            rows=measure.rows,
+            draw=figure.draw,
+            timed=data.get("timed", False),
+        )
 
     def settings(self, mode: str, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """The settings of a mode, with some of them overridden.
@@ -90,6 +149,7 @@ class Claim:
             if key not in settings:
                 raise InputError(f"{self.id} has no setting '{key}'; it has {', '.join(settings)}")
             settings[key] = _as_type_of(settings[key], value, f"{self.id} setting '{key}'")
+        check_limits(settings, self.limits)
         if self.check:
             self.check(settings)
         return settings

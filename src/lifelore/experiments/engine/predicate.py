@@ -1,19 +1,18 @@
 """A verdict as data: named conditions on measured numbers, and rules that turn them into one of four words.
 
-The conditions of a claim stand in a JSON file of their own under `predicates/`, so that the history shows what
-was asked before the first full run. A condition is
+The conditions of a claim stand in its ``claim.toml``; a test compares them with those filed before the first full
+run. A condition is
 
-    {"name": …, "measure": …, "part": "value" | "interval", "op": …, "bound": …, "words": …}
+    {"name": …, "measure": …, "part": "value" | "interval", "op": …, "bound": …, "words": …, "cause": …}
 
-`interval` asks it of both ends of the 95 % interval. A rule is ``{"verdict": …, "all": […]}`` or ``{"verdict": …,
-"any": […]}``; the first rule met decides, *does not hold* if none is, *cannot be tested* if a number is missing.
+``interval`` asks it of both ends of the 95 % interval; ``cause`` is the likely cause where it is not met.
+A rule is ``{"verdict": …, "all": […]}`` or ``{"verdict": …, "any": […]}``; the first rule met decides, *does not
+hold* if none is, *cannot be tested* if a number is missing.
 """
 
-import json
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 
 from lifelore.core.errors import InputError
 
@@ -26,7 +25,6 @@ OPS = {
     "<=": lambda x, bound: x <= bound,
     "between": lambda x, bound: bound[0] <= x <= bound[1],
 }
-FOLDER = Path(__file__).with_name("predicates")
 
 Measured = Mapping[str, Mapping]
 """Plain numbers by name, each {"value", "median", "ci95", "n"}."""
@@ -90,18 +88,16 @@ class Predicate:
 
     @classmethod
     def from_data(cls, data: Mapping) -> "Predicate":
-        """From the plain data of a predicate file."""
+        """From the conditions and rules of a ``claim.toml``."""
         conditions = tuple(
-            Condition(**{**c, "bound": tuple(c["bound"]) if isinstance(c["bound"], list) else c["bound"]})
+            Condition(
+                c["name"], c["measure"], c["part"], c["op"],
+                tuple(c["bound"]) if isinstance(c["bound"], list) else c["bound"], c["words"],
+            )
             for c in data["conditions"]
-        )
+        )  # fmt: skip
         rules = tuple(Rule(r["verdict"], tuple(r.get("all", ())), tuple(r.get("any", ()))) for r in data["rules"])
         return cls(conditions, rules)
-
-    @classmethod
-    def of(cls, claim_id: str) -> "Predicate":
-        """The predicate filed for a claim."""
-        return cls.from_data(json.loads((FOLDER / f"{claim_id}.json").read_text(encoding="utf-8")))
 
     def answers(self, measured: Measured) -> dict[str, bool | None]:
         """Each condition's answer by name; None where it cannot be told."""

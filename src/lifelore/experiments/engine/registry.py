@@ -1,8 +1,7 @@
-"""Which claims are built: the folder ``chapterN/cN_MM_name`` holds claim CN.M, its module ``run`` the `CLAIM`."""
+"""Which claims are built: the folder ``chapterN/cN_MM_name`` holds claim CN.M."""
 
 import re
 from functools import cache
-from importlib import import_module
 from pathlib import Path
 
 from lifelore.core.errors import NotFoundError
@@ -19,7 +18,7 @@ def claim_folders() -> dict[str, Path]:
     found = {}
     for folder in EXPERIMENTS.glob("chapter*/c*_*"):
         name = _FOLDER.match(folder.name)
-        if name and folder.is_dir():
+        if name and (folder / "claim.toml").is_file():
             found[f"C{int(name[1])}.{int(name[2])}"] = folder
     return {entry.id: found[entry.id] for entry in entries() if entry.id in found}
 
@@ -44,7 +43,7 @@ def claim_of(claim_id: str) -> Claim:
         state = "is not built yet" if known else "is not in the ledger"
         raise NotFoundError(f"claim '{claim_id}' {state}; built are {', '.join(folders)}")
     folder = folders[claim_id]
-    return import_module(f"lifelore.experiments.{folder.parent.name}.{folder.name}.run").CLAIM
+    return Claim.load(claim_id, folder, f"lifelore.experiments.{folder.parent.name}.{folder.name}")
 
 
 def list_claims() -> list[dict]:

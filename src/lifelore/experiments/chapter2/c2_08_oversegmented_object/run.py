@@ -1,147 +1,170 @@
-"""C2.8: what is said of the parts of one thing that was wrongly segmented into two is right.
+"""One thing of a scene wrongly segmented into two, and what is said of its parts (thesis Fig. 2.9).
 
-What is true follows from the cut: of a level cut the upper part is on the lower, of an upright one the parts are
-side by side. Oblique cuts have no such truth and are only counted, by the tilt of the cut. Simulated scenes hold
-two to four things of all shapes, of which one is cut; real scenes are cut in the same way, each thing that stands
-by itself. Intervals of real numbers resample scenes. Thesis: §2.5, Figure 2.9.
+A thing that stands on the table by itself is cut *level* (its upper part is on its lower), *upright* (its parts
+stand side by side) or *oblique*, where what is true is a matter of taste: an upper part on a slope. Parts of an
+upright cut must both reach the table, else one would hang from the other.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.c2_08_oversegmented_object.cut_scenes import TRUE, cut_cells, run_cell
-from lifelore.experiments.chapter2.scene_example import scene_of_row
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.domains.tabletop.settings import TabletopSettings
+from lifelore.domains.tabletop.tabletop import TabletopScene, draw_scene
+from lifelore.experiments.chapter2.cut_objects import cut_object
+from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.skeleton_reading import perceived, reading
+from lifelore.perception.peers.bounding_box_rule import BoundingBoxRule
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.scene import Scene
 
-FULL = {"scenes": 200, "real": True}
-QUICK = {"scenes": 2, "real": False}
-SETS = {"simulated": False, "real": True}
-METHODS = {"": "said", "_by_boxes": "boxes"}
-TABLE_TRUE = {"level": ["none", "on"], "upright": ["on", "on"]}
-RESAMPLES = 1000
+LOT, REAL_LOT = 10, 4
+TILTS = {"level": (0.0, 0.0), "oblique": (15.0, 75.0), "upright": (90.0, 90.0)}
+"""Degrees between a cut's normal and up."""
+TRUE = {"level": ON, "upright": ADJACENT}
+TALL, BROAD = 0.05, 0.06
+"""Metres that a thing must be seen to be high, and wide across an upright cut."""
+REACHES = 0.01
+SEEN_TO_REACH = 0.03
+"""Metres above the table below which a part's true, or visible, points must come."""
+FEWEST = 150
+"""Points that each part must have."""
+DRAWS = 12
+Row = dict[str, Any]
 
 
-def _check(settings: Mapping) -> None:
+def cells(settings: Mapping) -> list[dict]:
+    """Lots of simulated scenes; then of real ones, where asked for and there."""
+    lots: list[dict] = [{"first": k} for k in range(0, settings["scenes"], LOT)]
+    if not settings["real"] or real_scenes_folder() is None:
+        return lots
+    names = [scene.name for scene in real_scenes()]
+    return lots + [{"scenes": names[at : at + REAL_LOT]} for at in range(0, len(names), REAL_LOT)]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """A row for each cut, and a picture of each kind of cut from the first simulated lot."""
+    if "scenes" in cell:
+        rows = [
+            row
+            for scene in real_scenes()
+            if scene.name in cell["scenes"]
+            for label in free_standing(scene.truth)
+            for row, _ in cuts_of(scene.cloud, label, scene.name, stream(seed, "cuts", scene.name, label))
+        ]
+        return {"real": True, "rows": rows, "examples": []}
+    rows, examples = [], {}
+    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+        for row, scene in simulated_cuts(seed, number):
+            rows.append(row)
+            if cell["first"] == 0 and row["kind"] not in examples:
+                examples[row["kind"]] = scene_row(reading(scene), row["kind"])
+    return {"real": False, "rows": rows, "examples": [examples[kind] for kind in TILTS if kind in examples]}
+
+
+def simulated_cuts(seed: int, number: int) -> list[tuple[Row, Scene]]:
+    """The cuts of one thing of scene `number`: of those that stand by themselves and can be cut, one by chance."""
+    own_seed = int(stream(seed, "over-segmented").integers(2**31))
+    scene = draw_scene(own_seed, number, TabletopSettings(n_objects=(2, 4), shapes="all"))
+    rng = stream(seed, "cuts", number)
+    for label in rng.permutation(free_standing(scene.truth)).tolist():
+        cuts = cuts_of(scene.cloud, label, scene.name, rng, true_outline(scene, label))
+        if cuts:
+            return cuts
+    return []
+
+
+def true_outline(scene: TabletopScene, label: int) -> NDArray[np.float64]:
+    """Points that span a true thing, metres."""
+    return scene.poses[label - 2].apply(scene.shapes[label - 2].outline())
+
+
+def free_standing(truth: tuple[PairLabel, ...]) -> list[int]:
+    """Things on the table beyond doubt that nothing else carries, wholly or in part."""
+    carried = {t.a for t in truth if t.b != TABLE and t.relation in (ON, BOTH)}
+    return sorted(
+        t.a for t in truth if t.b == TABLE and t.relation == ON and t.confidence == 3 and t.a not in carried
+    )
+
+
+def cuts_of(
+    cloud: LabelledCloud, label: int, name: str, rng: np.random.Generator, outline: NDArray | None = None
+) -> list[tuple[Row, Scene]]:
+    """For each kind of cut that the thing allows a row, and what was perceived; none of a low thing."""
+    cuts = []
+    if np.ptp(np.quantile(cloud.of(label)[:, 2], [0.01, 0.99])) < TALL:
+        return cuts
+    for kind, (low, high) in TILTS.items():
+        tilt = float(rng.uniform(low, high))
+        found = _cut(cloud, label, tilt, rng, outline)
+        if found is not None:
+            scene = perceived(found[0])
+            cuts.append(
+                ({"scene": name, "kind": kind, "tilt": round(tilt, 1), **judged(scene, found[1], label)}, scene)
+            )
+    return cuts
+
+
+def _cut(
+    cloud: LabelledCloud, label: int, tilt: float, rng: np.random.Generator, outline: NDArray | None
+) -> tuple[LabelledCloud, int] | None:
+    """The thing cut near its middle at a tilt (degrees), any way round; None where parts would be bad."""
+    points = cloud.of(label)
+    for _ in range(DRAWS):
+        yaw, slope = rng.uniform(0, 2 * np.pi), np.radians(tilt)
+        normal = np.array([np.sin(slope) * np.cos(yaw), np.sin(slope) * np.sin(yaw), np.cos(slope)])
+        low, high = np.quantile(points @ normal, [0.01, 0.99])
+        through = normal * (low + rng.uniform(0.35, 0.65) * (high - low))
+        sides = (points - through) @ normal > 0
+        if min(sides.sum(), (~sides).sum()) < FEWEST or (tilt > 45 and high - low < BROAD):
+            continue
+        if tilt == TILTS["upright"][0] and not _both_reach(points, outline, normal, through):
+            continue
+        return cut_object(cloud, label, normal, through)
+    return None
+
+
+def _both_reach(
+    points: NDArray[np.float64], outline: NDArray | None, normal: NDArray[np.float64], through: NDArray[np.float64]
+) -> bool:
+    """Whether either part comes down to the table: the true one where it is known, else what is seen of it."""
+    body, limit = (points, SEEN_TO_REACH) if outline is None else (outline, REACHES)
+    beyond = (body - through) @ normal > 0
+    return all(side.any() and body[side, 2].min() < limit for side in (beyond, ~beyond))
+
+
+def judged(scene: Scene, part: int, label: int) -> Row:
+    """What is said of the parts: by perception, and by the rule of bounding boxes; and of each with the table.
+
+    The direction is part of what is said: *on*, the upper part on the lower; *on, turned*, the reverse.
+    """
+    boxes = BoundingBoxRule().predict(scene.cloud)
+    tables = [scene.relation_of(thing, TABLE) for thing in (part, label)]
+    return {
+        "said": said_of(scene.relations, part, label),
+        "boxes": said_of(boxes, part, label),
+        "table": [relation.relation if relation else NONE for relation in tables],
+    }
+
+
+def said_of(relations: tuple[Relation, ...], part: int, label: int) -> str:
+    """The relation of (part, label) as one word: *on*, *adjacent*, *both*, *none*; *on*, *both* may be turned."""
+    relation = next((r for r in relations if {r.a, r.b} == {part, label}), None)
+    if relation is None:
+        return NONE
+    if relation.relation not in (ON, BOTH, ADJACENT, NONE):
+        raise InputError(f"relations must be of the core vocabulary, got '{relation.relation}'")
+    turned = relation.relation in (ON, BOTH) and relation.a != part
+    return f"{relation.relation}, turned" if turned else relation.relation
+
+
+def check(settings: Mapping) -> None:
     if settings["scenes"] < 1:
         raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Recall of either relation, share right, macro F1, and relations with the table, by set of scenes."""
-    found = {}
-    for name, real in SETS.items():
-        rows = [row for result in results if result["real"] == real for row in result["rows"]]
-        judged = [row for row in rows if row["kind"] in TRUE]
-        share = shared_by_scene if real else exact_share_of_rows
-        for suffix, method in METHODS.items():
-            for kind, true in TRUE.items():
-                own = [row for row in judged if row["kind"] == kind]
-                found[f"{true}_right_{name}{suffix}"] = share(own, [row[method] == true for row in own])
-            right = [row[method] == TRUE[row["kind"]] for row in judged]
-            found[f"right_{name}{suffix}"] = shared_by_scene(judged, right)
-            found[f"macro_f1_{name}{suffix}"] = macro_f1(judged, method)
-        right = [row["table"] == TABLE_TRUE[row["kind"]] for row in judged]
-        found[f"table_right_{name}"] = shared_by_scene(judged, right)
-        oblique = [row for row in rows if row["kind"] == "oblique"]
-        for low, high in ((15, 45), (45, 75)):
-            own = [row for row in oblique if low <= row["tilt"] < high]
-            on = exact_share(row["said"] in ("on", "both") for row in own)
-            found[f"oblique_{low}_to_{high}_degrees_on_or_both_{name}"] = on
-    tilts = [row["tilt"] for result in results for row in result["rows"] if row["kind"] == "oblique"]
-    found["mean_tilt_of_oblique_cuts"] = mean_or_unmeasured(tilts)
-    return found
-
-
-def exact_share_of_rows(rows: Sequence[Mapping], answers: Sequence[bool]) -> Estimate:
-    """Share of rows that are each of a scene of their own."""
-    return exact_share(answers)
-
-
-def shared_by_scene(rows: Sequence[Mapping], answers: Sequence[bool]) -> Estimate:
-    """Share of true answers, scenes resampled; with the exact interval where all answers are one."""
-    if not rows:
-        return UNMEASURED
-    totals: dict[str, list[int]] = {}
-    for row, answer in zip(rows, answers, strict=True):
-        sums = totals.setdefault(row["scene"], [0, 0])
-        sums[0] += answer
-        sums[1] += 1
-    counts = np.array(list(totals.values()), float)
-    clustered, plain = ratio_estimate(counts[:, 0], counts[:, 1]), exact_share(answers)
-    interval = clustered.ci95 if 0 < plain.value < 1 else plain.ci95
-    return Estimate(plain.value, clustered.median, interval or plain.ci95, plain.n)
-
-
-def macro_f1(rows: Sequence[Mapping], method: str) -> Estimate:
-    """Mean F1 of *on* and *adjacent* over level and upright cuts, scenes resampled (percentiles)."""
-    if not rows:
-        return UNMEASURED
-    names = sorted({row["scene"] for row in rows})
-    # Of each scene and relation: right, said, true.
-    counts = np.zeros((len(names), len(TRUE), 3))
-    for row in rows:
-        for number, (kind, true) in enumerate(TRUE.items()):
-            of, said = row["kind"] == kind, row[method] == true
-            counts[names.index(row["scene"]), number] += (of and said, said, of)
-    drawn = stream(len(names), "scenes resampled").multinomial(
-        len(names), np.full(len(names), 1 / len(names)), size=RESAMPLES
-    )
-    resampled = _mean_f1(np.tensordot(drawn.astype(float), counts, axes=1))
-    low, high = np.quantile(resampled, [0.025, 0.975])
-    value = float(_mean_f1(counts.sum(axis=0)[None])[0])
-    return Estimate(value, value, (float(low), float(high)) if low < high else None, len(rows))
-
-
-def _mean_f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    right, said, true = np.moveaxis(counts, -1, 0)
-    return (2 * right / np.maximum(said + true, 1)).mean(axis=1)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """How often what was said, by set of scenes and kind of cut (oblique ones in steps of 15°); and pictures."""
-    counts: dict[tuple, int] = {}
-    for result in results:
-        for row in result["rows"]:
-            low = 15 * min(int(row["tilt"] // 15), 5)
-            cut = row["kind"] if row["kind"] in TRUE else f"{low}° to {low + 15}°"
-            key = ("real" if result["real"] else "simulated", cut, row["said"], row["boxes"])
-            counts[key] = counts.get(key, 0) + 1
-    counted = [
-        {"set": name, "cut": cut, "said": said, "boxes": boxes, "cuts": n}
-        for (name, cut, said, boxes), n in sorted(counts.items())
-    ]
-    return counted + [example for result in results for example in result["examples"]]
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter2.c2_08_oversegmented_object.figure_cut_relations import draw_cut_relations
-
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    return draw_cut_relations(examples, [row for row in result["rows"] if "cut" in row])
-
-
-CLAIM = Claim(
-    id="C2.8",
-    title="Relations between the parts of one over-segmented thing (Figure 2.9)",
-    thesis="One object is wrongly segmented into two, and the relationships between the regions are still "
-    "correctly identified.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C2.8"),
-    cells=cut_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "upright cuts of real things": "only one side of a real thing is seen, and a part behind looks like "
-        "one above"
-    },
-    check=_check,
-)

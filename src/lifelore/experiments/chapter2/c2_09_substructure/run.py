@@ -1,94 +1,79 @@
-"""C2.9: the skeleton of three things on one another is a subgraph of that of a stack with two contacts.
+"""Whether the skeleton of a stack of three lies within that of a stack with two contacts, and within others.
 
-Every drawn stack is looked for in a stack whose top, an arch, touches the thing below it twice; and in controls:
-two things, and the reverse, the stack with two contacts in the plain stack. The skeleton of a row of three
-neighbours is that of a stack, as it is without predicates, so the rows are asked for the skeleton of what carries
-what. Two readings of subgraph stand beside each other: the thesis's, with every edge of a network, and one that
-asks only that points of one thing stay in one thing (*connected*, errata E15). Thesis: §2.5, Figure 2.10.
+Three skeletons of each scene are looked at: of the *things* alone (related pairs), the same with the *ground*,
+and of *support* (pairs of which one carries the other, ground included): a skeleton has no predicates, so a row
+of three neighbours has that of a stack, and only what carries what tells them apart.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import Any
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter2.c2_09_substructure.skeleton_pairs import HOSTS, READINGS, pair_cells, run_cell
-from lifelore.experiments.chapter2.scene_example import draw_examples
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.skeleton_reading import RELATED, SUPPORT, perceived, reading
+from lifelore.experiments.chapter2.stack_skeletons import real_stacks
+from lifelore.perception.scene import Scene
+from lifelore.perception.topology.substructure import find_substructure
 
-FULL = {"scenes": 120, "real": True}
-QUICK = {"scenes": 2, "real": False}
-CAPTIONS = {
-    "stack": "a stack: its skeleton is part of …",
-    "two contacts": "… that of a stack with two contacts",
-    "row": "a row: alike but for what carries what",
-}
-SEARCHES = (*HOSTS, "reversed")
+LOT = 10
+READINGS = {"things": (RELATED, False), "ground": (RELATED, True), "support": (SUPPORT, True)}
+HOSTS = ("two contacts", "two things", "row", "two on one")
+ARRANGEMENTS = dict(zip(HOSTS, ("stack-two-contacts", "no-hole", "row", "two-on-one"), strict=True))
 
 
-def _check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
+def cells(settings: Mapping) -> list[dict]:
+    """Scenes in lots; then the real stacks, where asked for and there."""
+    lots = [{"first": k} for k in range(0, settings["scenes"], LOT)]
+    return [*lots, {"real": True}] if settings["real"] and real_scenes_folder() else lots
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Share of stacks found in each kind of scene, by reading; whether the witness is right; contact points."""
-    drawn = [row for result in results if not result["real"] for row in result["scenes"]]
-    real = [row for result in results if result["real"] for row in result["scenes"]]
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """For each number: in which scenes the stack's skeleton was found, which way round, and with what witness."""
+    if cell.get("real"):
+        host = perceived(arranged(ARRANGEMENTS["two contacts"], seed, 0).cloud)
+        stacks = [perceived(three.cloud) for three in real_stacks()]
+        return {
+            "real": True,
+            "scenes": [{"two contacts": found_in(stack, host)} for stack in stacks],
+            "examples": [],
+        }
+    rows, examples = [], []
+    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+        stack = perceived(arranged("stack", seed, number).cloud)
+        hosts = {name: perceived(arranged(ARRANGEMENTS[name], seed, number).cloud) for name in HOSTS}
+        row: dict[str, Any] = {name: found_in(stack, host) for name, host in hosts.items()}
+        row["reversed"] = found_in(hosts["two contacts"], stack)
+        row["witness"] = witness_is_right(stack, hosts["two contacts"])
+        row["points"] = [sum(len(n.nodes) for n in reading(s).networks.values()) for s in (stack, *hosts.values())]
+        rows.append(row)
+        if number == 0:
+            pictures = {"stack": stack, "two contacts": hosts["two contacts"], "row": hosts["row"]}
+            examples = [scene_row(reading(scene), name) for name, scene in pictures.items()]
+    return {"real": False, "scenes": rows, "examples": examples}
+
+
+def found_in(part: Scene, whole: Scene) -> dict[str, bool]:
+    """Whether a scene's skeleton is found in another's, by reading; of the things also as *connected*."""
     found = {}
-    for where in SEARCHES:
-        for name in ("connected", *READINGS):
-            found[_name(where, name)] = exact_share(row[where][name] for row in drawn)
-    found["witness_right"] = exact_share(row["witness"] for row in drawn if row["witness"] is not None)
-    for name in READINGS:
-        found[f"real_stack_in_two_contacts_{name}"] = exact_share(row["two contacts"][name] for row in real)
-    for place, what in enumerate(("stack", *HOSTS)):
-        found[f"contact_points_{what.replace(' ', '_')}"] = mean_or_unmeasured(
-            row["points"][place] for row in drawn
-        )
+    for name, (words, ground) in READINGS.items():
+        small, large = (reading(scene, words, ground=ground) for scene in (part, whole))
+        found[name] = find_substructure(small, large).found
+        if name == "things":
+            found["connected"] = find_substructure(small, large, networks="connected").found
     return found
 
 
-def _name(where: str, reading: str) -> str:
-    return f"{'two_contacts_in_stack' if where == 'reversed' else 'in_' + where.replace(' ', '_')}_{reading}"
+def witness_is_right(part: Scene, whole: Scene) -> bool | None:
+    """Whether the witness maps each thing, the ground too, to the one in its place; None where none is found."""
+    witness = find_substructure(*(reading(scene, ground=True) for scene in (part, whole)))
+    if not witness.found:
+        return None
+    return witness.objects == {label: label for label in (TABLE, *part.objects)}
 
 
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """How often each set of answers came; and three pictures."""
-    counts: dict[tuple, int] = {}
-    for result in results:
-        for row in result["scenes"]:
-            for where in SEARCHES:
-                if where in row:
-                    key = (result["real"], where, *(row[where][name] for name in READINGS))
-                    counts[key] = counts.get(key, 0) + 1
-    counted = [
-        {"real": real, "in": where, **dict(zip(READINGS, answers, strict=True)), "scenes": n}
-        for (real, where, *answers), n in sorted(counts.items())
-    ]
-    return counted + [example for result in results for example in result["examples"]]
-
-
-def _draw(result: Mapping):
-    return draw_examples(result, columns=3, captions=CAPTIONS)
-
-
-CLAIM = Claim(
-    id="C2.9",
-    title="A stack's skeleton within that of a stack with two contacts (Figure 2.10)",
-    thesis="Three objects on one another, and the same with two contacts between the topmost and the one below: "
-    "the first skeleton is a subgraph of the second.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C2.9"),
-    cells=pair_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "a subgraph": "a contact that came out as two points in the stack is one in the other scene",
-        "the witness is right": "without up and down a skeleton may fit another way round",
-    },
-    check=_check,
-)
+def check(settings: Mapping) -> None:
+    if settings["scenes"] < 1:
+        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")

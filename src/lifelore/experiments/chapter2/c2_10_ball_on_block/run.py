@@ -1,80 +1,80 @@
-"""C2.10: a ball A on a block B on the ground G reads {on(A, B), on(B, G)}, and B's network has two points.
+"""A ball A on a block B on the ground G (thesis Fig. 2.2): predicates and networks, simulated and real."""
 
-Here the ground counts as an object, as it does in the figure. Contacts of pairs that perception says are not
-related (the ball and the ground below it) are not counted; how many the ball would have with them stands beside.
-Both cameras are measured, and in the real scenes every thing that lies on one thing on the table, whatever its
-shape. Thesis: §2.3.6, Figure 2.2.
-"""
+from collections.abc import Mapping
+from dataclasses import replace
 
-from collections.abc import Mapping, Sequence
+import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter2.c2_10_ball_on_block.ball_on_block import CAMERAS, ball_cells, run_cell
-from lifelore.experiments.chapter2.scene_example import draw_examples
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ON
+from lifelore.domains.tabletop.settings import TabletopSettings
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.skeleton_reading import NEAR, only, perceived, predicates, reading
+from lifelore.experiments.chapter2.stack_skeletons import carried_pairs
 
-FULL = {"scenes": 150, "real": True}
-QUICK = {"scenes": 2, "real": False}
-
-
-def _check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
+LOT = 10
+BLOCK, BALL = 2, 3
+CAMERAS = ("kinect", "stereo")
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares by camera: predicates right, B's network of two points, both networks as drawn."""
-    found = {}
-    for camera in (*CAMERAS, "real"):
-        rows = [row for result in results if result["camera"] == camera for row in result["scenes"]]
-        found[f"predicates_right_{camera}"] = exact_share(row["right"] for row in rows)
-        found[f"two_points_of_the_lower_{camera}"] = exact_share(row["points"] == [1, 1] for row in rows)
-        found[f"one_point_of_the_upper_{camera}"] = exact_share(row["upper_points"] == 1 for row in rows)
-        found[f"one_point_of_the_upper_of_all_near_pairs_{camera}"] = exact_share(
-            row["near_points"] == 1 for row in rows
-        )
-        found[f"mm_between_the_two_points_{camera}"] = mean_or_unmeasured(
-            row["apart"] for row in rows if row["apart"]
-        )
+def cells(settings: Mapping) -> list[dict]:
+    """Lots by camera; then the real scenes at once, where asked for and there."""
+    lots = [{"camera": camera, "first": k} for camera in CAMERAS for k in range(0, settings["scenes"], LOT)]
+    return [*lots, {"camera": "real"}] if settings["real"] and real_scenes_folder() else lots
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Findings of a lot, and a picture from the first lot of each camera."""
+    camera = cell["camera"]
+    if camera == "real":
+        return {"camera": camera, "scenes": real_findings(), "examples": []}
+    drawn = replace(TabletopSettings(), camera=camera)
+    rows, examples = [], []
+    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+        cloud = arranged("ball-on-block", seed, number, drawn).cloud
+        rows.append(findings(cloud, BALL, BLOCK))
+        if number == 0:
+            examples.append(scene_row(reading(perceived(cloud), ground=True), f"{camera}: {rows[-1]['said']}"))
+    return {"camera": camera, "scenes": rows, "examples": examples}
+
+
+def real_findings() -> list[dict]:
+    """Of every thing that lies on one thing on the table, by people's labels; other things taken away."""
+    found = []
+    for scene in real_scenes():
+        pairs = carried_pairs(scene.truth)
+        standing = {label.a for label in scene.truth if label.relation == ON and label.b == TABLE}
+        for upper, lower in sorted(pairs):
+            if lower in standing and sum(a == upper for a, _ in pairs) == 1:
+                found.append(findings(only(scene.cloud, (upper, lower)), upper, lower))
     return found
 
 
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """How often each set of predicates and points came, by camera; and a picture of each camera."""
-    counts: dict[tuple, int] = {}
-    for result in results:
-        for row in result["scenes"]:
-            key = (result["camera"], row["said"], tuple(row["points"]))
-            counts[key] = counts.get(key, 0) + 1
-    counted = [
-        {"camera": camera, "said": said, "points of B towards A and G": list(points), "scenes": n}
-        for (camera, said, points), n in sorted(counts.items())
-    ]
-    return counted + [example for result in results for example in result["examples"]]
+def findings(cloud: LabelledCloud, upper: int, lower: int) -> dict:
+    """What is said of the two things and the ground, and the points of the lower thing's network.
+
+    `said`: the predicates as text; `right`: whether they are on(upper, lower) and on(lower, table) and no other;
+    `points`: of the lower thing towards the upper and the ground, `upper_points`: of the upper thing towards all
+    it is related to, `near_points`: the same of all near pairs; `apart`: between the first two, mm.
+    """
+    scene = perceived(cloud)
+    names = {upper: "A", lower: "B", TABLE: "G"}
+    network, above = reading(scene, ground=True).networks[lower], reading(scene, ground=True).networks[upper]
+    towards = {other: [n.position for n in network.nodes if n.other == other] for other in (upper, TABLE)}
+    apart = [np.linalg.norm(a - b) for a in towards[upper][:1] for b in towards[TABLE][:1]]
+    return {
+        "said": ", ".join(sorted(f"{word}({names[a]}, {names[b]})" for word, a, b in predicates(scene))),
+        "right": predicates(scene) == {(ON, upper, lower), (ON, lower, TABLE)},
+        "points": [len(towards[upper]), len(towards[TABLE])],
+        "upper_points": len(above.nodes),
+        "near_points": len(reading(scene, NEAR, ground=True).networks[upper].nodes),
+        "apart": round(1000 * float(apart[0]), 1) if apart else None,
+    }
 
 
-def _draw(result: Mapping):
-    return draw_examples(result, columns=2)
-
-
-CLAIM = Claim(
-    id="C2.10",
-    title="A ball on a block on the ground (Figure 2.2)",
-    thesis="A ball A on a block B on the ground G is described as {on(A, B), on(B, G)}, and B by a network of two "
-    "nodes.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C2.10"),
-    cells=ball_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "real predicates": "real things lie on one another in more ways than a ball on a block",
-        "real network": "a contact of real things is hidden in its middle and comes out as two points",
-    },
-    check=_check,
-)
+def check(settings: Mapping) -> None:
+    if settings["scenes"] < 1:
+        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")

@@ -1,52 +1,137 @@
-"""C2.11: whether things far apart yield no contact points.
+"""Pairs of things carried apart, gap by gap, and the separator between them; no gate of distance anywhere.
 
-Without a gate of distance: the separator is asked at every gap, under a grid of kernels, since the thesis states
-neither its length nor its cost. Any such separator has a support vector on either side (the multipliers of both
-sides have one sum, and all of them zero is never best), so *no contact points* can only come of the rule that a
-contact has at least 7 support vectors; measured with it and without. Gaps in metres and in sizes of the larger
-thing. Thesis: §2.3.4, §2.4.1.
+A pair is photographed together, thinned to 3 mm, and one thing's points are then carried away from the other's, so
+that shape, density and noise stay and only the gap grows: straight up where it rests on the other, along the table
+where it stands beside it. Support vectors are clustered as everywhere here, with and without the thesis's rule
+that a contact has at least 7 of them. Thesis: §2.3.4, §2.4.1.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import NONE, ON, PairLabel
+from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
-from lifelore.experiments.chapter2.c2_11_distant_objects.parted_pairs import kernels, pair_cells, run_cell
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, kernel_name
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.experiments.chapter2.pair_validation import THRESHOLD
+from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.contact_points import linked
+from lifelore.perception.contacts.interface import DEFAULT
+from lifelore.perception.separation.separator import separate
 
-KINDS = ("simulated", "real")
+LOT, REAL_LOT = 4, 4
+_EXACT = 1e-4
+"""Metres to which a gap is met."""
+Points = NDArray[np.float64]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """Lots of simulated pairs, then of real scenes where asked for and there; reads ``pairs`` and ``real``."""
+    lots = [{"first": k} for k in range(0, settings["pairs"], LOT)]
+    if not settings["real"] or real_scenes_folder() is None:
+        return lots
+    names = [scene.name for scene in real_scenes()]
+    return lots + [{"real": names[k : k + REAL_LOT]} for k in range(0, len(names), REAL_LOT)]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """``{"kind": "simulated" | "real", "pairs": […]}``, each pair as `parted`."""
+    if "real" in cell:
+        scenes = [(scene.cloud, scene.truth) for scene in real_scenes() if scene.name in cell["real"]]
+    else:
+        last = min(cell["first"] + LOT, settings["pairs"])
+        drawn = TabletopSettings(arrangement="pair", mix=MIX, shapes="all", camera=settings["camera"])
+        own = int(stream(seed, "parted pairs").integers(2**31))
+        scenes = [(s.cloud, s.truth) for s in (draw_scene(own, k, drawn) for k in range(cell["first"], last))]
+    found = [parted(settings, *pair) for cloud, truth in scenes for pair in bearing_pairs(cloud, truth)]
+    return {"kind": "real" if "real" in cell else "simulated", "pairs": found}
+
+
+def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[tuple[Points, Points, str]]:
+    """Points of a and b, and the relation, of each pair of things that bears one."""
+    thin = voxelised(without_table(cloud), DEFAULT.voxel).cloud
+    for label in truth:
+        if TABLE not in (label.a, label.b) and label.relation != NONE and label.confidence >= LEAST_CONFIDENCE:
+            yield thin.of(label.a), thin.of(label.b), label.relation
+
+
+def parted(settings: Mapping, a: Points, b: Points, relation: str) -> dict:
+    """The separator's yield at every gap and kernel.
+
+    Returns
+    -------
+    dict
+        ``relation``; ``size``, the diagonal of the larger thing's box, metres; ``gaps``, metres, first as seen,
+        then those of ``settings["gaps"]``, then ``settings["sizes"]`` times the size; ``found``, ``[gap, kernel,
+        support vectors of a, of b, contacts of a, of b, contacts of 7 of a, of b, violation]`` with gap and kernel
+        by number.
+    """
+    size = max(float(np.linalg.norm(np.ptp(points, axis=0))) for points in (a, b))
+    tree = KDTree(b)
+    wanted = [*settings["gaps"], *(times * size for times in settings["sizes"])]
+    way = away(a, b, relation)
+    moved = [a, *(a + shift_to(a, tree, way, gap) * way for gap in wanted)]
+    found = [
+        [number, kernel, *counts(one, b, length, cost)]
+        for number, one in enumerate(moved)
+        for kernel, (length, cost) in enumerate(kernels(settings))
+    ]
+    gaps = [round(float(tree.query(one)[0].min()), 5) for one in moved]
+    return {"relation": relation, "size": round(size, 4), "gaps": gaps, "found": found}
+
+
+def kernels(settings: Mapping) -> list[tuple[float, float]]:
+    """(length in metres, cost per point) of each kernel."""
+    return [(float(length), float(cost)) for length, cost in product(settings["lengths"], settings["costs"])]
+
+
+def away(a: Points, b: Points, relation: str) -> Points:
+    """The unit vector along which a leaves b: up from what it rests on, else along the table."""
+    if relation == ON:
+        return np.array([0.0, 0.0, 1.0])
+    apart = np.append((a.mean(axis=0) - b.mean(axis=0))[:2], 0.0)
+    length = float(np.linalg.norm(apart))
+    return apart / length if length > 1e-6 else np.array([1.0, 0.0, 0.0])
+
+
+def shift_to(a: Points, tree: KDTree, way: Points, gap: float) -> float:
+    """How far a must go for `gap` metres between the two, by bisection to `_EXACT`."""
+    low, high = 0.0, 0.05
+    while _gap(a + high * way, tree) < gap:
+        low, high = high, 2 * high
+    while high - low > _EXACT:
+        middle = (low + high) / 2
+        low, high = (middle, high) if _gap(a + middle * way, tree) < gap else (low, middle)
+    return high
+
+
+def _gap(points: Points, tree: KDTree) -> float:
+    return float(tree.query(points)[0].min())
+
+
+def counts(a: Points, b: Points, length: float, cost: float) -> list:
+    """Support vectors, contacts and contacts of at least 7, each of a and of b; and the separator's violation."""
+    found = separate(a, b, length=length, cost=cost)
+    sides = [a[found.support_first], b[found.support_second]]
+    sizes = [np.bincount(linked(np.ascontiguousarray(side), DEFAULT.linkage)) for side in sides]
+    contacts = [len(one) for one in sizes]
+    strong = [int((one >= THRESHOLD).sum()) for one in sizes]
+    return [*map(len, sides), *contacts, *strong, round(found.max_violation, 5)]
+
+
 FAR = 1.0
 """Metres: the gap of the predicate; some five to ten sizes."""
-FULL = {
-    "pairs": 132,
-    "gaps": [0.01, 0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0],
-    "sizes": [0.5, 1.0, 2.0, 4.0],
-    "lengths": [0.03, 0.06, 0.12, 0.25],
-    "costs": [1.0, 10.0, 10000.0],
-    "camera": "kinect",
-    "real": True,
-}
-QUICK = {
-    **FULL,
-    "pairs": 4,
-    "gaps": [0.1, 1.0],
-    "sizes": [1.0],
-    "lengths": [0.06, 0.25],
-    "costs": [10.0, 10000.0],
-    "real": False,
-}
-SV_A, SV_B, CONTACTS_A, CONTACTS_B, STRONG_A, STRONG_B, VIOLATION = range(7)
-Counts = np.ndarray
-"""Of one gap and kernel, a row of seven numbers a pair."""
 
 
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     if settings["pairs"] < 1:
         raise InputError(f"pairs must be at least 1, got {settings['pairs']}")
     if settings["camera"] not in CAMERAS:
@@ -56,154 +141,3 @@ def _check(settings: Mapping) -> None:
             raise InputError(f"{key} must be positive numbers, at least one, got {settings[key]}")
     if FAR not in settings["gaps"]:
         raise InputError(f"gaps must hold {FAR:g} m, which the predicate asks about, got {settings['gaps']}")
-
-
-def table_of(settings: Mapping, results: Sequence[Mapping], kind: str) -> dict[tuple[int, int], Counts]:
-    """By number of gap and of kernel, the seven numbers of every pair, ``(n, 7)``."""
-    found: dict[tuple[int, int], list] = {}
-    for pair in (pair for result in results if result["kind"] == kind for pair in result["pairs"]):
-        for gap, kernel, *numbers in pair["found"]:
-            found.setdefault((gap, kernel), []).append(numbers)
-    return {key: np.array(rows, float) for key, rows in found.items()}
-
-
-def nothing(counts: Counts) -> list[bool]:
-    """Pairs without a contact of at least 7 support vectors on either side."""
-    return (counts[:, STRONG_A] + counts[:, STRONG_B] == 0).tolist()
-
-
-def nothing_at_all(counts: Counts) -> list[bool]:
-    """Pairs with no support vector, hence no contact of any size, on some side."""
-    return (np.minimum(counts[:, SV_A], counts[:, SV_B]) == 0).tolist()
-
-
-def something(counts: Counts) -> list[bool]:
-    """Pairs with a contact of at least 7 support vectors on both sides."""
-    return (np.minimum(counts[:, STRONG_A], counts[:, STRONG_B]) > 0).tolist()
-
-
-def support(counts: Counts) -> np.ndarray:
-    """Support vectors a thing, mean of the two."""
-    return (counts[:, SV_A] + counts[:, SV_B]) / 2
-
-
-def gap_number(settings: Mapping, gap: float) -> int:
-    """Number of a gap of the settings; 0 is the pair as it was seen."""
-    return 1 + list(settings["gaps"]).index(gap)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """As seen and at `FAR`, by kernel; then of the kernel that tells the two apart best."""
-    found: dict[str, Estimate] = {}
-    far = gap_number(settings, FAR)
-    names = [kernel_name(*kernel) for kernel in kernels(settings)]
-    for kind in KINDS:
-        table = table_of(settings, results, kind)
-        if not table:
-            continue
-        for number, name in enumerate(names):
-            near_by, away = table[0, number], table[far, number]
-            place = f"{name}_{kind}" if name != STANDARD else f"standard_{kind}"
-            found[f"no_contacts_far_{place}"] = exact_share(nothing(away))
-            found[f"contacts_as_seen_{place}"] = exact_share(something(near_by))
-            found[f"support_vectors_far_{place}"] = mean_estimate(support(away))
-            found[f"far_over_seen_{place}"] = mean_estimate(support(away) / support(near_by))
-        found |= _of_all_kernels(table, far, kind)
-        found |= _best_kernel(table, far, len(names), kind)
-        sizes = [pair["size"] for r in results if r["kind"] == kind for pair in r["pairs"]]
-        found[f"far_in_sizes_{kind}"] = mean_estimate([FAR / size for size in sizes])
-    return found
-
-
-def _of_all_kernels(table: Mapping[tuple[int, int], Counts], far: int, kind: str) -> dict[str, Estimate]:
-    """Over all gaps and kernels: sides without any support vector, and separators that are not optimal."""
-    every = np.concatenate(list(table.values()))
-    distant = np.concatenate([counts for (gap, _), counts in table.items() if gap == far])
-    return {
-        f"no_support_vectors_on_a_side_far_{kind}": exact_share(nothing_at_all(distant)),
-        f"no_support_vectors_on_a_side_{kind}": exact_share(nothing_at_all(every)),
-        f"not_optimal_{kind}": exact_share((every[:, VIOLATION] > 1e-3).tolist()),
-    }
-
-
-def _best_kernel(table: Mapping[tuple[int, int], Counts], far: int, n: int, kind: str) -> dict[str, Estimate]:
-    """The kernel under which most pairs have contacts as seen and none far: best by the worse of two shares."""
-    shares = [(exact_share(something(table[0, k])), exact_share(nothing(table[far, k]))) for k in range(n)]
-    seen, gone = max(shares, key=lambda pair: min(pair[0].value, pair[1].value))
-    return {f"contacts_as_seen_best_kernel_{kind}": seen, f"no_contacts_far_best_kernel_{kind}": gone}
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Of each kind, kernel and gap: quartiles of support vectors a thing and of contacts, shares without."""
-    found = []
-    for kind in KINDS:
-        table = table_of(settings, results, kind)
-        gaps = [pair["gaps"] for r in results if r["kind"] == kind for pair in r["pairs"]]
-        for number, kernel in enumerate(kernels(settings) if table else ()):
-            for place, unit in enumerate(_units(settings)):
-                counts = table[place, number]
-                line = {"scenes": kind, "kernel": kernel_name(*kernel), "gap": _median(gaps, place), "unit": unit}
-                line |= {"pairs": len(counts), "support": _quartiles(support(counts))}
-                line |= {"contacts": _quartiles(_mean_of(counts, CONTACTS_A, CONTACTS_B))}
-                line |= {"contacts_of_7": _quartiles(_mean_of(counts, STRONG_A, STRONG_B))}
-                line |= {"none_of_7": round(float(np.mean(nothing(counts))), 4)}
-                found.append(line | {"violation": float(counts[:, VIOLATION].max())})
-    return found
-
-
-def _units(settings: Mapping) -> list[str]:
-    """Of each gap how it was asked for."""
-    return ["as seen", *("metres" for _ in settings["gaps"]), *(f"{times:g} sizes" for times in settings["sizes"])]
-
-
-def _median(gaps: Sequence[Sequence[float]], place: int) -> float:
-    return round(float(np.median([one[place] for one in gaps])), 4)
-
-
-def _mean_of(counts: Counts, first: int, second: int) -> np.ndarray:
-    return (counts[:, first] + counts[:, second]) / 2
-
-
-def _quartiles(values: np.ndarray) -> list[float]:
-    """Median, lower and upper quartile."""
-    return np.round(np.quantile(values, [0.5, 0.25, 0.75]), 2).tolist()
-
-
-def curves_of(rows: Sequence[Mapping], kernels_shown: Callable[[str], bool], kind: str = "simulated") -> dict:
-    """Rows of gaps in metres as `figures.separation_curve` takes them."""
-    curves: dict[str, dict] = {}
-    for row in rows:
-        if row["scenes"] == kind and row["unit"] in ("as seen", "metres") and kernels_shown(row["kernel"]):
-            curve = curves.setdefault(row["kernel"], {"gap": [], "support_vectors": [], "nodes": []})
-            curve["gap"].append(row["gap"])
-            curve["support_vectors"].append(row["support"])
-            curve["nodes"].append(row["contacts_of_7"])
-    return curves
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter2.c2_11_distant_objects.figure_parting_curves import draw_parting
-
-    return draw_parting(result["rows"], result["settings"]["lengths"], result["settings"]["costs"])
-
-
-CLAIM = Claim(
-    id="C2.11",
-    title="Support vectors and contact points of things far apart",
-    thesis="For any image where the distance between the two objects is great there would be no contact points in "
-    "either object; far away relative to their sizes, very few if any support vectors are identified.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C2.11"),
-    cells=pair_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "no support vectors": "the multipliers of both sides have one sum, which is never zero at the optimum",
-        "no contact points far apart": "beyond a few lengths of the kernel each side is described by itself, and "
-        "how many points that takes depends on its size in lengths, not on the other side's distance",
-        "very few support vectors": "each side by itself takes as many points as it is kernel lengths large",
-    },
-    check=_check,
-)

@@ -1,259 +1,88 @@
-"""C2.13: an L-block under a ball has three nodes, one with the threshold; centres of mass cannot show *on*.
+"""A ball on top of an L-block's upright (thesis Fig. 2.1) as rows of numbers, and pairs from which to learn.
 
-Nodes are counted of all contacts and of those with at least 7 support vectors. *on* is told by models that learnt
-from pairs of the thesis's kind and infer the direction: the thesis's neighbours among displacements of contact
-points, the same neighbours among displacements of centres (the peer that the figure argues against), and others;
-with A and B given beside. The thesis states no kernel: ours decides, the others stand in the rows. Thesis: §2.3.1,
-§2.3.4, Figure 2.1.
+Scenes and lessons are rows of `tabletop_pairs`: contacts under a grid of kernels, none dropped, features, and what
+peers see. Block and ball have the labels 2 and 3; the table's points are left out.
 """
 
-from collections import Counter
-from collections.abc import Mapping, Sequence
-from typing import Any
-
-import numpy as np
+from collections.abc import Mapping
+from dataclasses import replace
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate
-from lifelore.core.relations import ON, SYMMETRIC
 from lifelore.domains.tabletop.depth_camera import CAMERAS
-from lifelore.experiments.chapter2.c2_13_contacts_and_centres.ball_at_l_block import (
-    LESSON,
-    NODES,
-    SCENE,
-    block_cells,
-    run_cell,
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings
+from lifelore.experiments.chapter2 import tabletop_pairs
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.pair_validation import THRESHOLD
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.tabletop_pairs import (
+    STANDARD,
+    Row,
+    contacts_of,
+    loose_settings,
+    pair_rows,
+    without_table,
 )
-from lifelore.experiments.chapter2.pair_validation import (
-    THRESHOLD,
-    Reading,
-    as_scene,
-    as_seen,
-    gap_of,
-    label_of,
-    told_by_neighbours,
-    vote,
-)
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference
-from lifelore.experiments.chapter2.scene_example import scene_of_row
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
-from lifelore.experiments.engine.predicate import Predicate
-from lifelore.perception.peers import PEERS
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.contacts.interface import DEFAULT, interfaces
+from lifelore.perception.scene import Scene
 
-FULL = {"scenes": 200, "lessons": 132, "cameras": ["stereo", "kinect"]}
-QUICK = {"scenes": 2, "lessons": 4, "cameras": ["kinect"]}
-CONTACTS, CENTRES, OURS = "contacts", "centres", "lifelore"
-OTHERS = {"closest_points": "closest-point k-NN", "bounding_boxes": "bounding-box rule"}
-SHOWN = {
-    CONTACTS: "thesis",
-    CENTRES: "centroid k-NN",
-    OURS: "lifelore",
-    "closest_points": "closest-point k-NN",
-    "bounding_boxes": "bounding-box rule",
-}
-"""Names in the figure."""
-TITLES = {"every contact": "every contact", "strong": f"contacts of at least {THRESHOLD} support vectors"}
-FEW = "support vectors are counted on points 3 mm apart, where a small ball's contact has few"
-Lot = tuple[list[Row], list[Row]]
-"""Lessons and scenes."""
+BLOCK, BALL = 2, 3
+LOT = 15
+LESSON, SCENE = "lesson", "scene"
+NODES = 3
+"""Of the L-block in the thesis's figure, without the threshold."""
 
 
-def _check(settings: Mapping) -> None:
+def cells(settings: Mapping) -> list[dict]:
+    """Lots of lessons, then of scenes, camera by camera.
+
+    Settings read: ``cameras``, ``lessons`` and ``scenes`` (of each).
+    """
+    lots = ((LESSON, settings["lessons"], tabletop_pairs.LOT), (SCENE, settings["scenes"], LOT))
+    return [
+        {"kind": kind, "camera": camera, "first": first}
+        for camera in settings["cameras"]
+        for kind, n, lot in lots
+        for first in range(0, n, lot)
+    ]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """The rows of a lot, ``{"kind", "camera", "rows", "examples"}``; pictures from the first lot of scenes."""
+    kind, camera, first = cell["kind"], cell["camera"], cell["first"]
+    head = {"kind": kind, "camera": camera}
+    if kind == LESSON:
+        asked = {"pairs": settings["lessons"], "camera": camera}
+        found = tabletop_pairs.run_cell(asked, {"data_set": 0, "first": first}, seed)
+        return {**head, "rows": found["rows"], "examples": []}
+    drawn = replace(TabletopSettings(), camera=camera)
+    worlds = [
+        arranged("ball-at-l-block", seed, k, drawn) for k in range(first, min(first + LOT, settings["scenes"]))
+    ]
+    rows = [row for world in worlds for row in pair_rows(world.name, world.cloud, world.truth)]
+    examples = pictures(worlds, rows) if first == 0 else []
+    return {**head, "rows": rows, "examples": examples}
+
+
+def pictures(worlds: list[TabletopScene], rows: list[Row]) -> list[dict]:
+    """The scene whose block comes nearest to the thesis's number of nodes: every contact, and strong ones."""
+    at = min(range(len(rows)), key=lambda k: abs(len(rows[k]["contacts"][STANDARD]["a"]) - NODES))
+    world = next(world for world in worlds if world.name == rows[at]["scene"])
+    found = []
+    for words, settings in (
+        ("every contact", loose_settings(DEFAULT.length, DEFAULT.cost)),
+        (f"of at least {THRESHOLD}", DEFAULT),
+    ):
+        between = interfaces(without_table(world.cloud), settings)
+        n = len(contacts_of(between[0])["a"])
+        caption = f"{words}: {n} node{'s' * (n != 1)}"
+        found.append(scene_row(Scene(world.cloud, between), caption))
+    return found
+
+
+def check(settings: Mapping) -> None:
     if settings["scenes"] < 1 or settings["lessons"] < 4:
         raise InputError(
             f"scenes must be at least 1 and lessons at least 4, got {settings['scenes']} and {settings['lessons']}"
         )
     if not settings["cameras"] or set(settings["cameras"]) - set(CAMERAS):
         raise InputError(f"cameras must be some of {', '.join(CAMERAS)}, got {settings['cameras']}")
-
-
-def _lot(results: Sequence[Mapping], camera: str) -> Lot:
-    lessons, scenes = (
-        [row for one in results if (one["kind"], one["camera"]) == (kind, camera) for row in one["rows"]]
-        for kind in (LESSON, SCENE)
-    )
-    return lessons, scenes
-
-
-# --- nodes ------------------------------------------------------------------------------------------------
-
-
-def nodes(row: Row, kernel: str = STANDARD) -> np.ndarray:
-    """Height (metres) and support vectors of each of the block's nodes, none dropped, ``(n, 2)``."""
-    return np.array(row["contacts"][kernel]["a"], float).reshape(-1, 4)[:, 2:]
-
-
-def strong(found: np.ndarray) -> np.ndarray:
-    """Those of at least `THRESHOLD` support vectors."""
-    return found[found[:, 1] >= THRESHOLD]
-
-
-def topmost_alone_remains(found: np.ndarray) -> bool:
-    """Whether one node is strong and no other is higher."""
-    kept = strong(found)
-    return len(kept) == 1 and bool(kept[0, 0] >= found[:, 0].max())
-
-
-def node_measures(scenes: Sequence[Row]) -> dict[str, Estimate]:
-    """Shares of scenes by the block's nodes, with the threshold and without."""
-    found = [nodes(row) for row in scenes]
-    n, left = [len(one) for one in found], [len(strong(one)) for one in found]
-    return {
-        "rank_of_three_nodes": mean_or_unmeasured((k < NODES) + 0.5 * (k == NODES) for k in n),
-        "three_nodes_without_threshold": exact_share(k == NODES for k in n),
-        "several_nodes_without_threshold": exact_share(k > 1 for k in n),
-        "one_node_with_threshold": exact_share(k == 1 for k in left),
-        "one_node_with_threshold_strongest_kept": exact_share(k <= 1 for k in left),
-        "kept_node_is_topmost": exact_share(topmost_alone_remains(one) for one in found),
-        "one_node_of_the_ball": exact_share(len(row["contacts"][STANDARD]["b"]) == 1 for row in scenes),
-    }
-
-
-def node_counts(scenes: Sequence[Row], kernel: str) -> dict[str, list[int]]:
-    """How many scenes have 0, 1, 2, 3, and more nodes, of all contacts and of strong ones."""
-    found = [nodes(row, kernel) for row in scenes]
-    counted = {"every contact": map(len, found), "strong": (len(strong(one)) for one in found)}
-    return {
-        words: np.bincount([min(k, NODES + 1) for k in n], minlength=NODES + 2).tolist()
-        for words, n in counted.items()
-    }
-
-
-# --- on ---------------------------------------------------------------------------------------------------
-
-
-def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[JudgedPair]]:
-    """By method, what is said of each scene, its direction included."""
-    displacement = RelationClassifier("displacement", symmetric=SYMMETRIC)
-    models: dict[str, tuple[Any, Any]] = {
-        CONTACTS: (displacement, as_scene),
-        CENTRES: (PEERS["centroid k-NN"](), as_seen("centroid k-NN")),
-        OURS: (RelationClassifier(symmetric=SYMMETRIC), as_scene),
-        **{name: (PEERS[peer](), as_seen(peer)) for name, peer in OTHERS.items()},
-    }
-    near = [row for row in lessons if row["gap"] is not None]
-    truths = [[label_of(row)] for row in near]
-    found = {}
-    for name, (model, look) in models.items():
-        model.fit_pairs([look(row) for row in near], truths)
-        said = [
-            next(iter(model.predict_pairs(look(row))), None) if row["gap"] is not None else None for row in scenes
-        ]
-        found[name] = [
-            JudgedPair(row["scene"], label_of(row), one, gap_of(row))
-            for row, one in zip(scenes, said, strict=True)
-        ]
-    return found
-
-
-def given(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[str]]:
-    """The relation told of each scene with A and B given, by displacements of contact points and of centres."""
-    rows = [row for row in [*lessons, *scenes] if row["gap"] is not None]
-    train = np.arange(len(rows)) < len(rows) - sum(row["gap"] is not None for row in scenes)
-    owner = np.arange(len(rows))
-    by_contacts = told_by_neighbours(rows, Reading(), train)
-    by_centres = vote(np.array([centres_apart(row) for row in rows]), owner, rows, Reading(), train)
-    return {
-        name: [one for one, known in zip(told.united(len(rows)), train, strict=True) if not known]
-        for name, told in ((CONTACTS, by_contacts), (CENTRES, by_centres))
-    }
-
-
-def centres_apart(row: Row) -> np.ndarray:
-    """From B's centre of mass to A's, in the order of the truth, ``(3,)``, metres."""
-    forward, backward = np.array(row["peers"]["centroid k-NN"])
-    return forward if row["a"] == row["pair"][0] else backward
-
-
-def on_measures(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, Estimate]:
-    """Shares of scenes told to be on(ball, block), by method."""
-    judged = inferred(lessons, scenes)
-    found = {f"on_by_{name}": exact_share(pair.exact for pair in pairs) for name, pairs in judged.items()}
-    found["on_by_contacts_less_by_centres"] = difference(judged[CONTACTS], judged[CENTRES])
-    for name, said in given(lessons, scenes).items():
-        found[f"on_by_{name}_in_given_order"] = exact_share(one == ON for one in said)
-    away = 1000 * np.array([centres_apart(row) for row in scenes if row["gap"] is not None]).reshape(-1, 3)
-    found["mm_of_centres_apart_sideways"] = mean_or_unmeasured(np.hypot(away[:, 0], away[:, 1]))
-    found["mm_of_centres_apart_upwards"] = mean_or_unmeasured(away[:, 2])
-    return found
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Nodes and *on* by the first camera; by any other with its name behind."""
-    found = {}
-    for number, camera in enumerate(settings["cameras"]):
-        lessons, scenes = _lot(results, camera)
-        ends = f"_{camera}" if number else ""
-        measured = node_measures(scenes) | on_measures(lessons, scenes)
-        found |= {f"{name}{ends}": one for name, one in measured.items()}
-    return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Scenes by number of nodes, by kernel and camera; what each method says how often; pictures."""
-    found: list[dict] = []
-    for camera in settings["cameras"]:
-        lessons, scenes = _lot(results, camera)
-        for kernel in KERNELS:
-            name = kernel_name(*kernel)
-            found.append({"camera": camera, "kernel": name, "scenes by nodes": node_counts(scenes, name)})
-        for method, pairs in inferred(lessons, scenes).items():
-            said = Counter(_words(pair) for pair in pairs)
-            found.append({"camera": camera, "method": method, "said": dict(sorted(said.items()))})
-        for one in results:
-            if one["camera"] == camera:
-                found += [row | {"example": f"{camera}, {row['example']}"} for row in one["examples"]]
-    return found
-
-
-def _words(pair: JudgedPair) -> str:
-    turned = "" if pair.same_way else ", turned"
-    return f"{pair.relation}{turned}"
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter2.c2_13_contacts_and_centres.figure_contacts_and_centres import (
-        draw_contacts_and_centres,
-    )
-
-    rows, measured = result["rows"], result["measured"]
-    cameras = result["settings"]["cameras"]
-    counts: dict[str, dict[str, list[int]]] = {}
-    for row in rows:
-        if "kernel" in row and row["camera"] == cameras[0]:
-            for words, title in TITLES.items():
-                counts.setdefault(f"{cameras[0]}, {title}", {})[row["kernel"]] = row["scenes by nodes"][words]
-    panels = {
-        camera: {shown: measured[f"on_by_{name}{f'_{camera}' if number else ''}"] for name, shown in SHOWN.items()}
-        for number, camera in enumerate(cameras)
-    }
-    examples = [scene_of_row(row) for row in rows if "example" in row]
-    return draw_contacts_and_centres(examples, counts, panels, marked=STANDARD)
-
-
-CLAIM = Claim(
-    id="C2.13",
-    title="A ball at an L-block: nodes and centres of mass (Figure 2.1)",
-    thesis="The L-shaped block's network has three nodes; with a threshold of 7 support vectors only the topmost "
-    "would remain. From the centres of mass, far apart both ways, on could not easily be established.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C2.13"),
-    cells=block_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "three nodes are ordinary": "how many weak contacts lie along the block is a matter of the kernel, which "
-        "the thesis does not state: a narrow one leaves many, a wide one none",
-        "several without the threshold": "with our kernel the ball's contact alone has the margin of many blocks",
-        "one with the threshold": FEW,
-        "centres do not": "things beside one another stand on the same table, so that a centre far above another, "
-        "however far aside, is that of a thing on it",
-        "the topmost remains": FEW,
-    },
-    check=_check,
-)

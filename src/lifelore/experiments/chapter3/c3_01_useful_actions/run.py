@@ -7,7 +7,7 @@ ways are measured: walled up one at a time without parting the rest, and uniform
 Thesis: §3.2.2.2, Figure 3.1.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,14 +15,10 @@ from scipy import ndimage
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import quantile_estimate
-from lifelore.experiments.engine.predicate import Predicate
 
 PRINTED = (42, 48)
 """Useful actions, of 76, in the two mazes of Figure 3.1."""
@@ -30,18 +26,8 @@ CHUNK = 100
 MAX_DRAWS = 20_000
 GENERATORS = ("walled up", "uniform")
 
-FULL = {
-    "size": 7,
-    "obstacles": 6,
-    "tasks": 50,
-    "mazes": 2000,
-    "discount": 0.95,
-    "generators": list(GENERATORS),
-}
-QUICK = {**FULL, "mazes": 60}
 
-
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     unknown = set(settings["generators"]) - set(GENERATORS)
     if unknown or not settings["generators"]:
         raise InputError(f"generators must be among {', '.join(GENERATORS)}, got {settings['generators']}")
@@ -127,64 +113,3 @@ def _example(world: GridWorld, prior: ActionPrior) -> dict:
         "probs": (counts / counts.sum(axis=1, keepdims=True)).tolist(),
         "counted": (~prior.unseen(states)).tolist(),
     }
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares over mazes, for each way of making them."""
-    found = {}
-    for generator in settings["generators"]:
-        mazes = [m for r in results if r["generator"] == generator for m in r["mazes"]]
-        table = {key: np.array([m[key] for m in mazes], float) for key in mazes[0]}
-        suffix = "_" + generator.replace(" ", "_")
-        share = table["useful"] / table["actions"]
-        found[f"useful_share{suffix}"] = mean_estimate(share)
-        found[f"useful_share_2.5_percent_point{suffix}"] = quantile_estimate(share, 0.025)
-        found[f"useful_share_97.5_percent_point{suffix}"] = quantile_estimate(share, 0.975)
-        for printed in PRINTED:
-            # Mid-ranks: of the mazes that have exactly this share, half count as below.
-            rank = (share < printed / 76 - 1e-9) + 0.5 * (abs(share - printed / 76) < 1e-9)
-            found[f"rank_of_{printed}_of_76{suffix}"] = mean_estimate(rank)
-        found[f"passable_found_useful{suffix}"] = mean_estimate(table["useful"] / table["passable"])
-        found[f"useful_that_collide{suffix}"] = mean_estimate(table["useful_collisions"] / table["useful"])
-        found[f"mazes_where_useful_is_passable{suffix}"] = mean_estimate(table["useful"] == table["passable"])
-        found[f"useful_share_goal_rows_counted{suffix}"] = mean_estimate(
-            table["useful_with_goal_rows"] / table["actions"]
-        )
-    return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """How many mazes have each number of useful actions, and one maze for each printed share."""
-    found = []
-    for generator in settings["generators"]:
-        mazes = [m for r in results if r["generator"] == generator for m in r["mazes"]]
-        pairs = [(m["useful"], m["actions"]) for m in mazes]
-        for useful, actions in sorted(set(pairs)):
-            count = pairs.count((useful, actions))
-            found.append({"generator": generator, "useful": useful, "actions": actions, "mazes": count})
-    for printed in map(str, PRINTED):
-        examples = (r["examples"][printed] for r in results if printed in r["examples"])
-        found += [{"example": int(printed), **example} for example in examples][:1]
-    return found
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_01_useful_actions.figure_useful_actions import draw_useful_actions
-
-    return draw_useful_actions(result, [printed / 76 for printed in PRINTED])
-
-
-CLAIM = Claim(
-    id="C3.1",
-    title="Useful actions in small mazes (Figure 3.1)",
-    thesis="In two 7×7 mazes, the prior from the optimal policies of 50 random tasks keeps 55.26 % and 63.16 % of "
-    "the actions; the useful ones are those that do not collide.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.1"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    check=_check,
-)

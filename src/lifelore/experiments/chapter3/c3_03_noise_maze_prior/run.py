@@ -1,32 +1,37 @@
-"""C3.3: in noise mazes, Q-learning with a prior on percepts against a prior on the lattice's places and none.
+"""Learners in noise mazes, every task in a maze of its own, with priors on percepts or on places.
 
-What was known to each beforehand: Q-learning nothing; ε-QPAP the optimal policies of 10 tasks, each in another
-noise maze; ε-QSAP those of 10 tasks on the lattice, as the thesis's text has it. Each prior is also measured as
-trained like the other. What the thesis leaves open is crossed in a grid, one stated default its headline.
-Thesis: §3.4.1, Figure 3.5.
+A run is some tasks on the lattice and some in noise mazes, whose policies make the priors, and test tasks in
+other noise mazes. A place is its row and column, so that the lattice's counts can be read in a maze of the same
+size: where the lattice had no free cell a prior on places knows nothing. Whatever is compared within a run meets
+the same mazes, goals, starts and random numbers of its own. Thesis: §3.4.1, Figures 3.4 and 3.5, Alg. 2 and 4.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.action.priors.action_prior import FORMS
+from lifelore.action.priors.action_prior import FORMS, ActionPrior
+from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import jumpstart
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.core.learning.q_learning import Rows
+from lifelore.core.planning.planning import best_actions, mean_start_value, optimal_q
+from lifelore.core.streams import stream
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice
-from lifelore.experiments.chapter3.c3_03_noise_maze_prior.noise_learning import (
-    COMPARED,
-    KEYS,
-    METHODS,
-    PLAIN,
-    cells,
-    hows,
-    run_cell,
+from lifelore.domains.grids.noise_maze import noise_maze
+from lifelore.experiments.chapter3.lattice_learning import (
+    ESCAPE,
+    Problem,
+    learn_task,
+    schedule_of,
+    start_values,
+    summary,
 )
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.curve_blocks import block_edges
-from lifelore.experiments.engine.estimates import is_above, is_below, share_of
+from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.experiments.engine.learning_settings import (
     check_among,
     check_counts,
@@ -34,51 +39,149 @@ from lifelore.experiments.engine.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.engine.open_choices import default_of, how_key, plain_how, runs_by_cell
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.open_choices import default_of, how_key, is_default_but_for_schedule, plain_how
 
-FULL = {
-    "size": 23,
-    "density": [0.5, 0.8],
-    "discount": 0.95,
-    "runs": 30,
-    "training_tasks": [10, 35],
-    "test_tasks": 10,
-    "episodes": 1000,
-    "max_steps": [200, 1000],
-    "learning_rate": 0.5,
-    "window": 10,
-    "last": 100,
-    "ties": ["uniform", "prior"],
-    "schedules": [[0.1, 1.0, 0.1], [1.0, 0.98, 0.01], [1.0, 0.995, 0.01]],
-    "alpha0": [0.1, 1.0],
-    "forms": ["proportion", "dirichlet", "support"],
-    "default": {
-        "ties": "uniform",
-        "schedule": [1.0, 0.98, 0.01],
-        "alpha0": 0.1,
-        "form": "proportion",
-        "max_steps": 1000,
-        "training_tasks": 10,
-    },
+PLACE, PERCEPT = "place", "percept"
+METHODS = {
+    "qsap": (PLACE, "lattice"),
+    "qpap": (PERCEPT, "noise"),
+    "qsap_noise": (PLACE, "noise"),
+    "qpap_lattice": (PERCEPT, "lattice"),
 }
-QUICK = {
-    **FULL,
-    "size": 11,
-    "runs": 3,
-    "training_tasks": [3, 5],
-    "test_tasks": 2,
-    "episodes": 120,
-    "max_steps": [100, 200],
-    "last": 20,
-    "default": {**FULL["default"], "max_steps": 200, "training_tasks": 5},
-}
-PAIRS = (("qpap", PLAIN), ("qpap", "qsap"), ("qsap", PLAIN))
-"""Which methods are compared, the first with the second."""
-Found = dict[tuple, list[Mapping]]
+"""What a prior is conditioned on and where it was trained: the thesis's two, then each trained like the other."""
+COMPARED = ("qsap", "qpap")
+PLAIN = "q_learning"
+READ_ALPHA0 = ("proportion", "dirichlet", "tempered")
+"""Forms that α⁰ enters; the others are measured once, with α⁰ None."""
+KEYS = ("schedule", "ties", "form", "alpha0", "max_steps", "training_tasks")
+"""The choices left open that make a cell of the grid."""
 
 
-def _check(settings: Mapping) -> None:
+class Met(NamedTuple):
+    """A task as learners meet it, and the codes that priors may be conditioned on there, (n_states,) each."""
+
+    problem: Problem
+    contexts: dict[str, NDArray[np.int64]]
+
+
+class Run(NamedTuple):
+    """Training tasks by where they lie, and test tasks, all of these in noise mazes."""
+
+    training: dict[str, list[Met]]
+    testing: list[Met]
+
+
+def run_of(settings: Mapping, seed: int, number: int) -> Run:
+    """Run `number`; more training or test tasks leave the first ones as they are."""
+    most = max(settings["training_tasks"])
+    own = (seed, "C3.3", number)
+    grid = lattice(settings["size"], settings["discount"])
+    goals = stream(*own, "lattice").permutation(grid.n_states)[:most]
+    on_lattice = [_met(grid, int(goal), (*own, "lattice", i)) for i, goal in enumerate(goals)]
+    in_mazes = [_in_a_maze(settings, (*own, "training", i)) for i in range(most)]
+    testing = [_in_a_maze(settings, (*own, "testing", i)) for i in range(settings["test_tasks"])]
+    return Run({"lattice": on_lattice, "noise": in_mazes}, testing)
+
+
+def _in_a_maze(settings: Mapping, names: tuple) -> Met:
+    random = stream(*names, "maze")
+    density = float(random.uniform(*settings["density"]))
+    world = noise_maze(random, settings["size"], density, discount=settings["discount"])
+    return _met(world, int(random.integers(world.n_states)), names)
+
+
+def _met(world: GridWorld, goal: int, names: tuple) -> Met:
+    tables = world.task(goal).tables()
+    q = optimal_q(tables, world.discount)
+    best = best_actions(q)
+    best[goal] = False  # every action ties at the goal: nothing was chosen there
+    place = world.cells.astype(np.int64) @ np.array([world.shape[1], 1])
+    contexts = {PLACE: place, PERCEPT: world.percepts}
+    return Met(Problem(goal, tables, names, q.max(axis=1), best), contexts)
+
+
+def exact_prior(tasks: Sequence[Met], kind: str, alpha0: float) -> ActionPrior:
+    """The prior on places or percepts from exact policies, tied actions counted (Eq. 3.1, 3.5, 3.7)."""
+    prior = ActionPrior(4, alpha0)
+    for task in tasks:
+        prior.update(task.contexts[kind], task.problem.best)
+    return prior
+
+
+def rows_of(task: Met, prior: ActionPrior, kind: str, form: str, ties: str) -> Rows:
+    """Rows of ε-QSAP or ε-QPAP; ``dirichlet`` draws θ once for the task, as the algorithms require."""
+    random = stream(*task.problem.stream, "dirichlet")
+
+    def probs_of(codes):
+        return prior.probs(codes, form, generator=random, escape=ESCAPE)
+
+    return prior_rows(task.problem.tables, task.contexts[kind], probs_of, ties)
+
+
+def hows(settings: Mapping) -> list[dict]:
+    """The grid: form × α⁰ × ties under every schedule, and each other cap and number of training tasks.
+
+    α⁰ is crossed only where the form reads it; caps and numbers one at a time from the default, under every
+    schedule.
+    """
+    default = default_of(settings, KEYS)
+    ways = [
+        {"ties": ties, "form": form, "alpha0": alpha0}
+        for form in settings["forms"]
+        for alpha0 in (settings["alpha0"] if form in READ_ALPHA0 else [None])
+        for ties in settings["ties"]
+    ]
+    sizes = [{key: n} for key in ("max_steps", "training_tasks") for n in settings[key] if n != default[key]]
+    return [{**default, "schedule": s, **way} for s, way in product(settings["schedules"], ways + sizes)]
+
+
+def trained_alike(settings: Mapping) -> list[dict]:
+    """Where the priors are also trained the other way round: the default under every schedule."""
+    return [{**default_of(settings, KEYS), "schedule": schedule} for schedule in settings["schedules"]]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A run each."""
+    return [{"run": number} for number in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: every method under every cell of the grid."""
+    run = run_of(settings, seed, cell["run"])
+    optimal = [mean_start_value(met.problem.tables, met.problem.values) for met in run.testing]
+    return {**cell, "optimal": float(np.mean(optimal)), "found": list(_all_found(settings, run))}
+
+
+def _all_found(settings: Mapping, run: Run) -> Iterator[dict]:
+    """Numbers of Q-learning once for each schedule and cap, then of each method for each cell."""
+    best = np.mean([start_values(met.problem, settings["episodes"]) for met in run.testing], axis=0)
+
+    @cache
+    def prior_of(kind: str, where: str, n_tasks: int, alpha0: float) -> ActionPrior:
+        return exact_prior(run.training[where][:n_tasks], kind, alpha0)
+
+    def numbers(how: Mapping, rows_for) -> dict:
+        schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
+        returns = np.mean([learn_task(m.problem, rows_for(m), schedule)[0] for m in run.testing], axis=0)
+        kept = summary(settings, returns, best)
+        return (
+            {**kept, "curve": block_means(returns)} if is_default_but_for_schedule(how, settings, KEYS) else kept
+        )
+
+    plain = {how_key(how, KEYS): how for how in (plain_how(h, KEYS) for h in hows(settings))}
+    for how in plain.values():
+        yield {"method": PLAIN, **how, **numbers(how, lambda met: None)}
+    wanted = [(how, COMPARED) for how in hows(settings)]
+    wanted += [(how, tuple(m for m in METHODS if m not in COMPARED)) for how in trained_alike(settings)]
+    for how, methods in wanted:
+        for method in methods:
+            kind, where = METHODS[method]
+            prior = prior_of(kind, where, how["training_tasks"], how["alpha0"] or 1.0)
+            found = numbers(how, lambda met, p=prior, k=kind, h=how: rows_of(met, p, k, h["form"], h["ties"]))
+            yield {"method": method, **how, **found}
+
+
+def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "training_tasks", "test_tasks", "episodes", "max_steps", "window", "last"))
     check_windows(settings, ("window", "last"))
     check_learning(settings)
@@ -91,116 +194,3 @@ def _check(settings: Mapping) -> None:
     density = settings["density"]
     if np.shape(density) != (2,) or not 0 <= density[0] <= density[1] < 1:
         raise InputError(f"density must be two shares of obstacles, rising, in [0, 1), got {density}")
-
-
-def _by_method(results: Sequence[Mapping]) -> Found:
-    """(method, cell of the grid) to its numbers, run by run."""
-    return runs_by_cell(results, ("method",), KEYS)
-
-
-def _of(found: Found, method: str, how: Mapping, key: str) -> np.ndarray:
-    how = plain_how(how, KEYS) if method == PLAIN else how
-    return np.array([numbers[key] for numbers in found[method, how_key(how, KEYS)]], float)
-
-
-def _compare(found: Found, how: Mapping) -> dict[str, Estimate]:
-    """First returns as differences and episodes to 80 % as ratios, paired by run, of one cell of the grid."""
-    compared = {}
-    for one, other in PAIRS:
-        first, other_first = (_of(found, method, how, "first") for method in (one, other))
-        compared[f"first_{one}_minus_{other}"] = jumpstart(first, other_first)
-        to_80 = [_of(found, method, how, "to_80") for method in (one, other)]
-        compared[f"to_80_ratio_{one}_to_{other}"] = ratio_estimate(*to_80)
-    return compared
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The headline at the default, each prior trained like the other, and shares of the grid."""
-    found, default = _by_method(results), default_of(settings, KEYS)
-    measured = {}
-    for method in (PLAIN, *METHODS):
-        for key in ("first", "first_ten", "to_50", "to_80", "never_80", "final"):
-            measured[f"{key}_{method}"] = mean_estimate(_of(found, method, default, key))
-    measured |= _compare(found, default)
-    measured["optimal_return"] = mean_estimate([result["optimal"] for result in results])
-    return measured | _grid_shares(settings, found)
-
-
-def _grid_shares(settings: Mapping, found: Found) -> dict[str, Estimate]:
-    """Shares of the grid's cells in which each part of the claim holds, by its interval."""
-    compared = [_compare(found, how) for how in hows(settings)]
-    higher = {p: [is_above(c[f"first_{p[0]}_minus_{p[1]}"], 0.0) for c in compared] for p in PAIRS}
-    faster = {p: [is_below(c[f"to_80_ratio_{p[0]}_to_{p[1]}"], 1.0) for c in compared] for p in PAIRS}
-    worse = np.array([is_below(c[f"first_qsap_minus_{PLAIN}"], 0.0) for c in compared])
-    slower = np.array([is_above(c[f"to_80_ratio_qsap_to_{PLAIN}"], 1.0) for c in compared])
-    than_plain, than_state = PAIRS[:2]
-    better_at_first = np.logical_and(higher[than_plain], higher[than_state])
-    sooner = np.logical_and(faster[than_plain], faster[than_state])
-    return {
-        "grid_qpap_better_at_first": share_of(better_at_first),
-        "grid_qpap_faster": share_of(sooner),
-        "grid_qpap_beats_both": share_of(better_at_first & sooner),
-        "grid_qsap_worse_at_first": share_of(worse),
-        "grid_qsap_slower": share_of(slower),
-        "grid_qsap_worse": share_of(worse & slower),
-    }
-
-
-def _grid_rows(settings: Mapping, found: Found) -> list[dict]:
-    grid = []
-    for how in hows(settings):
-        row = {key: how[key] for key in KEYS}
-        row |= {name: number.to_dict() for name, number in _compare(found, how).items()}
-        for method in (PLAIN, *COMPARED):
-            row[f"to_80_{method}"] = mean_estimate(_of(found, method, how, "to_80")).to_dict()
-            row[f"never_80_{method}"] = int(_of(found, method, how, "never_80").sum())
-            row[f"first_{method}"] = float(_of(found, method, how, "first").mean())
-        grid.append(row)
-    return grid
-
-
-def _curve_rows(settings: Mapping, found: Found) -> list[dict]:
-    """Mean curves with 95 % intervals (t, over runs) in blocks of episodes, the default under each schedule."""
-    from scipy.stats import t
-
-    found_rows: list[dict] = [{"curve_edges": block_edges(settings["episodes"]).tolist()}]
-    for schedule in settings["schedules"]:
-        how = {**default_of(settings, KEYS), "schedule": schedule}
-        for method in (PLAIN, *METHODS):
-            key = how_key(plain_how(how, KEYS) if method == PLAIN else how, KEYS)
-            curves = np.array([numbers["curve"] for numbers in found[method, key]])
-            mean, n = curves.mean(axis=0), len(curves)
-            half = t.ppf(0.975, n - 1) * curves.std(axis=0, ddof=1) / np.sqrt(n) if n > 1 else 0 * mean
-            to_80 = mean_estimate(_of(found, method, how, "to_80")).to_dict()
-            curve = {"mean": mean.tolist(), "low": (mean - half).tolist(), "high": (mean + half).tolist()}
-            found_rows.append({"curve_of": method, "schedule": schedule, "to_80": to_80, **curve})
-    return found_rows
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The whole grid, a row for each cell, then the curves of the default."""
-    found = _by_method(results)
-    return _grid_rows(settings, found) + _curve_rows(settings, found)
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_03_noise_maze_prior.figure_noise_grid import draw_noise_grid
-
-    return draw_noise_grid(result)
-
-
-CLAIM = Claim(
-    id="C3.3",
-    title="Q-learning with a prior on percepts in noise mazes (Figure 3.5)",
-    thesis="In 23×23 mazes of 50 to 80 % noise, ε-QPAP outperforms ε-QSAP with its lattice-trained state prior "
-    "and Q-learning in initial performance and in time to convergence, over 10 test tasks; uniform priors "
-    "outperform the lattice-trained state priors.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.3"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    check=_check,
-)

@@ -1,282 +1,180 @@
-"""C3.4: in the factory, a learnt state prior against an expert's, an incorrect one and none.
+"""The cells of C3.4: learnt and hand-made priors in the factory, used in every way that the thesis leaves open.
 
-The thesis leaves open how the configuration of the items is coded for a prior, how ε is annealed, how ties are
-broken and the pseudo-count α⁰. All are crossed; the thesis's own state, the stage of each of the factory's
-components, is the headline. Thesis: §3.4.2, §3.4.3, Figure 3.7.
+Measuring and drawing live elsewhere, so that they can change without a new run. Thesis: §3.4.3, Figure 3.7.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_04_factory_priors.factory_priors import (
-    cells,
-    is_default,
-    makes,
-    run_cell,
-    uses,
+from lifelore.core.learning.q_learning import Rows
+from lifelore.core.streams import stream
+from lifelore.domains.factory.contexts import state_contexts
+from lifelore.domains.factory.knowledge import expert_actions, incorrect_actions, invariances
+from lifelore.experiments.chapter3.factory_learning import (
+    N_ACTIONS,
+    Problem,
+    exact_prior,
+    floor,
+    greedy_return,
+    hand_made_prior,
+    hand_made_rows,
+    learn_task,
+    learnt_rows,
+    problem_of,
+    solved,
+    tasks_of,
+    with_pseudo_count,
 )
-from lifelore.experiments.chapter3.factory_gains import band
-from lifelore.experiments.chapter3.factory_settings import OPEN, check_components, check_open, check_sizes
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.curve_blocks import block_edges
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.chapter3.factory_settings import check_components, check_open, check_sizes
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.engine.curve_blocks import block_means
 
-FULL = {
-    **OPEN,
-    "runs": 30,
-    "components": 4,
-    "training_tasks": 35,
-    "episodes": 1000,
-    "early": 10,
-    "last": 100,
-}
-QUICK = {
-    **FULL,
-    "runs": 4,
-    "components": 2,
-    "training_tasks": 8,
-    "episodes": 60,
-    "max_steps": 500,
-    "schedules": [[1.0, 0.98, 0.01]],
-    "early": 5,
-    "last": 10,
-}
-INVARIANCES = {
-    "wall moves": False,
-    "express routes": True,
-    "uses elsewhere": False,
-    "procurement first": True,
-    "then assembly": True,
-}
-"""The invariances of §3.4.2 by name, and whether a prior that has learnt them favours or shuns the actions."""
-MARGIN = -0.05
-"""As good as: at most 5 % of the optimal reward below."""
+ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
+DRAWN = 0
+"""The run whose learnt prior is kept for the figure."""
 
 
-def _check(settings: Mapping) -> None:
+def makes(settings: Mapping) -> list[dict]:
+    """The makes of prior: each hand-made one, and the learnt one in each encoding of states."""
+    hand_made = [{"prior": name, "encoding": None} for name in ADVICE]
+    return hand_made + [{"prior": "learnt", "encoding": encoding} for encoding in settings["encodings"]]
+
+
+def uses(settings: Mapping) -> list[dict]:
+    """The ways to use a prior: α⁰ × ties × schedule of ε."""
+    return [
+        {"alpha0": alpha0, "ties": ties, "schedule": schedule}
+        for alpha0 in settings["alpha0"]
+        for ties in settings["ties"]
+        for schedule in settings["schedules"]
+    ]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """One cell a run."""
+    return [{"run": run} for run in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: training tasks, and one test task learnt in every way."""
+    run, k, default = cell["run"], settings["components"], settings["default"]
+    training = tasks_of(settings, seed, k, run, settings["training_tasks"])
+    components = floor(settings["discount"]).draw_components(stream(seed, "factory", k, run, "test"), k)
+    problem = problem_of(settings, components, (seed, "factory", k, run, "test"))
+    priors = _priors(settings, training, problem)
+    read = {name: with_pseudo_count(prior, default["alpha0"]) for name, prior in priors.items()}
+    found = {
+        **cell,
+        "optimal_return": problem.solved.optimal_return,
+        "optimal_reward": problem.solved.optimal_reward,
+        "seen": components in training,
+        "methods": list(_methods(settings, problem, priors)),
+        "masses": _masses(problem, read),
+        "unseen": {encoding: _unseen(problem, read[encoding], encoding) for encoding in settings["encodings"]},
+    }
+    if run == DRAWN:
+        found["drawn"] = {"components": components, **_drawn(problem, read[default["encoding"]], default)}
+    return found
+
+
+def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem) -> dict[str, ActionPrior]:
+    """Each make by name: encodings, expert, incorrect; a person is as sure as the training tasks make a prior."""
+    known = [solved(components, settings["discount"]) for components in training]
+    found = {encoding: exact_prior(known, encoding, 1.0) for encoding in settings["encodings"]}
+    for name, advice_of in ADVICE.items():
+        found[name] = hand_made_prior(advice_of(problem.solved.task), len(training), 1.0)
+    return found
+
+
+def _methods(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior]) -> Iterator[dict]:
+    """Every make in every use, and Q-learning under every schedule."""
+    for schedule in settings["schedules"]:
+        how = {"prior": "uniform", "encoding": None, "alpha0": None, "ties": None, "schedule": schedule}
+        yield _summary(settings, problem, None, how)
+    for make in makes(settings):
+        prior = priors[make["encoding"] or make["prior"]]
+        for use in uses(settings):
+            rows = _rows(problem, with_pseudo_count(prior, use["alpha0"]), make["encoding"], use["ties"])
+            yield _summary(settings, problem, rows, {**make, **use})
+
+
+def _rows(problem: Problem, prior: ActionPrior, encoding: str | None, ties: str) -> Rows:
+    if encoding is None:
+        return hand_made_rows(problem, prior, ties)
+    return learnt_rows(problem, prior, encoding, ties)
+
+
+def _summary(settings: Mapping, problem: Problem, rows: Rows | None, how: Mapping) -> dict:
+    """What is kept of one learner: rewards of an episode, and the return of what it has learnt."""
+    curve, learner = learn_task(problem, rows, schedule_of(settings, how["schedule"]))
+    rewards, early, last = curve.rewards, settings["early"], settings["last"]
+    found = {
+        **how,
+        "first": float(rewards[0]),
+        "early": float(rewards[:early].mean()),
+        "last": float(rewards[-last:].mean()),
+        "greedy": greedy_return(problem, learner.q),
+    }
+    if is_default(settings, how):
+        found["curve"] = block_means(rewards)
+    return found
+
+
+def is_default(settings: Mapping, how: Mapping) -> bool:
+    """Whether a prior is used in the default's way, whatever its make; Q-learning by the schedule alone."""
+    keys = ("schedule",) if how["prior"] == "uniform" else ("alpha0", "ties", "schedule")
+    return all(how[key] == settings["default"][key] for key in keys)
+
+
+def _contexts(problem: Problem, name: str) -> NDArray[np.int64]:
+    if name in ADVICE:
+        return np.arange(problem.tables.n_states)
+    return state_contexts(problem.solved.task, name)
+
+
+def _masses(problem: Problem, priors: Mapping[str, ActionPrior]) -> dict[str, dict]:
+    """The mass of each prior on each invariance of §3.4.2, in all states and in those it has counts of."""
+    held = invariances(problem.solved.task)
+    probs = np.full((problem.tables.n_states, N_ACTIONS), 1 / N_ACTIONS)
+    found = {"uniform": {name: one.mass(probs) for name, one in held.items()}}
+    for make, prior in priors.items():
+        contexts = _contexts(problem, make)
+        probs, seen = prior.probs(contexts), ~prior.unseen(contexts)
+        found[make] = {name: one.mass(probs) for name, one in held.items()}
+        if make not in ADVICE:
+            among = {name: one._replace(states=one.states & seen).mass(probs) for name, one in held.items()}
+            found[f"{make}, seen"] = {name: mass for name, mass in among.items() if np.isfinite(mass)}
+    return found
+
+
+def _unseen(problem: Problem, prior: ActionPrior, encoding: str) -> dict[str, float]:
+    """Shares without counts: of all states in which something is left to do, and of those on an optimal way."""
+    unseen = prior.unseen(state_contexts(problem.solved.task, encoding))
+    acting = ~problem.solved.task.completed
+    return {"all": float(unseen[acting].mean()), "way": float(unseen[problem.solved.way].mean())}
+
+
+def _drawn(problem: Problem, prior: ActionPrior, default: Mapping) -> dict[str, list]:
+    """The prior where nothing is procured and where all is, (n_cells, n_actions) each; None: no counts."""
+    task = problem.solved.task
+    procured = int(np.flatnonzero((task.stages == 1).all(axis=1))[0])
+    found = {}
+    for name, configuration in (("raw", 0), ("procured", procured)):
+        contexts = state_contexts(task, default["encoding"], [configuration])
+        seen = ~prior.unseen(contexts)
+        probs = np.round(prior.probs(contexts), 3).tolist()
+        found[name] = [row if known else None for row, known in zip(probs, seen, strict=True)]
+    return found
+
+
+def check(settings: Mapping) -> None:
     check_sizes(settings, "runs", "training_tasks", "episodes", "max_steps", "early", "last")
     check_components([settings["components"]])
     check_open(settings)
     for key in ("early", "last"):
         if settings[key] > settings["episodes"]:
             raise InputError(f"{key} must be at most episodes ({settings['episodes']}), got {settings[key]}")
-
-
-# ---- numbers -----------------------------------------------------------------------------------------
-
-
-def _key(method: Mapping) -> tuple:
-    schedule = tuple(method["schedule"])
-    return (method["prior"], method["encoding"], method["alpha0"], method["ties"], schedule)
-
-
-def _columns(results: Sequence[Mapping], number: str) -> dict[tuple, np.ndarray]:
-    """A number of each method over the runs."""
-    found: dict[tuple, list] = {}
-    for result in results:
-        for method in result["methods"]:
-            found.setdefault(_key(method), []).append(method[number])
-    return {key: np.array(values, float) for key, values in found.items()}
-
-
-def _uniform(schedule: Sequence[float]) -> tuple:
-    return ("uniform", None, None, None, tuple(schedule))
-
-
-def _of(make: Mapping, use: Mapping) -> tuple:
-    return _key({**use, **make})
-
-
-def _named(make: Mapping) -> str:
-    return make["encoding"] or make["prior"]
-
-
-def _hand_made(name: str, use: Mapping) -> tuple:
-    return _of({"prior": name, "encoding": None}, use)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The headline at the default, every encoding beside it, the invariances, and the shares of the grid."""
-    return {
-        **_headline(settings, results),
-        **_each_make(settings, results),
-        **_invariances(settings, results),
-        **_grid_shares(settings, results),
-    }
-
-
-def _headline(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    default = settings["default"]
-    early, last, greedy = (_columns(results, number) for number in ("early", "last", "greedy"))
-    reward = np.array([r["optimal_reward"] for r in results])
-    learnt = _of({"prior": "learnt", "encoding": default["encoding"]}, default)
-    expert, incorrect = _hand_made("expert", default), _hand_made("incorrect", default)
-    uniform = _uniform(default["schedule"])
-    returns = np.array([r["optimal_return"] for r in results])
-    return {
-        "learnt_minus_expert_of_optimal": mean_estimate((early[learnt] - early[expert]) / reward),
-        "learnt_minus_incorrect": mean_estimate(early[learnt] - early[incorrect]),
-        "learnt_minus_uniform": mean_estimate(early[learnt] - early[uniform]),
-        "expert_minus_incorrect": mean_estimate(early[expert] - early[incorrect]),
-        "incorrect_minus_uniform": mean_estimate(early[incorrect] - early[uniform]),
-        "last_incorrect_minus_uniform_of_optimal": mean_estimate((last[incorrect] - last[uniform]) / reward),
-        "greedy_incorrect_of_optimal": ratio_estimate(greedy[incorrect], returns),
-        "greedy_uniform_of_optimal": ratio_estimate(greedy[uniform], returns),
-        "greedy_learnt_of_optimal": ratio_estimate(greedy[learnt], returns),
-        "optimal_reward": mean_estimate(reward),
-        "test_task_seen": mean_estimate([float(r["seen"]) for r in results]),
-    }
-
-
-def _each_make(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """First, early and last rewards of every make used in the default's way; each encoding against the expert."""
-    default, found = settings["default"], {}
-    keys = {"uniform": _uniform(default["schedule"])}
-    keys |= {_named(make): _of(make, default) for make in makes(settings)}
-    for number in ("first", "early", "last"):
-        column = _columns(results, number)
-        found |= {f"{number}_{name}": mean_estimate(column[key]) for name, key in keys.items()}
-    early = _columns(results, "early")
-    for encoding in settings["encodings"]:
-        found[f"{encoding}_minus_expert"] = mean_estimate(early[keys[encoding]] - early[keys["expert"]])
-        for which in ("all", "way"):
-            unseen = [r["unseen"][encoding][which] for r in results]
-            found[f"unseen_{which}_{encoding}"] = mean_estimate(unseen)
-    return found
-
-
-def _invariances(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The learnt prior's mass on each and a uniform one's, and the share on which it is as it should be."""
-    learnt = settings["default"]["encoding"]
-    found, right = {}, []
-    for name, wanted in INVARIANCES.items():
-        mass, even = (np.array([r["masses"][make][name] for r in results]) for make in (learnt, "uniform"))
-        told = mean_estimate(mass - even)
-        right.append(_beyond(told, above=0.0) if wanted else _beyond(told, below=0.0))
-        words = name.replace(" ", "_")
-        found[f"mass_{words}"], found[f"mass_{words}_uniform"] = mean_estimate(mass), mean_estimate(even)
-    found["invariances_learnt"] = _share(right)
-    return found
-
-
-def _beyond(number: Estimate, above: float | None = None, below: float | None = None) -> bool:
-    """Whether the whole interval lies above, or below; without one, whether the value does."""
-    low, high = number.ci95 or (number.value, number.value)
-    return low > above if above is not None else high < below  # type: ignore[operator]
-
-
-def _share(truths: Sequence[bool]) -> Estimate:
-    values = np.array(truths, float)
-    return Estimate(float(values.mean()), float(np.median(values)), None, len(values))
-
-
-def _grid_shares(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares of the grid's cells, encoding × α⁰ × ties × schedule, in which each step of the order is found."""
-    early = _columns(results, "early")
-    reward = np.array([r["optimal_reward"] for r in results])
-    truths: dict[str, list[bool]] = {}
-    for use in uses(settings):
-        expert, incorrect = early[_hand_made("expert", use)], early[_hand_made("incorrect", use)]
-        uniform = early[_uniform(use["schedule"])]
-        expert_first = _beyond(mean_estimate(expert - incorrect), above=0.0)
-        incorrect_next = _beyond(mean_estimate(incorrect - uniform), above=0.0)
-        for encoding in settings["encodings"]:
-            learnt = early[_of({"prior": "learnt", "encoding": encoding}, use)]
-            learnt_first = _at_least(mean_estimate((learnt - expert) / reward), MARGIN)
-            cell = {
-                "learnt_as_good_as_expert": learnt_first,
-                "expert_above_incorrect": expert_first,
-                "incorrect_above_uniform": incorrect_next,
-                "learnt_above_uniform": _beyond(mean_estimate(learnt - uniform), above=0.0),
-                "order": learnt_first and expert_first and incorrect_next,
-            }
-            for name, truth in cell.items():
-                truths.setdefault(name, []).append(truth)
-    return {f"grid_{name}": _share(found) for name, found in truths.items()}
-
-
-def _at_least(number: Estimate, bound: float) -> bool:
-    return (number.ci95[0] if number.ci95 else number.value) >= bound
-
-
-# ---- rows --------------------------------------------------------------------------------------------
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The grid, the curves of the default's use, the masses of every make, and one run's prior as drawn."""
-    return [
-        *_grid_rows(settings, results),
-        *_curve_rows(settings, results),
-        *_mass_rows(results),
-        *({"drawn": r["drawn"]} for r in results if "drawn" in r),
-    ]
-
-
-def _grid_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Early reward of each method, and the loss against the optimal reward as a ratio to Q-learning's."""
-    early, last = _columns(results, "early"), _columns(results, "last")
-    reward = np.array([r["optimal_reward"] for r in results])
-    found = []
-    for key, values in early.items():
-        loss = ratio_estimate(reward - values, reward - early[_uniform(key[4])])
-        how = dict(zip(("prior", "encoding", "alpha0", "ties"), key[:4], strict=True))
-        numbers = {"early": mean_estimate(values), "last": mean_estimate(last[key]), "loss_ratio": loss}
-        plain = {name: number.to_dict() for name, number in numbers.items()}
-        found.append({**how, "schedule": list(key[4]), **plain})
-    return found
-
-
-def _curve_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Mean curves of the default's use in blocks of episodes."""
-    found = [{"curve_edges": block_edges(settings["episodes"]).tolist()}]
-    for i, how in enumerate(results[0]["methods"]):
-        if is_default(settings, how):
-            curves = np.array([r["methods"][i]["curve"] for r in results])
-            found.append({"curve_of": how["prior"], "encoding": how["encoding"], **band(curves)})
-    return found
-
-
-def _mass_rows(results: Sequence[Mapping]) -> list[dict]:
-    found = []
-    for make in results[0]["masses"]:
-        for name in INVARIANCES:
-            masses = [r["masses"][make][name] for r in results if name in r["masses"][make]]
-            if masses:
-                found.append({"mass_on": name, "of": make, "mass": mean_estimate(masses).to_dict()})
-    return found
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.figure_factory_priors import draw_factory_priors
-
-    return draw_factory_priors(result)
-
-
-CAUSES = {
-    "learnt as good as the expert": "under a code of all nine components most configurations of a new task were "
-    "never counted, and there the prior is uniform; by a component's place in the task's list, or by phase, the "
-    "learnt prior loses little more than the expert's",
-    "incorrect reaches the solution": "a thousand episodes end before the swapped areas are wholly unlearnt",
-    "most of the grid": "only codes that carry over between tasks bring the learnt prior near the expert's",
-}
-
-CLAIM = Claim(
-    id="C3.4",
-    title="Learnt and hand-made priors in the factory (Figure 3.7)",
-    thesis="In the factory, with tasks of 4 random components and 15 runs, Q-learning with a state prior from 35 "
-    "random tasks does no worse than with an expert's prior, and both begin far better than with a uniform one; "
-    "an incorrect prior, which swaps the two areas, still begins better than a uniform one, and learning recovers "
-    "from it. The prior takes up the invariances of the domain.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.4"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

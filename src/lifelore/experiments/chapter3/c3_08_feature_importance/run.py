@@ -1,148 +1,89 @@
-"""C3.8: which features of the modified factory save entropy of the action prior, and whether sets agree on it.
+"""The cells of C3.8: how much entropy of the action prior each feature saves, in each of the sets φ1 to φ4.
 
-The thesis gives no numbers but bars: *matters* is read as saving more than every feature that does not, and *does
-not matter* as saving less than half of what the least of N, S, E and W saves. Thesis: §3.4.5, Figure 3.12.
+The thesis counts policies and does not say of which states. Counted here: every state of a task, or only those on
+an optimal way from the start to the end (what a demonstration shows); all tied-best actions (Eq. 3.1), or the
+first of them. Thesis: §3.3.2, Alg. 5, §3.4.5, Figure 3.12.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
+from lifelore.action.features.counted_features import CountedFeatures
+from lifelore.action.features.feature_selection import independent_features
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_07_feature_sets.run import check_components
-from lifelore.experiments.chapter3.c3_08_feature_importance.feature_importance import (
-    ACTIONS,
-    KEYS,
-    OVER,
-    cells,
-    hows,
-    run_cell,
+from lifelore.experiments.chapter3.modified_factory_tasks import (
+    FULL_SET,
+    N_ACTIONS,
+    Problem,
+    contexts_of,
+    problem_of,
 )
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, DIAGONALS, ITEMS, OWN_CELL
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.learning_settings import check_among, check_counts, check_default
-from lifelore.experiments.engine.open_choices import default_of, how_key
-from lifelore.experiments.engine.predicate import Predicate
 
-FULL = {
-    "discount": 0.99,
-    "components": 4,
-    "runs": 30,
-    "policies": [10, 80],
-    "over": list(OVER),
-    "actions": list(ACTIONS),
-    "default": {"policies": 80, "over": "all", "actions": "tied"},
-}
-QUICK = {**FULL, "components": 1, "runs": 3, "policies": [1, 3], "default": {**FULL["default"], "policies": 3}}
-
-Found = dict[tuple, list[Mapping]]
+OVER = ("all", "way")
+ACTIONS = ("tied", "first")
+KEYS = ("policies", "over", "actions")
 
 
-def _check(settings: Mapping) -> None:
+def hows(settings: Mapping) -> list[dict]:
+    """The grid: number of policies × states that count × actions that count."""
+    lists = product(settings["policies"], settings["over"], settings["actions"])
+    return [dict(zip(KEYS, one, strict=True)) for one in lists]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A run each."""
+    return [{"run": number} for number in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: Δ of every feature in every set, in every cell of the grid."""
+    return {**cell, "found": list(_found(settings, (seed, "C3.8", cell["run"])))}
+
+
+def _found(settings: Mapping, own: tuple) -> Iterator[dict]:
+    priors = {key: ActionPrior(N_ACTIONS) for key in product(settings["over"], settings["actions"])}
+    for i in range(max(settings["policies"])):
+        problem = problem_of(settings, (*own, "training", i))
+        codes = contexts_of(problem, "phi4")
+        for (over, actions), prior in priors.items():
+            states = counted_states(problem, over)
+            prior.update(codes[states], counted_actions(problem.best[states], actions))
+            if i + 1 in settings["policies"]:
+                yield {"policies": i + 1, "over": over, "actions": actions, **importance(prior)}
+
+
+def counted_states(problem: Problem, over: str) -> NDArray[np.int64]:
+    """The states that count; completed ones never do, whatever is asked."""
+    return problem.way if over == "way" else np.arange(len(problem.best))
+
+
+def counted_actions(best: NDArray[np.bool_], actions: str) -> NDArray[np.bool_]:
+    """All best actions, or the first of each row (n, 6)."""
+    return best & (best.cumsum(axis=1) == 1) if actions == "first" else best
+
+
+def importance(prior: ActionPrior) -> dict:
+    """Δ in bits of every feature of each set, H of the set, and what Alg. 5 chooses from it."""
+    found: dict[str, dict] = {"increase": {}, "entropy": {}, "chosen": {}}
+    for name, names in PHI.items():
+        codes = FULL_SET.coarser(prior.contexts, names)
+        counted = CountedFeatures(FULL_SET.subset(names), codes, prior.counts(prior.contexts))
+        choice = independent_features(counted)
+        found["increase"][name] = {feature: round(delta, 6) for feature, delta in choice.increase.items()}
+        found["entropy"][name] = round(choice.full_entropy, 6)
+        found["chosen"][name] = list(choice.names)
+    return found
+
+
+def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "policies", "components"))
     check_among(settings, "over", OVER)
     check_among(settings, "actions", ACTIONS)
     check_default(settings, {key: key for key in KEYS})
     check_components(settings)
-
-
-def _by_how(results: Sequence[Mapping]) -> Found:
-    """A cell of the grid to its numbers, run by run."""
-    found: Found = {}
-    for result in results:
-        for numbers in result["found"]:
-            found.setdefault(how_key(numbers, KEYS), []).append(numbers)
-    return found
-
-
-def _increase(runs: Sequence[Mapping], phi: str, feature: str) -> np.ndarray:
-    return np.array([numbers["increase"][phi][feature] for numbers in runs], float)
-
-
-def _least(runs: Sequence[Mapping], phi: str, features: Iterable[str]) -> np.ndarray:
-    """The least Δ of some features, run by run."""
-    return np.min([_increase(runs, phi, feature) for feature in features], axis=0)
-
-
-def _largest(runs: Sequence[Mapping], phi: str, features: Iterable[str]) -> np.ndarray:
-    return np.max([_increase(runs, phi, feature) for feature in features], axis=0)
-
-
-def gaps(runs: Sequence[Mapping]) -> dict[str, Estimate]:
-    """By how much the least of N, S, E, W exceeds the largest other, within φ3 and φ4 and from φ2 to φ1, bits."""
-    pairs = {"phi4": ("phi4", "phi4"), "phi3": ("phi3", "phi3"), "phi2_to_phi1": ("phi2", "phi1")}
-    found = {}
-    for name, (ours, theirs) in pairs.items():
-        others = [feature for feature in PHI[theirs] if feature not in CARDINALS]
-        found[f"gap_{name}"] = mean_estimate(_least(runs, ours, CARDINALS) - _largest(runs, theirs, others))
-    return found
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Δ of each feature in each set at the default, what the claim compares there, and shares of the grid."""
-    found = _by_how(results)
-    runs = found[how_key(default_of(settings, KEYS), KEYS)]
-    measured = {}
-    for phi, names in PHI.items():
-        measured[f"entropy_{phi}"] = mean_estimate([numbers["entropy"][phi] for numbers in runs])
-        for feature in names:
-            measured[f"delta_{phi}_{feature}"] = mean_estimate(_increase(runs, phi, feature))
-    least = _least(runs, "phi4", CARDINALS)
-    groups = {"diagonal": DIAGONALS, "own_cell": (OWN_CELL,), "items": (ITEMS,)}
-    for name, features in groups.items():
-        measured[f"{name}_share_phi4"] = ratio_estimate(_largest(runs, "phi4", features), least)
-    chosen = [set(numbers["chosen"]["phi4"]) == set(CARDINALS) for numbers in runs]
-    measured["exactly_four_selected"] = exact_share(chosen)
-    consistent = [
-        all(is_above(gap, 0.0) for gap in gaps(found[how_key(how, KEYS)]).values()) for how in hows(settings)
-    ]
-    return measured | gaps(runs) | {"grid_consistent": share_of(consistent)}
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row for each cell of the grid: Δ of each feature in each set, shares of runs selected from φ4, gaps."""
-    found, kept = _by_how(results), []
-    for how in hows(settings):
-        runs = found[how_key(how, KEYS)]
-        row: dict = {key: how[key] for key in KEYS}
-        row["increase"] = {
-            phi: {feature: mean_estimate(_increase(runs, phi, feature)).to_dict() for feature in names}
-            for phi, names in PHI.items()
-        }
-        row["selected"] = {
-            feature: float(np.mean([feature in numbers["chosen"]["phi4"] for numbers in runs]))
-            for feature in PHI["phi4"]
-        }
-        kept.append(row | {name: gap.to_dict() for name, gap in gaps(runs).items()})
-    return kept
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.feature_bars import draw_feature_bars
-
-    return draw_feature_bars(result)
-
-
-CAUSES = {
-    "most of the grid": "along optimal ways alone, what the own cell is and what is left to do decide between "
-    "using a point and moving on, and tell as much as the walls",
-}
-
-CLAIM = Claim(
-    id="C3.8",
-    title="Which features save entropy of the action prior (Figure 3.12)",
-    thesis="In the modified factory the cells to the North, South, East and West are the most valuable features; "
-    "the diagonal cells, the own cell and the flag Items are not important; the relative importance is consistent "
-    "across the four sets.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.8"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

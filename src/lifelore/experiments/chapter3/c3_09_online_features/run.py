@@ -1,74 +1,103 @@
-"""C3.9: the first and the 30th episode of each of thirty tasks with selected features, with all ten and without.
+"""The cells of C3.9: what the first and the last episode of each of thirty tasks earn, by the prior in use.
 
-Asked twice: of agents that count exact policies, and of such as count those they have learnt themselves, in the
-states where they tried something; only those that promise a reward is another choice (see C3.10).
-The thesis does not say when an episode is broken off, and its agents have converged by the 30th: so the default
-lets one go on for 10,000 steps, and ε has fallen to 0.01 by then.
-Thesis: §3.4.6, Figure 3.13.
+Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.13.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.action.priors.exploration import TIES
 from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import jumpstart
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter3.c3_07_feature_sets.run import check_components
-from lifelore.experiments.chapter3.c3_09_online_features.selected_learning import (
-    KEYS,
-    METHODS,
-    SOURCES,
-    cells,
-    hows,
-    method_how,
-    run_cell,
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import Problem, problem_of
+from lifelore.experiments.chapter3.online_selection import (
+    FULL,
+    SELECTED,
+    UNIFORM,
+    Counting,
+    OnlineAgent,
+    defaults_and_others,
+    learn_uniformly,
 )
-from lifelore.experiments.chapter3.online_selection import FULL as ALL_TEN
-from lifelore.experiments.chapter3.online_selection import SELECTED, UNIFORM
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import share_of
 from lifelore.experiments.engine.learning_settings import check_among, check_counts, check_default, check_learning
-from lifelore.experiments.engine.open_choices import default_of, how_key, runs_by_cell
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.open_choices import default_of, how_key, plain_how
 
-FULL = {
-    "discount": 0.99,
-    "components": 4,
-    "runs": 20,
-    "tasks": 30,
-    "episodes": 30,
-    "learning_rate": 0.5,
-    "sources": list(SOURCES),
-    "schedules": [[0.1, 1.0, 0.1], [1.0, 0.85, 0.01]],
-    "ties": list(TIES),
-    "alpha0": 0.1,
-    "max_steps": [2000, 10000],
-    "default": {
-        "source": "learnt",
-        "schedule": [1.0, 0.85, 0.01],
-        "ties": "uniform",
-        "max_steps": 10000,
-    },
+METHODS = (UNIFORM, FULL, SELECTED)
+KEYS = ("source", "schedule", "ties", "max_steps")
+"""The choices left open that make a cell of the grid."""
+SOURCES = {
+    "learnt": Counting("learnt", "tried"),
+    "learnt, promising": Counting("learnt", "visited"),
+    "exact": Counting("exact", "all"),
 }
-QUICK = {
-    **FULL,
-    "components": 1,
-    "runs": 3,
-    "tasks": 3,
-    "episodes": 10,
-    "max_steps": [100, 300],
-    "default": {**FULL["default"], "max_steps": 300},
-}
-PARTS = ("first", "last")
+"""Whose policies count, and where."""
+
+
+def hows(settings: Mapping) -> list[dict]:
+    """The default, then every other choice one at a time."""
+    lists = {"source": "sources", "schedule": "schedules"}
+    choices = {key: settings[lists.get(key, key)] for key in KEYS}
+    return defaults_and_others(default_of(settings, KEYS), choices)
+
+
+def method_how(method: str, how: Mapping) -> dict:
+    """A cell of the grid as one method meets it."""
+    return plain_how(how, KEYS) if method == UNIFORM else {key: how[key] for key in KEYS}
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A run each."""
+    return [{"run": number} for number in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: rewards of first and last episodes, a number a task, of every method in every cell of the grid."""
+    met = {}
+    for method in METHODS:
+        for how in hows(settings):
+            read = method_how(method, how)
+            met.setdefault((method, how_key(read, KEYS)), _Series(settings, method, read))
+    optimal = []
+    for i in range(settings["tasks"]):
+        problem = problem_of(settings, (seed, "C3.9", cell["run"], i))
+        optimal.append(problem.optimal)
+        for series in met.values():
+            series.learn(problem)
+    return {**cell, "optimal": optimal, "found": [series.found() for series in met.values()]}
+
+
+class _Series:
+    """One method going from task to task in one cell of the grid."""
+
+    def __init__(self, settings: Mapping, method: str, how: dict) -> None:
+        self.method, self.how = method, how
+        self.schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
+        self.agent = None
+        if method != UNIFORM:
+            counting = SOURCES[how["source"]]
+            self.agent = OnlineAgent(method == SELECTED, counting, settings["alpha0"], how["ties"])
+        self.rewards: list[np.ndarray] = []
+        self.n_features: list[int] = []
+
+    def learn(self, problem: Problem) -> None:
+        agent = self.agent
+        curve = agent.learn(problem, self.schedule) if agent else learn_uniformly(problem, self.schedule)
+        self.rewards.append(curve.rewards[[0, -1]])
+        self.n_features.append(len(agent.chosen) if agent else 0)
+
+    def found(self) -> dict:
+        first, last = np.array(self.rewards).T
+        of_task = {"first": first.tolist(), "last": last.tolist(), "n_features": self.n_features}
+        return {"method": self.method, **self.how, **of_task}
+
+
 ASKED = ("exact", "learnt")
 """Whose policies the claim is asked of."""
 
-Found = dict[tuple, list[Mapping]]
 
-
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "episodes", "max_steps", "components"))
     check_counts(settings, ("tasks",), least=2)  # before the first task there is no prior
     check_learning(settings)
@@ -80,98 +109,3 @@ def _check(settings: Mapping) -> None:
         raise InputError(f"sources must hold {' and '.join(ASKED)}, got {settings['sources']}")
     if settings["alpha0"] <= 0:
         raise InputError(f"alpha0 must be positive, got {settings['alpha0']}")
-
-
-def _by_method(results: Sequence[Mapping]) -> Found:
-    """(method, cell of the grid as it meets it) to its numbers, run by run."""
-    return runs_by_cell(results, ("method",), KEYS)
-
-
-def _tasks_of(found: Found, method: str, how: Mapping, part: str) -> np.ndarray:
-    """(n_runs, n_tasks) numbers of each task."""
-    return np.array([numbers[part] for numbers in found[method, how_key(method_how(method, how), KEYS)]], float)
-
-
-def _of(found: Found, method: str, how: Mapping, part: str) -> np.ndarray:
-    """Each run's mean over the tasks after the first, (n_runs,)."""
-    return _tasks_of(found, method, how, part)[:, 1:].mean(axis=1)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Every method by whose policies count, what the claim compares there, and shares of the grid."""
-    found = _by_method(results)
-    optimal = np.array([np.mean(result["optimal"][1:]) for result in results])
-    measured = {"optimal_reward": mean_estimate(optimal)}
-    for source in ASKED:
-        how = {**default_of(settings, KEYS), "source": source}
-        for name, number in _compared(found, how, optimal).items():
-            measured[f"{source}_{name}"] = number
-    return measured | {"grid_order_at_first": share_of([_is_ordered(found, how) for how in hows(settings)])}
-
-
-def _compared(found: Found, how: Mapping, optimal: np.ndarray) -> dict[str, Estimate]:
-    """The three methods in a cell of the grid, and their paired differences."""
-    distance = optimal - _of(found, UNIFORM, how, "first")
-    measured = {}
-    for part in PARTS:
-        every = {method: _of(found, method, how, part) for method in METHODS}
-        for method, values in every.items():
-            measured[f"{part}_{method}"] = mean_estimate(values)
-        for ours, theirs in ((SELECTED, ALL_TEN), (ALL_TEN, UNIFORM), (SELECTED, UNIFORM)):
-            name = f"{part}_{ours}_minus_{theirs}"
-            measured[name] = jumpstart(every[ours], every[theirs])
-            measured[f"{name}_of_distance"] = ratio_estimate(every[ours] - every[theirs], distance)
-    features = _tasks_of(found, SELECTED, how, "n_features")[:, -1]
-    return measured | {"features_after_last_task": mean_estimate(features)}
-
-
-def _is_ordered(found: Found, how: Mapping) -> bool:
-    """Selected ≥ all ten > uniform in the first episode, by means."""
-    uniform, ten, selected = (float(_of(found, method, how, "first").mean()) for method in METHODS)
-    return selected >= ten > uniform
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The grid, a row for each cell, then the default's curves over tasks by source."""
-    found = _by_method(results)
-    grid = []
-    for how in hows(settings):
-        row: dict = {key: how[key] for key in KEYS}
-        for part in PARTS:
-            row |= {f"{part}_{method}": float(_of(found, method, how, part).mean()) for method in METHODS}
-            pair = [_of(found, method, how, part) for method in (SELECTED, ALL_TEN)]
-            row[f"{part}_selected_minus_full"] = jumpstart(*pair).to_dict()
-        grid.append(row)
-    lines = [(source, method, part) for source in settings["sources"] for method in METHODS for part in PARTS]
-    return grid + [_curve_row(found, settings, *line) for line in lines]
-
-
-def _curve_row(found: Found, settings: Mapping, source: str, method: str, part: str) -> dict:
-    """Mean over runs of each task's first or last episode, and the standard deviation between runs."""
-    values = _tasks_of(found, method, {**default_of(settings, KEYS), "source": source}, part)
-    deviation = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(values.shape[1])
-    curve = {"mean": np.round(values.mean(axis=0), 2).tolist(), "deviation": np.round(deviation, 2).tolist()}
-    return {"curve_of": method, "of_source": source, "part": part, **curve}
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_09_online_features.figure_first_and_last import draw_first_and_last
-
-    return draw_first_and_last(result)
-
-
-CLAIM = Claim(
-    id="C3.9",
-    title="First and last episodes with features selected online (Figure 3.13)",
-    thesis="In the modified factory, over 30 tasks and 10 runs: in the first episode online feature selection is "
-    "slightly better than the prior over all ten features, and both considerably better than none; at the 30th "
-    "episode all three perform alike.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.9"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    check=_check,
-)

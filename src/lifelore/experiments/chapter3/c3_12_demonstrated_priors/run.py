@@ -1,37 +1,32 @@
-"""C3.12: priors from 40 demonstrated trajectories beside self-trained priors, in the modified factory (simulated).
+"""Priors from demonstrated trajectories beside self-trained ones, in modified factories (§3.4.8, Figure 3.16).
 
-The thesis's trajectories were a person's. These are of simulated people of stated skill: what is measured speaks
-of them, and people remain untested. One person who knows the task well ("familiar", nine steps of ten taken
-knowingly) is the default, as in the thesis; other people, alone and several, with equal weights w(π) and weights
-by estimated competence, stand beside. The set of features is not stated and is crossed, φ3 being the default.
-
-Optimal rewards lie near 0 here, so *comparable* is asked of the distance from learning without a prior to the
-optimum, as in C3.11. Thesis: §3.4.8, Figure 3.16.
+The thesis's demonstrator was a person. Here people are simulated, each with a skill: the share of steps taken
+knowingly. A run draws training factories with lists of components; each is shown once, by the people in turn, and
+solved exactly for the self-trained prior. A trajectory counts an action for each visit, a policy its tied best
+actions in every state. Everything compared meets the same factories, lists and random numbers of its own.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.action.priors.exploration import TIES
+from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_ways
+from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
+from lifelore.action.demonstrations.simulated_person import shown_by_person
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import TIES, prior_rows
 from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import jumpstart
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.domains.factory.contexts import PHI
-from lifelore.domains.factory.factory import N_COMPONENTS
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.shown_priors import (
-    KEYS,
-    PEOPLE,
-    PLAIN,
-    SELF,
-    SHOWN,
-    WEIGHTS,
-    cells,
-    hows,
-    run_cell,
-)
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import is_above, share_of
+from lifelore.core.learning.q_learning import Rows, uniform_rows
+from lifelore.core.mdp import Tables
+from lifelore.core.streams import stream
+from lifelore.domains.factory.contexts import PHI, feature_codes, features
+from lifelore.domains.factory.factory import ACTION_NAMES, N_COMPONENTS, FactoryTask
+from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.experiments.chapter3.factory_forms import Met, best_of, learn_task, optimal_reward
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.engine.learning_settings import (
     check_among,
     check_counts,
@@ -39,53 +34,186 @@ from lifelore.experiments.engine.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.engine.open_choices import default_of, how_key, plain_how, runs_by_cell
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.open_choices import default_of, how_key, is_default_but_for_schedule, plain_how
 
-FULL = {
-    "discount": 0.99,
-    "components": 4,
-    "runs": 20,
-    "trajectories": [10, 40],
-    "test_tasks": 4,
-    "episodes": 100,
-    "early": 10,
-    "learning_rate": 0.5,
-    "max_steps": 2000,
-    "people": list(PEOPLE),
-    "features": ["phi1", "phi2", "phi3", "phi4"],
-    "ties": ["uniform", "prior"],
-    "schedules": [[0.1, 1.0, 0.1], [1.0, 0.95, 0.01]],
-    "alpha0": [0.1, 1.0],
-    "default": {
-        "features": "phi3",
-        "schedule": [1.0, 0.95, 0.01],
-        "ties": "uniform",
-        "alpha0": 0.1,
-        "trajectories": 40,
-        "people": "familiar",
-    },
+PLAIN, SELF, SHOWN = "uniform", "self-trained", "shown"
+WEIGHTS = ("equal", "by steps", "by ways")
+"""w(π) of a person: 1, the share of best steps corrected for chance, or the length of ways beside known ones."""
+PEOPLE = {
+    "expert": (1.0,),
+    "familiar": (0.9,),
+    "varied": (1.0, 0.9, 0.7, 0.5),
+    "one in four": (1.0, 0.3, 0.3, 0.3),
+    "poor": (0.5,),
 }
-QUICK = {
-    **FULL,
-    "components": 1,
-    "runs": 3,
-    "trajectories": [2, 4],
-    "test_tasks": 2,
-    "episodes": 20,
-    "early": 5,
-    "max_steps": 200,
-    "features": ["phi2", "phi3"],
-    "ties": ["uniform"],
-    "default": {**FULL["default"], "trajectories": 4},
-}
+"""Skills of those who show, in turn."""
+KEYS = ("features", "schedule", "ties", "alpha0", "trajectories")
+"""The choices left open that make a cell of the grid."""
+PATIENCE = 4000
+"""Steps after which a person gives up."""
+
+
+class Shown(NamedTuple):
+    """A training task: exact best actions, codes of its states by set of features, each people's demonstration."""
+
+    best: NDArray[np.bool_]
+    codes: dict[str, NDArray[np.int64]]
+    by: dict[str, Demonstration | None]
+
+
+class Run(NamedTuple):
+    """Training tasks in order, each people's w(π) by kind of weight, and test tasks."""
+
+    training: list[Shown]
+    weights: dict[tuple[str, str], dict[str, float]]
+    testing: list[Met]
+
+
+def run_of(settings: Mapping, seed: int, number: int) -> Run:
+    """Run `number`."""
+    own = (seed, "C3.12", number)
+    training = [_shown(settings, (*own, "training", i), i) for i in range(max(settings["trajectories"]))]
+    weights = {}
+    for people in settings["people"]:
+        done = [shown.by[people] for shown in training]
+        done = [one for one in done if one]
+        best = {str(i): shown.best for i, shown in enumerate(training)}
+        weights[people, "equal"] = dict.fromkeys({one.agent for one in done}, 1.0)
+        weights[people, "by steps"] = competence_by_steps(done, lambda name, b=best: b[name])
+        weights[people, "by ways"] = competence_by_ways(done)
+    return Run(training, weights, [_met(settings, (*own, "testing", i)) for i in range(settings["test_tasks"])])
+
+
+def _task(settings: Mapping, names: tuple) -> FactoryTask:
+    random = stream(*names, "factory")
+    floor = modified_factory(random, settings["discount"])
+    return floor.task(floor.draw_components(random, settings["components"]))
+
+
+def _codes(settings: Mapping, task: FactoryTask) -> dict[str, NDArray[np.int64]]:
+    seen = features(task)
+    return {name: feature_codes(seen, name) for name in settings["features"]}
+
+
+def _shown(settings: Mapping, names: tuple, number: int) -> Shown:
+    task = _task(settings, names)
+    tables, best = task.tables(), best_of(task)
+    by = {p: show(tables, best, PEOPLE[p], number, (*names, p)) for p in settings["people"]}
+    return Shown(best, _codes(settings, task), by)
+
+
+def show(tables: Tables, best, skills: Sequence[float], number: int, names: tuple) -> Demonstration | None:
+    """Task `number`, shown by whose turn it is; None where that person gives up."""
+    turn = number % len(skills)
+    return shown_by_person(
+        tables, best, skills[turn], stream(*names, "person"),
+        task=str(number), agent=f"person {turn}", most_steps=PATIENCE,
+    )  # fmt: skip
+
+
+def _met(settings: Mapping, names: tuple) -> Met:
+    task = _task(settings, names)
+    tables = task.tables()
+    return Met(tables, names, _codes(settings, task), optimal_reward(tables, task.optimal_q(tables)))
+
+
+def self_trained(run: Run, how: Mapping) -> ActionPrior:
+    """From the exact policies of the training tasks, every state counted (Eq. 3.7)."""
+    prior = ActionPrior(len(ACTION_NAMES), how["alpha0"])
+    for shown in run.training[: how["trajectories"]]:
+        prior.update(shown.codes[how["features"]], shown.best)
+    return prior
+
+
+def from_shown(run: Run, how: Mapping, people: str, weight: str) -> ActionPrior:
+    """From what people showed, each step weighed by who took it (Eq. 3.3)."""
+    prior = ActionPrior(len(ACTION_NAMES), how["alpha0"])
+    done = [shown.by[people] for shown in run.training[: how["trajectories"]]]
+    count_demonstrations(
+        prior,
+        [one for one in done if one],
+        lambda one: run.training[int(one.task)].codes[how["features"]][one.states],
+        run.weights[people, weight],
+    )
+    return prior
+
+
+def hows(settings: Mapping) -> list[dict]:
+    """The grid: features × ε × ties, and every other α⁰ and number of trajectories, one at a time."""
+    default = default_of(settings, KEYS)
+    crossed = product(settings["features"], settings["schedules"], settings["ties"])
+    grid = [{**default, "features": f, "schedule": s, "ties": t} for f, s, t in crossed]
+    sizes = [(key, n) for key in ("alpha0", "trajectories") for n in settings[key] if n != default[key]]
+    return grid + [{**default, key: n} for key, n in sizes]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A run each."""
+    return [{"run": number} for number in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: no prior, self-trained and the default people in every cell; all people at the default."""
+    run = run_of(settings, seed, cell["run"])
+    optimal = float(np.mean([met.optimal for met in run.testing]))
+    return {
+        **cell,
+        "optimal": optimal,
+        "found": list(_all_found(settings, run)),
+        "people": _of_people(settings, run),
+    }
+
+
+def _of_people(settings: Mapping, run: Run) -> list[dict]:
+    """How many tasks were shown, how long, and how each people's members were weighed."""
+    found = []
+    for people in settings["people"]:
+        done = [shown.by[people] for shown in run.training]
+        steps = [len(one.states) for one in done if one]
+        weights = {w: dict(sorted(run.weights[people, w].items())) for w in WEIGHTS}
+        found.append(
+            {"people": people, "given_up": len(done) - len(steps), "steps": sum(steps), "weights": weights}
+        )
+    return found
+
+
+def _all_found(settings: Mapping, run: Run) -> Iterator[dict]:
+    default = default_of(settings, KEYS)
+
+    def numbers(how: Mapping, rows_for) -> dict:
+        schedule = schedule_of(settings, how["schedule"])
+        rewards = np.array([learn_task(met, rows_for(met), schedule) for met in run.testing])
+        found = {"all": float(rewards.mean()), "first": float(rewards[:, 0].mean())}
+        found["early"] = float(rewards[:, : settings["early"]].mean())
+        if is_default_but_for_schedule(how, settings, KEYS):
+            found |= {"mean": rewards.mean(axis=0).tolist(), "deviation": rewards.std(axis=0, ddof=1).tolist()}
+        return found
+
+    def with_prior(how: Mapping, prior: ActionPrior) -> dict:
+        return numbers(how, lambda met: rows_of(met, prior, how))
+
+    plain = {how_key(how, KEYS): how for how in (plain_how(h, KEYS) for h in hows(settings))}
+    for how in plain.values():
+        yield {"method": PLAIN, **how, **numbers(how, lambda met: uniform_rows(met.tables))}
+    for how in hows(settings):
+        yield {"method": SELF, **how, **with_prior(how, self_trained(run, how))}
+        methods = [(settings["default"]["people"], "equal")]
+        if how_key(how, KEYS) == how_key(default, KEYS):
+            methods = list(product(settings["people"], WEIGHTS))
+        for people, weight in methods:
+            found = with_prior(how, from_shown(run, how, people, weight))
+            yield {"method": SHOWN, "people": people, "weight": weight, **how, **found}
+
+
+def rows_of(met: Met, prior: ActionPrior, how: Mapping) -> Rows:
+    """Rows of ε-QPAP with the proportion form."""
+    return prior_rows(met.tables, met.codes[how["features"]], prior.probs, how["ties"])
+
+
 VARIED = "varied"
-COMPARABLE = 0.05
-
-Found = dict[tuple, list[Mapping]]
 
 
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "trajectories", "episodes", "early", "max_steps", "components"))
     check_counts(settings, ("test_tasks",), least=2)  # one task has no deviation across tasks
     check_windows(settings, ("early",))
@@ -101,145 +229,3 @@ def _check(settings: Mapping) -> None:
         raise InputError(f"components must be at most {N_COMPONENTS}, got {settings['components']}")
     if min(settings["alpha0"]) <= 0:
         raise InputError(f"alpha0 must be positive, got {settings['alpha0']}")
-
-
-def _by_method(results: Sequence[Mapping]) -> Found:
-    """(method, people, weight, cell of the grid) to its numbers, run by run."""
-    return runs_by_cell(results, ("method", "people", "weight"), KEYS)
-
-
-def _of(found: Found, method: tuple, how: Mapping, key: str) -> np.ndarray:
-    how = plain_how(how, KEYS) if method[0] == PLAIN else how
-    return np.array([numbers[key] for numbers in found[(*method, how_key(how, KEYS))]], float)
-
-
-_PLAIN, _SELF = (PLAIN, None, None), (SELF, None, None)
-
-
-def _shown(people: str, weight: str = "equal") -> tuple:
-    return (SHOWN, people, weight)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What is compared at the default, every people and weight there, and the share of the grid."""
-    found, default = _by_method(results), default_of(settings, KEYS)
-    optimal = np.array([result["optimal"] for result in results])
-    plain, own = (_of(found, method, default, "all") for method in (_PLAIN, _SELF))
-    shown = _of(found, _shown(settings["default"]["people"]), default, "all")
-    varied = _of(found, _shown(VARIED), default, "all")
-    measured = {
-        "optimal_reward": mean_estimate(optimal),
-        "shown_minus_self_of_distance": ratio_estimate(shown - own, optimal - plain),
-        "shown_minus_uniform": jumpstart(shown, plain),
-        "self_minus_uniform": jumpstart(own, plain),
-        "varied_minus_uniform": jumpstart(varied, plain),
-        "varied_minus_self_of_distance": ratio_estimate(varied - own, optimal - plain),
-    }
-    for name, method in (("uniform", _PLAIN), ("self", _SELF), ("shown", _shown(settings["default"]["people"]))):
-        for key in ("first", "early", "all"):
-            measured[f"{key}_{name}"] = mean_estimate(_of(found, method, default, key))
-    for people in settings["people"]:
-        for weight in WEIGHTS:
-            rewards = _of(found, _shown(people, weight), default, "all")
-            name = f"{people}_{weight}".replace(" ", "_")
-            measured[f"of_distance_{name}"] = ratio_estimate(rewards - own, optimal - plain)
-    return measured | _grid(settings, results, found) | _people(settings, results)
-
-
-def _against_self(
-    settings: Mapping, results: Sequence[Mapping], found: Found, how: Mapping
-) -> dict[str, Estimate]:
-    """The default people's prior in a cell of the grid, beside the self-trained one and none."""
-    optimal = np.array([result["optimal"] for result in results])
-    methods = (_shown(settings["default"]["people"]), _SELF, _PLAIN)
-    shown, own, plain = (_of(found, method, how, "all") for method in methods)
-    return {"of_distance": ratio_estimate(shown - own, optimal - plain), "gain": jumpstart(shown, plain)}
-
-
-def _grid(settings: Mapping, results: Sequence[Mapping], found: Found) -> dict[str, Estimate]:
-    compared = [_against_self(settings, results, found, how) for how in hows(settings)]
-    near = np.array([is_comparable(c["of_distance"]) for c in compared])
-    gains = np.array([is_above(c["gain"], 0.0) for c in compared])
-    return {
-        "grid_near_self": share_of(near),
-        "grid_above_uniform": share_of(gains),
-        "grid_comparable": share_of(near & gains),
-    }
-
-
-def is_comparable(number: Estimate) -> bool:
-    """Whether the whole interval lies within 5 % of the distance."""
-    return number.ci95 is not None and max(map(abs, number.ci95)) <= COMPARABLE
-
-
-def _people(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Tasks that people gave up, lengths of what they showed, and weights of each by estimated competence."""
-    found = {}
-    for people in settings["people"]:
-        told = [one for result in results for one in result["people"] if one["people"] == people]
-        name = people.replace(" ", "_")
-        found[f"given_up_{name}"] = mean_estimate([one["given_up"] for one in told])
-        found[f"steps_{name}"] = mean_estimate([one["steps"] for one in told])
-        for weight in WEIGHTS[1:]:
-            for turn, _ in enumerate(PEOPLE[people]):
-                agent, ending = f"person {turn}", f"{name}_{turn}_{weight.replace(' ', '_')}"
-                values = [one["weights"][weight][agent] for one in told if agent in one["weights"][weight]]
-                if values:
-                    found[f"weight_{ending}"] = mean_estimate(values)
-    return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The grid, the people at the default, then the curves of the default under every schedule."""
-    found, default = _by_method(results), default_of(settings, KEYS)
-    optimal = np.array([result["optimal"] for result in results])
-    plain, own = (_of(found, method, default, "all") for method in (_PLAIN, _SELF))
-    table = []
-    for how in hows(settings):
-        compared = _against_self(settings, results, found, how)
-        table.append({**how, **{name: number.to_dict() for name, number in compared.items()}})
-    for people in settings["people"]:
-        for weight in WEIGHTS:
-            rewards = _of(found, _shown(people, weight), default, "all")
-            ratio = ratio_estimate(rewards - own, optimal - plain).to_dict()
-            table.append(
-                {"people": people, "skills": list(PEOPLE[people]), "weight": weight, "of_distance": ratio}
-            )
-    for schedule in settings["schedules"]:
-        how = {**default, "schedule": schedule}
-        for method in (_PLAIN, _SELF, _shown(settings["default"]["people"])):
-            key = (*method, how_key(plain_how(how, KEYS) if method == _PLAIN else how, KEYS))
-            kept = {name: np.mean([n[name] for n in found[key]], axis=0) for name in ("mean", "deviation")}
-            curve = {name: np.round(values, 3).tolist() for name, values in kept.items()}
-            table.append({"curve_of": method[0], "schedule": schedule, **curve})
-    return table
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_12_demonstrated_priors.figure_shown_priors import draw_shown_priors
-
-    return draw_shown_priors(result)
-
-
-CAUSES = {
-    "comparable": "a trajectory counts the states it passes, as often as it passes them, and the one action "
-    "taken; a policy counts every state and all its best actions",
-    "comparable, varied": "people who err show what is not best, too",
-}
-
-CLAIM = Claim(
-    id="C3.12",
-    title="Priors from 40 demonstrated trajectories, of simulated people (Figure 3.16); people untested",
-    thesis="In the modified factory, 4 random components, 20 runs: with a prior from trajectories that a person "
-    "supplied for 40 random tasks, learning performs comparably to having full prior policies, and better than "
-    "with uniform priors, even when they are sub-optimal.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.12"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

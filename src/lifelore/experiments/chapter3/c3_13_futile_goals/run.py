@@ -1,49 +1,221 @@
-"""C3.13: the worst-case probability of exploring into a goal that was futile in all tasks so far (Eq. 3.6).
+"""How often exploration by a prior enters a goal that was futile in all tasks so far (Eq. 3.6), in worlds made so.
 
-Eq. 3.6 is compared with the prior's own probability and with how often a learner that explores by it takes the
-action, in worlds constructed to be the worst case; and with what random worlds, lattices and noise mazes have,
-by states and by percepts. Thesis: §3.2.3, Eq. 3.6.
+In a constructed world one action of one junction leads to the new goal, and all others are tied best there in
+every task: the worst case. Its tasks are goals along a chain, solved exactly. For a prior by percepts several
+junctions look alike, and only one of them has the new goal beside it. Random worlds, lattices and noise mazes
+have whatever their tasks make of them. Frequencies are those of the learner's own kernel, which learns nothing
+and starts again after every step. Thesis: §3.2.3, Eq. 3.6.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from typing import NamedTuple
 
 import numpy as np
-from scipy.stats import binomtest
+from numpy.typing import NDArray
 
-from lifelore.action.search.domain_reduction import futile_goal_probability
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import prior_rows
+from lifelore.action.priors.policy_counts import actions_to_count
+from lifelore.action.search.domain_reduction import domain_futile_states, futile_goal_probability
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_13_futile_goals.futile_goals import cells, run_cell
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import UNMEASURED, mean_or_unmeasured, share_of
+from lifelore.core.learning.curve import new_curve
+from lifelore.core.learning.q_learning import Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.planning.planning import optimal_q
+from lifelore.core.streams import stream
+from lifelore.domains.grids.lattice import lattice
+from lifelore.domains.grids.noise_maze import noise_maze
 from lifelore.experiments.engine.learning_settings import check_counts
-from lifelore.experiments.engine.predicate import Predicate
+
+DISCOUNT = 0.95
+ROUNDING = 1e-12
+"""Relative: what lies below a bound by less does so by rounding."""
+
+
+class Constructed(NamedTuple):
+    """A constructed world: where its actions lead, the goals of its tasks in order, and the new goal."""
+
+    follow: NDArray[np.int32]
+    goals: list[int]
+    new_goal: int
+
+
+class World(NamedTuple):
+    """A world as found: where actions lead, what is perceived in each state, and where episodes start."""
+
+    follow: NDArray[np.int32]
+    percepts: NDArray[np.int64]
+    starts: NDArray[np.int32]
+
+
+def constructed(n_actions: int, n_tasks: int, alike: int, leading: int) -> Constructed:
+    """Junctions 0 to `alike` - 1, a room after them, a chain of `n_tasks` goals, then the new goal.
+
+    Action `leading` takes junction 0 to the new goal and keeps the other junctions where they are; every other
+    action of a junction leads to the room, and from there one way leads along the chain and back to junction 0.
+    """
+    room, new_goal = alike, alike + n_tasks + 1
+    follow = np.empty((new_goal + 1, n_actions), np.int32)
+    follow[:alike] = room
+    follow[:alike, leading] = np.arange(alike)
+    follow[0, leading] = new_goal
+    follow[room:new_goal] = np.arange(room + 1, new_goal + 1)[:, None]
+    follow[[new_goal - 1, new_goal]] = 0
+    return Constructed(follow, list(range(room + 1, new_goal)), new_goal)
+
+
+def goal_tables(follow: NDArray[np.int32], goal: int, starts) -> Tables:
+    """A task of the world: reach `goal`, which pays 1 and ends the episode."""
+    there = (follow == goal)[:, :, None]
+    event = np.where(there, TERMINAL, 0).astype(np.uint8)
+    return Tables(follow[:, :, None], there.astype(float), event, np.ones(1), np.asarray(starts, np.int32))
+
+
+def best_in(tables: Tables, goal: int) -> NDArray[np.bool_]:
+    """Optimal actions of every state, tied ones too, none in the goal."""
+    ended = np.arange(tables.n_states) == goal
+    return actions_to_count(optimal_q(tables, DISCOUNT), "all", ended=ended)
+
+
+def frequency(tables: Tables, rows: Rows, epsilon: float, draws: int, names: tuple) -> int:
+    """Of `draws` single steps from the task's start, how many end the episode."""
+    learner = new_learner(tables.n_states, tables.n_actions, stream(*names, "world"), stream(*names, "own"))
+    curve = new_curve(draws)
+    learn(tables, rows, Schedule(np.full(draws, epsilon), np.zeros(draws), 1, DISCOUNT), learner, curve, draws)
+    return int(curve.reached.sum())
+
+
+def constructed_cases(settings: Mapping, seed: int, run: int) -> Iterator[dict]:
+    """Every number of actions, α⁰, number of tasks and of junctions that look alike."""
+    for n_actions in settings["actions"]:
+        leading = int(stream(seed, "C3.13", run, "leading", n_actions).integers(n_actions))
+        for alike in (1, *settings["alike"]):
+            world = constructed(n_actions, max(settings["tasks"]), alike, leading)
+            junctions = np.arange(alike)
+            solved = [best_in(goal_tables(world.follow, g, junctions), g) for g in world.goals]
+            contexts = np.maximum(np.arange(len(world.follow)) - alike + 1, 0)  # junctions are one percept
+            for alpha0 in settings["alpha0"]:
+                yield from _by_tasks(settings, world, (contexts, solved, alpha0), (seed, "C3.13", run, alike))
+
+
+def _by_tasks(settings: Mapping, world: Constructed, known: tuple, names: tuple) -> Iterator[dict]:
+    contexts, solved, alpha0 = known
+    n_actions, alike = world.follow.shape[1], names[-1]
+    tables = goal_tables(world.follow, world.new_goal, [0])
+    leading = int(np.flatnonzero(world.follow[0] == world.new_goal)[0])
+    prior, counted = ActionPrior(n_actions, alpha0), 0
+    for n_tasks in sorted(settings["tasks"]):
+        for best in solved[counted:n_tasks]:
+            prior.update(contexts, best)
+        counted = n_tasks
+        rows = prior_rows(tables, contexts, prior.probs)
+        draws = settings["draws"]
+        own = (*names, n_actions, str(alpha0), n_tasks)
+        yield {
+            "actions": n_actions,
+            "alike": alike,
+            "alpha0": alpha0,
+            "tasks": n_tasks,
+            "formula": float(futile_goal_probability(n_actions, n_tasks * alike, alpha0)),
+            "prior": float(prior.probs(contexts[:1])[0, leading]),
+            "taken": frequency(tables, rows, 1.0, draws, own),
+            **_unlearnt(settings, tables, prior, contexts, own),
+        }
+
+
+def _unlearnt(settings: Mapping, tables: Tables, prior: ActionPrior, contexts, names: tuple) -> dict:
+    """At the default, how often the action is taken where only a tenth of the steps explore and Q is 0."""
+    default = {key: settings["default"][key] for key in ("actions", "alpha0")}
+    if default != {"actions": tables.n_actions, "alpha0": prior.alpha0} or names[-4] != 1:
+        return {}
+    rows = {ties: prior_rows(tables, contexts, prior.probs, ties) for ties in ("uniform", "prior")}
+    return {f"taken_{t}_ties": frequency(tables, r, 0.1, settings["draws"], names) for t, r in rows.items()}
+
+
+def world_of(kind: str, settings: Mapping, names: tuple) -> World:
+    """A random world, a lattice or a noise maze, with few starts so that much of it is futile."""
+    random = stream(*names, "world")
+    if kind == "random":
+        n_states, n_actions = settings["states"], int(random.choice([2, 4]))
+        follow = random.integers(n_states, size=(n_states, n_actions)).astype(np.int32)
+        percepts = random.integers(max(2, n_states // 4), size=n_states)
+    else:
+        size = settings["size"]
+        grid = lattice(size) if kind == "lattice" else noise_maze(random, size)
+        here = np.arange(grid.n_states, dtype=np.int32)[:, None]
+        follow, percepts = np.where(grid.neighbour < 0, here, grid.neighbour).astype(np.int32), grid.percepts
+    starts = random.choice(len(follow), size=2, replace=False).astype(np.int32)
+    return World(follow, percepts, np.sort(starts))
+
+
+def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict | None:
+    """Actions that lead from kept states into goals futile so far, by both priors; None where there are none."""
+    world, alpha0 = world_of(kind, settings, names), settings["default"]["alpha0"]
+    n_states, n_actions = world.follow.shape
+    goals = stream(*names, "goals").permutation(n_states)[:n_tasks]
+    tasks = [goal_tables(world.follow, int(g), world.starts) for g in goals]
+    policies = [best_in(t, int(g)) for t, g in zip(tasks, goals, strict=True)]
+    futile = domain_futile_states(tasks, policies)
+    entering = ~futile[:, None] & futile[world.follow]
+    if not entering.any():
+        return None
+    probs = {}
+    for name, contexts in (("state", np.arange(n_states)), ("percept", world.percepts)):
+        prior = ActionPrior(n_actions, alpha0)
+        for best in policies:
+            prior.update(contexts, best)
+        probs[name] = prior.probs(contexts)
+    alike = np.bincount(np.unique(world.percepts, return_inverse=True)[1])
+    alike = alike[np.unique(world.percepts, return_inverse=True)[1]]
+    bound = float(futile_goal_probability(n_actions, n_tasks, alpha0))
+    pooled = futile_goal_probability(n_actions, n_tasks * alike, alpha0)[:, None]
+
+    def below(name, least):
+        return int((probs[name] < least * (1 - ROUNDING))[entering].sum())
+
+    s, a = np.unravel_index(np.where(entering, probs["state"], 2.0).argmin(), entering.shape)
+    return {
+        "kind": kind,
+        "tasks": n_tasks,
+        "entering": int(entering.sum()),
+        "below_states": below("state", bound),
+        "below_percepts": below("percept", bound),
+        "below_percepts_pooled": below("percept", pooled),
+        "bound": bound,
+        "least": float(probs["state"][s, a]),
+        "least_percepts": float(probs["percept"][entering].min()),
+        "expected": float(probs["state"][s][world.follow[s] == world.follow[s, a]].sum()),
+        "taken": _taken(world, probs["state"], int(s), int(a), settings["draws"], names),
+    }
+
+
+def _taken(world: World, probs: NDArray, s: int, a: int, draws: int, names: tuple) -> int:
+    """Steps from `s` that end where `a` leads, by whichever action."""
+    tables = goal_tables(world.follow, int(world.follow[s, a]), [s])
+    return frequency(tables, uniform_rows(tables, probs), 1.0, draws, (*names, "taken"))
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A run each."""
+    return [{"run": number} for number in range(settings["runs"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One run: every constructed case, and some worlds of each kind with each number of tasks."""
+    found = [
+        found_case(kind, settings, (seed, "C3.13", cell["run"], kind, n_tasks, i), n_tasks)
+        for kind in settings["kinds"]
+        for n_tasks in settings["found_tasks"]
+        for i in range(settings["worlds"])
+    ]
+    cases = list(constructed_cases(settings, seed, cell["run"]))
+    return {**cell, "constructed": cases, "found": [case for case in found if case]}
+
 
 KINDS = ("random", "lattice", "noise")
-FULL = {
-    "runs": 30,
-    "draws": 200_000,
-    "actions": [2, 4, 6],
-    "alpha0": [0.01, 0.1, 1.0],
-    "tasks": [0, 1, 3, 10, 30, 100],
-    "alike": [4, 16],
-    "kinds": list(KINDS),
-    "found_tasks": [1, 3, 10],
-    "worlds": 5,
-    "states": 24,
-    "size": 9,
-    "default": {"actions": 4, "alpha0": 0.1},
-}
-QUICK = {**FULL, "runs": 3, "draws": 20_000, "tasks": [0, 1, 10], "alike": [4], "worlds": 1}
-CAUSES = {
-    "worst case, percepts": "a percept pools all states that share it, so that one task may count an action as "
-    "often as there are such states; Eq. 3.6 counts one state a task",
-}
-
-Case = Mapping
 
 
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "draws", "alike", "found_tasks", "worlds"))
     check_counts(settings, ("actions", "states"), least=2)
     check_counts(settings, ("tasks",), least=0)
@@ -56,144 +228,3 @@ def _check(settings: Mapping) -> None:
     for key in ("actions", "alpha0"):
         if settings["default"].get(key) not in settings[key]:
             raise InputError(f"default must be a cell of the grid; its {key} is not, got {settings['default']}")
-
-
-def _pooled(results: Sequence[Mapping]) -> list[dict]:
-    """Constructed cases with what was taken over all runs; their worlds differ in the action's place alone."""
-    found: dict[tuple, dict] = {}
-    for result in results:
-        for case in result["constructed"]:
-            key = tuple(case[name] for name in ("actions", "alike", "alpha0", "tasks"))
-            pool = found.setdefault(key, {**case, "taken": 0, "priors": []})
-            pool["taken"] += case["taken"]
-            pool["priors"].append(case["prior"])
-    return list(found.values())
-
-
-def _ratios(results: Sequence[Mapping], draws: int, wanted) -> list[float]:
-    """For each run, what was taken over what the formula expects, a mean over its cases that are `wanted`."""
-    return [
-        float(np.mean([c["taken"] / (draws * c["formula"]) for c in result["constructed"] if wanted(c)]))
-        for result in results
-    ]
-
-
-def _is_default(case: Case, settings: Mapping) -> bool:
-    default = settings["default"]
-    return case["alike"] == 1 and all(case[key] == default[key] for key in ("actions", "alpha0"))
-
-
-def slope(tasks: Sequence[int], probs: Sequence[float]) -> float:
-    """Least-squares slope of the logarithm of `probs` over that of `tasks`."""
-    return float(np.polyfit(np.log(tasks), np.log(probs), 1)[0])
-
-
-def _slopes(settings: Mapping, results: Sequence[Mapping]) -> list[float]:
-    """The measured slope at the default, run by run; without runs that had no hit at some number of tasks."""
-    slopes = []
-    for result in results:
-        cases = [c for c in result["constructed"] if _is_default(c, settings) and c["tasks"]]
-        if all(case["taken"] for case in cases):
-            slopes.append(slope([c["tasks"] for c in cases], [c["taken"] / settings["draws"] for c in cases]))
-    return slopes
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What the prior says, what is taken, how it falls with the number of tasks, and worlds as found."""
-    pooled, draws = _pooled(results), settings["draws"]
-    measured = {}
-    for name, by_state in (("states", True), ("percepts", False)):
-        cases = [c for c in pooled if (c["alike"] == 1) is by_state]
-        errors = [abs(p / c["formula"] - 1) for c in cases for p in c["priors"]]
-        measured[f"prior_error_{name}"] = Estimate(max(errors), float(np.median(errors)), None, len(errors))
-        ratios = _ratios(results, draws, lambda c, b=by_state: (c["alike"] == 1) is b and c["tasks"])
-        measured[f"frequency_ratio_{name}"] = mean_estimate(ratios)
-    measured["frequency_ratio_no_task"] = mean_estimate(_ratios(results, draws, lambda c: not c["tasks"]))
-    held = [_holds_formula(c, draws * len(results)) for c in pooled]
-    measured["intervals_that_hold_formula"] = share_of(held)
-    measured["slope_default"] = mean_or_unmeasured(_slopes(settings, results))
-    tasks = [n for n in settings["tasks"] if n]
-    for alpha0 in settings["alpha0"]:
-        exact = slope(tasks, futile_goal_probability(settings["default"]["actions"], tasks, alpha0).tolist())
-        measured[f"slope_of_formula_alpha0_{alpha0:g}"] = Estimate(exact, exact, None, len(tasks))
-    measured |= _greedy(settings, results)
-    return measured | _found(settings, results)
-
-
-def _holds_formula(case: Case, draws: int) -> bool:
-    """Whether the exact 95 % interval of the pooled frequency holds the formula's probability."""
-    low, high = binomtest(case["taken"], draws, case["formula"]).proportion_ci()
-    return bool(low <= case["formula"] <= high)
-
-
-def _greedy(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What is taken over the formula where ε is 0.1 and nothing is learnt yet, after the most tasks."""
-    most, found = max(settings["tasks"]), {}
-    for ties in ("uniform", "prior"):
-        name = f"taken_{ties}_ties"
-        cases = [c for r in results for c in r["constructed"] if name in c and c["tasks"] == most]
-        values = [c[name] / (settings["draws"] * c["formula"]) for c in cases]
-        found[f"unlearnt_ratio_{ties}_ties"] = mean_estimate(values)
-    return found
-
-
-def _found(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Worlds as found, each a number: shares of its actions below the bound, and its least probable action."""
-    worlds = [case for result in results for case in result["found"]]
-    measured = {}
-    for name in ("states", "percepts", "percepts_pooled"):
-        shares = [case[f"below_{name}"] / case["entering"] for case in worlds]
-        measured[f"share_below_{name}"] = mean_or_unmeasured(shares)
-    taken, expected = ([case[key] for case in worlds] for key in ("taken", "expected"))
-    measured["frequency_ratio_random"] = (
-        ratio_estimate(np.array(taken) / settings["draws"], expected) if worlds else UNMEASURED
-    )
-    measured["least_over_bound_states"] = mean_or_unmeasured([c["least"] / c["bound"] for c in worlds])
-    at_bound = [c["least"] <= c["bound"] * (1 + 1e-9) for c in worlds]
-    measured["worlds_at_the_bound"] = share_of(at_bound) if worlds else UNMEASURED
-    measured["least_over_bound_percepts"] = mean_or_unmeasured([c["least_percepts"] / c["bound"] for c in worlds])
-    return measured
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Constructed cases pooled over runs with exact intervals; then worlds as found, by kind and tasks."""
-    draws = settings["draws"] * len(results)
-    found = []
-    for case in _pooled(results):
-        low, high = binomtest(case["taken"], draws).proportion_ci()
-        kept = {key: case[key] for key in ("actions", "alike", "alpha0", "tasks", "formula")}
-        found.append({**kept, "measured": case["taken"] / draws, "low": float(low), "high": float(high)})
-    worlds = [case for result in results for case in result["found"]]
-    for kind in settings["kinds"]:
-        for n_tasks in settings["found_tasks"]:
-            of = [c for c in worlds if (c["kind"], c["tasks"]) == (kind, n_tasks)]
-            row = {"kind": kind, "tasks": n_tasks, "worlds": len(of), "entering": sum(c["entering"] for c in of)}
-            for name in ("states", "percepts", "percepts_pooled"):
-                row[f"below_{name}"] = sum(c[f"below_{name}"] for c in of)
-            row["least"] = [round(c["least"] / c["bound"], 5) for c in of]
-            row["least_percepts"] = [round(c["least_percepts"] / c["bound"], 5) for c in of]
-            found.append(row)
-    return found
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_13_futile_goals.figure_futile_goals import draw_futile_goals
-
-    return draw_futile_goals(result)
-
-
-CLAIM = Claim(
-    id="C3.13",
-    title="How likely exploration is to enter a goal that no task so far had a use for (Eq. 3.6)",
-    thesis="In the worst case a single action in a single state leads to the new goal, and it is explored with "
-    "probability α⁰ / ((|A| − 1)(|T_s| + α⁰) + α⁰): 1/|A| before any task, and falling as 1/|T_s|.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.13"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

@@ -1,24 +1,43 @@
-"""C3.14: what the minimised domain keeps, how often exploring in it collides, how fast it is learnt in (§3.2.3).
+"""What a task set's minimised domain keeps and what it costs: exact values, traps, exploration, learning.
 
-Three definitions are measured: the printed one, whose η can be 1/0 (errata E8), the repaired one, and a closed one
-that mends both; the first two decide. For an "unknown task drawn from" the set, learners meet the set's own tasks.
-Beside tasks whose episodes start anywhere stand tasks of one start or few: there a step that another task takes
-may not be taken back (errata E36). The default learns in the repaired domain, where a state without kept actions
-is never left. Thesis: §3.2.3, Thm 3.2.6, Props. 3.2.7-3.2.8.
+The domain as printed renormalises outcomes that lead out of it, and where none is left (η = 1/0) the action is
+taken out, the kindest reading. The closed one mends both faults of the other two (errata E8, E36). In a state
+without kept actions, such as another task's goal, a learner stays for nothing (`stay`), or has all actions of the
+domain again (`free`); a policy that could choose to end there is no policy, so exact values give such a state the
+worst reward for ever. Learners within a minimised domain see kept actions alone, in exploring, in ties and in the
+best, and the world's own outcomes, which nothing renormalises. Thesis: §3.2.3, Thm 3.2.6, Props. 3.2.7-3.2.8.
 """
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.action.search.domain_reduction import FORMS
+from lifelore.action.search.domain_reduction import (
+    FORMS,
+    MinimisedDomain,
+    minimised_domain,
+    reachable_states,
+    tables_within,
+    trap_states,
+)
+from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_learning import WHOLE, WITHIN, cells, run_cell
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import EVERY_START, KINDS, WITH_SINKS
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import UNMEASURED, is_below, mean_or_unmeasured, share_of
+from lifelore.core.learning.curve import Curve, new_curve
+from lifelore.core.learning.learning_metrics import episodes_to_threshold
+from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
+from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from lifelore.core.planning.planning import optimal_q
+from lifelore.core.streams import stream
+from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import (
+    EVERY_START,
+    KINDS,
+    WITH_SINKS,
+    Solved,
+    TaskSet,
+    task_set,
+)
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.engine.learning_settings import (
     check_among,
     check_counts,
@@ -26,53 +45,198 @@ from lifelore.experiments.engine.learning_settings import (
     check_learning,
     check_windows,
 )
-from lifelore.experiments.engine.predicate import Predicate
 
-FULL = {
-    "runs": 16,
-    "kinds": list(KINDS),
-    "size": 23,
-    "tasks": 10,
-    "learnt_tasks": 5,
-    "random_states": 40,
-    "random_actions": 4,
-    "worlds": 20,
-    "max_steps": 1000,
-    "episodes": 400,
-    "explored": 50,
-    "window": 10,
-    "learning_rate": 0.5,
-    "schedules": [[0.1, 1.0, 0.1], [1.0, 0.98, 0.01]],
-    "default": {"schedule": [1.0, 0.98, 0.01]},
-}
-QUICK = {
-    **FULL,
-    "runs": 3,
-    "kinds": ["lattice, every start", "noise maze, one start", "random, few starts", "slippery, few starts"],
-    "size": 9,
-    "tasks": 4,
-    "learnt_tasks": 2,
-    "random_states": 20,
-    "worlds": 3,
-    "max_steps": 100,
-    "episodes": 60,
-    "explored": 10,
-}
-CAUSES = {
-    "defined, printed": "an action may be optimal for a task that never comes where it is kept, and lead to a "
-    "state that no task comes to (errata E8)",
-    "fewer traps": "what is left of the domain's own traps is outnumbered by new ones: another task's goal, and "
-    "the ways to it, lead back nowhere (errata E36)",
-    "no more traps": "where paths from few starts part, a step that only another task takes cannot be taken back "
-    "(errata E36)",
-    "no slower": "an episode that strays into another task's branch is lost (errata E36)",
-}
-DEFAULT_WAY, PRINTED_WAY, CLOSED_WAY = WITHIN[0], *WITHIN[2:]
-
-Learning = Mapping
+WHOLE = "domain"
+WITHIN = (("repaired", "stay"), ("repaired", "free"), ("printed", "stay"), ("closed", "stay"))
+"""Definition, and what a state without kept actions does, of the domains that are learnt in."""
+TRACE = 1e-12
+EQUAL = 1e-9
+"""Relative to the largest reward: values nearer than this are equal."""
 
 
-def _check(settings: Mapping) -> None:
+def values_within(tables: Tables, domain: MinimisedDomain, discount: float) -> NDArray[np.float64]:
+    """Optimal action values of a task in the minimised domain, (n_states, n_actions); -inf where not kept.
+
+    Outcomes outside it are left out and the others renormalised, which changes nothing in the repaired form.
+    """
+    pairs = domain.pairs & ~domain.without_successor
+    if (domain.leading_out & pairs).any():
+        return _renormalised_values(tables, domain, discount)
+    within = tables_within(tables, pairs, "stay")
+    stuck = ~pairs.any(axis=1)
+    within.reward[stuck], within.event[stuck] = _lowest(tables, discount), TERMINAL
+    q = optimal_q(within, discount)
+    q[~pairs] = -np.inf
+    return q
+
+
+def _lowest(tables: Tables, discount: float) -> float:
+    """The worst reward for ever, or none if no reward is a loss."""
+    return min(0.0, float(tables.reward.min())) / (1 - discount)
+
+
+def _renormalised_values(tables: Tables, domain: MinimisedDomain, discount: float) -> NDArray[np.float64]:
+    """The same by sweeps over kept states, outcomes that lead out left out."""
+    acting = np.flatnonzero(domain.pairs.any(axis=1))
+    follow, reward = tables.next_state[acting], tables.reward[acting]
+    mass = np.diff(tables.outcome_cum, prepend=0.0) * domain.states[follow]
+    total = mass.sum(axis=2, keepdims=True)
+    mass = np.divide(mass, total, out=np.zeros_like(mass), where=total > 0)
+    kept = domain.pairs[acting] & (total[..., 0] > 0)
+    some = kept.any(axis=1)
+    lowest = _lowest(tables, discount)
+    value, q = np.full(tables.n_states, lowest), np.full(domain.pairs.shape, -np.inf)
+    gain, stays = (mass * reward).sum(axis=2), discount * mass * ((tables.event[acting] & TERMINAL) == 0)
+    tolerance = EQUAL * 1e-3 * max(1.0, float(np.abs(tables.reward).max()))
+    while True:
+        q[acting] = np.where(kept, gain + (stays * value[follow]).sum(axis=2), -np.inf)
+        better = np.where(some, q[acting].max(axis=1), lowest)
+        moved = np.abs(better - value[acting]).max(initial=0.0)
+        value[acting] = better
+        if moved <= tolerance:
+            return q
+
+
+def kept(task: Solved, domain: MinimisedDomain, discount: float) -> dict:
+    """Whether the task's optimal return is obtained from every start, and its policy is still optimal."""
+    q = values_within(task.tables, domain, discount)
+    near = EQUAL * max(1.0, float(np.abs(task.tables.reward).max())) / (1 - discount)
+    starts = task.tables.starts
+    whole, within = task.q.max(axis=1), q.max(axis=1)
+    acting = reachable_states(task.tables, task.best) & task.best.any(axis=1)
+    chosen = acting[:, None] & task.best
+    lost = np.where(chosen, within[:, None] - np.where(np.isfinite(q), q, -1e300), 0.0)
+    return {
+        "return_kept": bool((np.abs(whole[starts] - within[starts]) <= near).all()),
+        "policy_kept": bool((lost <= near).all() and (within[starts] >= whole[starts] - near).all()),
+    }
+
+
+def traps(task: Solved, domain: MinimisedDomain) -> dict:
+    """Trap states and dead ends of a task: the domain's, how many of them are kept, the minimised domain's."""
+    whole = int(trap_states(task.tables).sum())
+    usable = domain.pairs & ~domain.without_successor
+    within = int((trap_states(task.tables, usable) & domain.states).sum())
+    left = int((trap_states(task.tables) & domain.states).sum())
+    return {"traps": whole, "traps_left": left, "traps_within": within, "states": int(domain.states.sum())}
+
+
+def learn_within(
+    task: Solved, pairs: NDArray[np.bool_] | None, dead_ends: str, schedule: Schedule, what: str
+) -> Curve:
+    """Learn a task in its domain, or with `pairs` alone to choose from; `what` names the streams."""
+    tables, shape = task.tables, task.tables.next_state.shape[:2]
+    allowed = np.ones(shape, bool) if pairs is None else pairs
+    if pairs is not None:
+        tables = tables_within(tables, pairs, dead_ends)
+        allowed = pairs | ~pairs.any(axis=1, keepdims=True)
+    ties = np.where(allowed, 1.0, TRACE)
+    rows = uniform_rows(tables, allowed / allowed.sum(axis=1, keepdims=True), ties)
+    learner = new_learner(
+        shape[0], shape[1], stream(*task.stream, what, "world"), stream(*task.stream, what, "own")
+    )
+    learner.q[~allowed] = -np.inf
+    curve = new_curve(schedule.epsilon.size)
+    learn(tables, rows, schedule, learner, curve, schedule.epsilon.size * schedule.max_steps)
+    return curve
+
+
+def best_returns(task: Solved, n_episodes: int, what: str) -> NDArray[np.float64]:
+    """The optimal return from where each episode starts; worlds of one outcome draw nothing but starts."""
+    starts = task.tables.starts
+    if task.tables.outcome_cum.size > 1:
+        return np.full(n_episodes, task.q[starts].max(axis=1).mean())
+    random = random_state(stream(*task.stream, what, "world"))
+    drawn = [starts[int(next_uniform(random) * starts.size)] for _ in range(n_episodes)]
+    return task.q[drawn].max(axis=1)
+
+
+def explored(tasks: TaskSet, pairs: NDArray[np.bool_] | None, dead_ends: str, episodes: int) -> dict:
+    """Pure exploration, learning nothing: collisions a step, and the share of episodes that reach the goal."""
+    flat = Schedule(np.ones(episodes), np.zeros(episodes), tasks.max_steps, tasks.discount)
+    curves = [learn_within(task, pairs, dead_ends, flat, "explore") for task in tasks.tasks]
+    collisions, steps = (sum(int(getattr(c, name).sum()) for c in curves) for name in ("collisions", "steps"))
+    reached = float(np.mean([c.reached.mean() for c in curves]))
+    return {"collisions": collisions / steps, "reached": reached}
+
+
+def learnt(tasks: TaskSet, pairs, dead_ends: str, settings: Mapping, epsilon) -> dict:
+    """Learning of some tasks of the set: mean returns, and episodes to 80 % of the optimal return.
+
+    Where that is below zero, to as much below it as a fifth of it. `regret` is what the last episodes miss of it.
+    """
+    schedule = schedule_of({**settings, "discount": tasks.discount, "max_steps": tasks.max_steps}, epsilon)
+    chosen = tasks.tasks[: settings["learnt_tasks"]]
+    curves = [learn_within(task, pairs, dead_ends, schedule, "learn") for task in chosen]
+    returns = np.mean([curve.returns for curve in curves], axis=0)
+    best = np.mean([best_returns(task, settings["episodes"], "learn") for task in chosen], axis=0)
+    reached = episodes_to_threshold(returns - best + 0.2 * np.abs(best), 0.0, settings["window"])
+    last = settings["window"]
+    return {
+        "to_80": settings["episodes"] if reached is None else reached,
+        "never_80": reached is None,
+        "first_ten": float(returns[:10].mean()),
+        "regret": float((best - returns)[-last:].sum() / np.abs(best)[-last:].sum()),
+        "collisions": int(sum(int(curve.collisions.sum()) for curve in curves)) / len(curves),
+    }
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """Every kind of world, run by run."""
+    return [{"kind": kind, "run": run} for run in range(settings["runs"]) for kind in settings["kinds"]]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One set of tasks: what its minimised domains keep, how exploring and learning in them goes.
+
+    For random worlds also `worlds` further sets, exactly alone.
+    """
+    names = (seed, "C3.14", cell["kind"], cell["run"])
+    tasks = task_set(cell["kind"], settings, names)
+    found = {**cell, "exact": [exact(tasks)], "learning": list(_learning(settings, tasks))}
+    if cell["kind"].endswith("few starts"):
+        more = (task_set(cell["kind"], settings, (*names, "exact", i)) for i in range(settings["worlds"]))
+        found["exact"] += [exact(other) for other in more]
+    return found
+
+
+def domains_of(tasks: TaskSet) -> dict[str, MinimisedDomain]:
+    """The set's minimised domain by each definition."""
+    tables, best = [t.tables for t in tasks.tasks], [t.best for t in tasks.tasks]
+    return {form: minimised_domain(tables, best, form) for form in FORMS}
+
+
+def exact(tasks: TaskSet) -> dict:
+    """Of each form, what every task keeps, its traps, and what is undefined."""
+    found = {}
+    first = tasks.tasks[0].tables
+    for form, domain in domains_of(tasks).items():
+        each = [{**kept(t, domain, tasks.discount), **traps(t, domain)} for t in tasks.tasks]
+        collide = ((first.event & COLLISION) > 0).any(axis=2)
+        found[form] = {
+            "tasks": each,
+            "undefined": int(domain.without_successor.sum()),
+            "renormalised": int((domain.leading_out & ~domain.without_successor).sum()),
+            "pairs": float(domain.pairs.mean()),
+            "colliding": int((domain.pairs & collide).sum()),
+        }
+    return found
+
+
+def _learning(settings: Mapping, tasks: TaskSet) -> Iterator[dict]:
+    """Every schedule and domain: exploration once, learning under each schedule."""
+    domains = domains_of(tasks)
+    ways = [(WHOLE, "", None)]
+    ways += [(form, ends, domains[form].pairs & ~domains[form].without_successor) for form, ends in WITHIN]
+    for form, ends, pairs in ways:
+        wandering = explored(tasks, pairs, ends or "stay", settings["explored"])
+        for epsilon in settings["schedules"]:
+            numbers = learnt(tasks, pairs, ends or "stay", settings, epsilon)
+            walk = {f"explored_{name}": value for name, value in wandering.items()}
+            yield {"form": form, "dead_ends": ends, "schedule": epsilon, **walk, **numbers}
+
+
+def check(settings: Mapping) -> None:
     check_counts(
         settings,
         ("runs", "learnt_tasks", "worlds", "max_steps", "episodes", "explored", "window", "random_actions"),
@@ -89,183 +253,3 @@ def _check(settings: Mapping) -> None:
         raise InputError(f"size must be odd and at least 7, got {settings['size']}")
     if settings["random_states"] < settings["tasks"] + 4:
         raise InputError(f"random_states must be at least tasks + 4, got {settings['random_states']}")
-
-
-# ---- what cells hold ------------------------------------------------------------------------------------
-
-
-def _sets(results: Sequence[Mapping], kind: str | None = None) -> list[Mapping]:
-    """Every set of tasks, exactly."""
-    return [one for r in results if kind in (None, r["kind"]) for one in r["exact"]]
-
-
-def _tasks(results: Sequence[Mapping], form: str, kind: str | None = None) -> list[Mapping]:
-    return [task for one in _sets(results, kind) for task in one[form]["tasks"]]
-
-
-def _learnt(results: Sequence[Mapping], kind: str, way: tuple[str, str], schedule) -> list[Learning]:
-    """Learning of one kind in one domain under one schedule, run by run."""
-    return [
-        numbers
-        for result in results
-        if result["kind"] == kind
-        for numbers in result["learning"]
-        if (numbers["form"], numbers["dead_ends"]) == way and numbers["schedule"] == schedule
-    ]
-
-
-def _ratio(results: Sequence[Mapping], kind: str, way: tuple[str, str], schedule, key: str) -> Estimate:
-    """A number of the minimised domain over that of the domain, paired by run."""
-    within, whole = ([n[key] for n in _learnt(results, kind, w, schedule)] for w in (way, (WHOLE, "")))
-    return ratio_estimate(within, whole)
-
-
-# ---- measures ------------------------------------------------------------------------------------------
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What is kept, traps, exploration and learning; over all kinds, and kind by kind."""
-    measured = {}
-    for form in FORMS:
-        tasks = _tasks(results, form)
-        for key in ("return_kept", "policy_kept"):
-            measured[f"{key}_{form}"] = share_of([t[key] for t in tasks])
-        both = [t["return_kept"] and t["policy_kept"] for t in tasks]
-        measured[f"theorem_{form}"] = share_of(both)
-        for key in ("undefined", "renormalised"):
-            measured[f"{key}_{form}"] = share_of([one[form][key] > 0 for one in _sets(results)])
-        measured[f"more_traps_{form}"] = share_of([t["traps_within"] > t["traps"] for t in tasks])
-    measured["more_traps"] = measured.pop("more_traps_repaired")
-    measured |= _traps(settings, results)
-    return measured | dict(_by_kind(settings, results)) | _worst(settings, results)
-
-
-def _traps(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Changes in traps where the domain has some, a set of tasks each a number; and E36 where it has none."""
-    found = {}
-    for form, suffix in (("repaired", ""), ("printed", "_printed"), ("closed", "_closed")):
-        having, none = [], []
-        for kind in settings["kinds"]:
-            for one in _sets(results, kind):
-                each = one[form]["tasks"]
-                some = [t for t in each if t["traps"]]
-                if kind in WITH_SINKS and some:
-                    having.append(
-                        [np.mean([t[key] for t in some]) for key in ("traps", "traps_left", "traps_within")]
-                    )
-                none += [t["traps_within"] > 0 for t in each if not t["traps"]]
-        columns = np.array(having).reshape(-1, 3)
-        found[f"trap_difference_with_traps{suffix}"] = mean_or_unmeasured(columns[:, 2] - columns[:, 0])
-        left = ratio_estimate(columns[:, 1], columns[:, 0]) if len(columns) else UNMEASURED
-        found[f"own_traps_left{suffix}"] = left
-        found[f"traps_where_none{suffix}"] = share_of(none) if none else UNMEASURED
-    return found
-
-
-def _by_kind(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[str, Estimate]]:
-    schedule = settings["default"]["schedule"]
-    for kind in settings["kinds"]:
-        name = _name(kind)
-        tasks = _tasks(results, "repaired", kind)
-        yield f"more_traps_{name}", share_of([t["traps_within"] > t["traps"] for t in tasks])
-        printed = _tasks(results, "printed", kind)
-        yield f"more_traps_printed_{name}", share_of([t["traps_within"] > t["traps"] for t in printed])
-        yield f"undefined_printed_{name}", share_of([s["printed"]["undefined"] > 0 for s in _sets(results, kind)])
-        yield f"pairs_kept_{name}", mean_estimate([s["repaired"]["pairs"] for s in _sets(results, kind)])
-        yield f"collisions_ratio_{name}", _ratio(results, kind, DEFAULT_WAY, schedule, "explored_collisions")
-        yield f"reached_ratio_{name}", _ratio(results, kind, DEFAULT_WAY, schedule, "explored_reached")
-        for way in WITHIN:
-            ratio = _ratio(results, kind, way, schedule, "to_80")
-            yield f"to_80_ratio_{name}{'' if way == DEFAULT_WAY else '_' + '_'.join(way)}", ratio
-        for suffix, way in (("domain", (WHOLE, "")), ("minimised", DEFAULT_WAY)):
-            learnt = _learnt(results, kind, way, schedule)
-            for key in ("to_80", "never_80", "collisions"):
-                yield f"{key}_{suffix}_{name}", mean_estimate([float(n[key]) for n in learnt])
-
-
-def _name(kind: str) -> str:
-    return kind.replace(",", "").replace(" ", "_")
-
-
-def _worst(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The kinds of worlds in which the claim fares worst, and the share of kinds that are faster for certain."""
-    schedule = settings["default"]["schedule"]
-
-    def ratios(kinds, key, way=DEFAULT_WAY):
-        return [_ratio(results, kind, way, schedule, key) for kind in kinds]
-
-    to_80 = ratios(settings["kinds"], "to_80")
-    every_start = [kind for kind in settings["kinds"] if kind in EVERY_START]
-    found = {"to_80_ratio_worst_every_start": worst(ratios(every_start, "to_80"))}
-    collisions = []
-    for suffix, way in (("", DEFAULT_WAY), ("_printed", PRINTED_WAY), ("_closed", CLOSED_WAY)):
-        found[f"to_80_ratio_worst{suffix}"] = worst(ratios(settings["kinds"], "to_80", way))
-        collisions.append(worst(ratios(settings["kinds"], "explored_collisions", way)))
-        found[f"collisions_ratio_worst_{way[0]}"] = collisions[-1]
-    found["collisions_ratio_worst"] = worst(collisions[:2])
-    return found | {"faster_kinds": share_of([is_below(ratio, 1.0) for ratio in to_80])}
-
-
-def worst(ratios: Sequence[Estimate]) -> Estimate:
-    """The ratio whose interval reaches highest; one that is no number is the worst of all.
-
-    A ratio that is the same in every run is its own interval.
-    """
-    whole = [replace(r, ci95=(r.value, r.value)) if r.ci95 is None and r.n >= 3 else r for r in ratios]
-    return max(whole, key=lambda r: np.inf if np.isnan(r.value) else r.ci95[1] if r.ci95 else r.value)
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Kind by kind: what is kept and traps; then every domain under every schedule."""
-    found = []
-    for kind in settings["kinds"]:
-        row = {"kind": kind, "sets": len(_sets(results, kind))}
-        for form in FORMS:
-            tasks = _tasks(results, form, kind)
-            row[form] = {key: float(np.mean([t[key] for t in tasks])) for key in ("return_kept", "policy_kept")}
-            row[form]["defined"] = float(np.mean([s[form]["undefined"] == 0 for s in _sets(results, kind)]))
-            row[form]["no_more_traps"] = float(np.mean([t["traps_within"] <= t["traps"] for t in tasks]))
-            for key in ("traps", "traps_left", "traps_within", "states"):
-                row[form][key] = float(np.mean([t[key] for t in tasks]))
-        found.append(row)
-    for kind in settings["kinds"]:
-        for schedule in settings["schedules"]:
-            for way in ((WHOLE, ""), *WITHIN):
-                found.append(_learning_row(results, kind, way, schedule))
-    return found
-
-
-def _learning_row(results: Sequence[Mapping], kind: str, way: tuple[str, str], schedule) -> dict:
-    learnt = _learnt(results, kind, way, schedule)
-    row = {"learnt_in": kind, "form": way[0], "dead_ends": way[1], "schedule": schedule}
-    for key in ("explored_collisions", "explored_reached", "to_80", "first_ten", "regret", "collisions"):
-        row[key] = mean_estimate([n[key] for n in learnt]).to_dict()
-    row["never_80"] = int(sum(n["never_80"] for n in learnt))
-    row["to_80_ratio"] = _ratio(results, kind, way, schedule, "to_80").to_dict()
-    return row
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter3.c3_14_minimised_domains.figure_minimised_domains import (
-        draw_minimised_domains,
-    )
-
-    return draw_minimised_domains(result)
-
-
-CLAIM = Claim(
-    id="C3.14",
-    title="What a set of tasks leaves of its domain: returns, traps, collisions, learning (Thm 3.2.6)",
-    thesis="In the task-set minimised domain every task's optimal return can still be obtained and its optimal "
-    "policy is optimal; it contains fewer trap states and dead ends, so exploration is safer; a task of the set "
-    "is learnt no slower, and possibly faster.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C3.14"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

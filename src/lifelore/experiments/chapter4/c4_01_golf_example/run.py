@@ -7,19 +7,15 @@ club and category, whatever club greedy selection would have taken.
 Thesis: §4.6.1, Tables 4.1 and 4.2, Figure 4.3.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CLUBS
 from lifelore.experiments.chapter4.golf_runs import IRON, WOOD, exact_library, learnt_library, play_holes
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.learning_settings import check_counts
-from lifelore.experiments.engine.predicate import Predicate
 from lifelore.interaction.beliefs.belief import entropy, log_prior, update
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import Greedy, tied_shares
@@ -27,21 +23,9 @@ from lifelore.interaction.selection import Greedy, tied_shares
 PRINTED_CLUBS = (0, 1, 1, 1, 1, 1, 1, 1)
 PRINTED_CATEGORIES = (5, 4, 3, 4, 3, 4, 4, 3)
 """20–50, 5–20, −5–5, … beyond the hole."""
-PRINTED_ENTROPY = (1.3863, 0.2237, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-HALF_DIGIT = 0.00005
-
-FULL = {
-    "distance": 179.0,
-    "shots": 8,
-    "rounds": 20_000,
-    "libraries": 2000,
-    "samples": [10, 100],
-    "pseudo_counts": [0.5, 0.0],
-}
-QUICK = {**FULL, "rounds": 300, "libraries": 40}
 
 
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("shots", "rounds", "libraries", "samples"))
     if settings["shots"] < 2:
         raise InputError(f"shots must be at least 2, got {settings['shots']}")
@@ -114,84 +98,3 @@ def _played(settings: Mapping, first: int | None, seed: int) -> dict:
         "error": np.abs(found.error).mean(axis=0).round(4).tolist(),
         "entropy": found.entropy.mean(axis=0).round(5).tolist(),
     }
-
-
-def _part(results: Sequence[Mapping], **wanted) -> Mapping:
-    return next(r for r in results if all(r.get(key) == value for key, value in wanted.items()))
-
-
-def known(value: float) -> Estimate:
-    """A number that no sampling stands behind."""
-    return Estimate(value, value, None, 1)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The printed table's numbers from exact models, from learnt ones, and how often rounds go that way."""
-    printed = _part(results, part="printed")
-    measured = {
-        "entropy_1": known(printed["entropy"][0]),
-        "entropy_2": known(printed["entropy"][1]),
-        "entropy_3": known(printed["entropy"][2]),
-        "first_is_wood": known(printed["first_club"][WOOD]),
-        "irons_after_printed": known(float(np.mean(printed["iron"]))),
-    }
-    for first, name in ((None, "greedy"), (WOOD, "wood")):
-        played = _part(results, part="played", first=first)
-        for after in ("first", "second"):
-            right = played[f"iron_after_{after}"]
-            answers = np.arange(settings["rounds"]) < right
-            measured[f"iron_after_{after}_{name}"] = exact_share(answers.tolist())
-    for learnt in results:
-        if learnt["part"] == "learnt":
-            name = f"{learnt['samples']}_{learnt['pseudo_count']:g}"
-            after = np.array(learnt["entropy"])
-            measured[f"entropy_2_learnt_{name}"] = mean_estimate(after[:, 0])
-            measured[f"share_above_printed_{name}"] = exact_share((after[:, 0] > PRINTED_ENTROPY[1]).tolist())
-            measured[f"share_settled_third_{name}"] = exact_share((after[:, 1] < HALF_DIGIT).tolist())
-            measured[f"irons_learnt_{name}"] = mean_estimate(learnt["irons"])
-    return measured
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The parts; of learnt models the quantiles of the entropies after one and two shots."""
-    kept = []
-    for result in results:
-        row = {key: value for key, value in result.items() if key not in ("entropy", "irons")}
-        if result["part"] == "learnt":
-            quantiles = np.quantile(np.array(result["entropy"]), [0.025, 0.25, 0.5, 0.75, 0.975], axis=0)
-            row["entropy_quantiles"] = quantiles.round(5).T.tolist()
-        else:
-            row["entropy"] = [round(h, 5) for h in result["entropy"]]
-        kept.append(row)
-    return kept
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter4.golf_example import draw_golf_example
-
-    return draw_golf_example(result)
-
-
-CAUSES = {
-    "first entropy": "the printed belief came from models fitted to samples, whose own spread of this number "
-    "holds 0.2237; exact distributions of Table 4.1 leave 0.1762",
-    "second entropy": "an over-shot of 5 to 20 yards with the 3-iron leaves a trace of the hole at 150 yards "
-    "unless a fitted histogram has an empty bin there",
-    "wood first": "under the uniform prior the 6-iron misses by 33.7 yards on average and the 3-wood by 55.6",
-}
-
-CLAIM = Claim(
-    id="C4.1",
-    title="The worked example of golf (Table 4.2)",
-    thesis="At a hole of 179 yards greedy selection takes club 1, then club 2 for ever; the entropy of the belief "
-    "is 1.3863, 0.2237, 0.0000 before the first three shots.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C4.1"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes=CAUSES,
-    check=_check,
-)

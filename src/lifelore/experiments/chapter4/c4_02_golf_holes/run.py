@@ -9,14 +9,13 @@ Headline: greedy selection with models learnt from samples; no hole played is a 
 Thesis: §4.6.1, Figure 4.4.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.golf.golf import Golf
-from lifelore.experiments.chapter4.c4_02_golf_holes.golf_programs import GIVEN, program_gaps
+from lifelore.experiments.chapter4.c4_02_golf_holes.golf_programs import program_gaps
 from lifelore.experiments.chapter4.golf_runs import (
     EXACT,
     LEARNT,
@@ -27,27 +26,12 @@ from lifelore.experiments.chapter4.golf_runs import (
     play_holes,
 )
 from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.learning_settings import check_counts
-from lifelore.experiments.engine.predicate import Predicate
 
-FULL = {
-    "groups": 100,
-    "holes": 100,
-    "yards": [120.0, 220.0],
-    "shots": 8,
-    "samples": 10,
-    "pseudo_count": 0.5,
-    "horizon": 3,
-}
-QUICK = {**FULL, "groups": 4, "holes": 40}
 GREEDY = "greedy"
-NEAR = 15.0
-"""Yards: the far end of "10–15"."""
 
 
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("groups", "holes", "samples", "horizon"))
     check_counts(settings, ("shots",), 2)
     yards = settings["yards"]
@@ -98,75 +82,3 @@ def _clubs_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
         "club": [round(float(m.mean()), 5) for m in missed],
         "best": round(float(np.abs(errors_of(best, distance, luck[:, 1])).mean()), 5),
     }
-
-
-def _of(results: Sequence[Mapping], key: str, **wanted) -> np.ndarray:
-    """The numbers `key` of the one cell that has all of `wanted`, a row a group."""
-    return np.array(next(r[key] for r in results if all(r.get(k) == v for k, v in wanted.items())), float)
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Greedy selection by model, what it gains over one club, and each rule's gap to the program."""
-    measured = {}
-    clubs, best = _of(results, "club", part="clubs"), _of(results, "best", part="clubs")
-    for model in (LEARNT, EXACT):
-        error = _of(results, "error", model=model, rule=GREEDY, first=None)
-        entropy = _of(results, "entropy", model=model, rule=GREEDY, first=None)
-        wood = _of(results, "error", model=model, rule=GREEDY, first=WOOD)
-        measured |= {
-            f"error_shot_1_{model}": mean_estimate(error[:, 0]),
-            f"error_shot_2_{model}": mean_estimate(error[:, 1]),
-            f"error_last_{model}": mean_estimate(error[:, -1]),
-            f"error_shot_2_wood_first_{model}": mean_estimate(wood[:, 1]),
-            f"groups_within_15_{model}": exact_share((error[:, 1] <= NEAR).tolist()),
-            f"gain_over_best_single_club_{model}": mean_estimate(
-                clubs[:, clubs.mean(axis=0).argmin()] - error[:, 1]
-            ),
-            f"more_than_best_club_{model}": mean_estimate(error[:, 1] - best),
-            f"entropy_fall_first_{model}": mean_estimate(entropy[:, 0] - entropy[:, 1]),
-            f"entropy_fall_later_{model}": mean_estimate(entropy[:, 1] - entropy[:, -1]),
-        }
-    for name, way in next(r["found"] for r in results if r["part"] == "program").items():
-        measured[f"gap_{name.replace(' ', '_').replace(',', '')}"] = Estimate(way["gap"], way["gap"], None, 1)
-    return measured
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Curves of every rule, single clubs, and the program's values."""
-    kept = []
-    for result in results:
-        row = {key: value for key, value in result.items() if key in ("part", "model", "rule", "first")}
-        if result["part"] == "program":
-            kept += [{**row, "way": name, "given": GIVEN, **way} for name, way in result["found"].items()]
-            continue
-        for key in ("error", "entropy", "club", "best"):
-            if key in result:
-                of_groups = np.array(result[key], float)
-                row[key] = of_groups.mean(axis=0).round(4).tolist()
-                if key == "error":
-                    row["worst_groups"] = np.quantile(of_groups, 0.95, axis=0).round(3).tolist()
-        kept.append(row)
-    return kept
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter4.c4_02_golf_holes.figure_golf_curves import draw_golf_curves
-
-    return draw_golf_curves(result)
-
-
-CLAIM = Claim(
-    id="C4.2",
-    title="A hundred unknown golf holes (Figure 4.4)",
-    thesis="Over 100 unknown holes of 120 to 220 yards greedy selection has by the second shot a club that brings "
-    "the ball within 10–15 yards of the hole, while the entropy of the belief falls; single clubs and the best "
-    "club in retrospect are shown for comparison.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C4.2"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    check=_check,
-)

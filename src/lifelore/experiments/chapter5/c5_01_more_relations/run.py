@@ -1,57 +1,212 @@
-"""C5.1: more learnt relations than *on* and *adjacent*, some as the camera sees them; compound ones by logic.
+"""Scenes in which words of space are said: to learn from, to ask, from the other side, and for `between`, `in`.
 
-``under``, ``left_of``, ``right_of``, ``in_front_of``, ``behind`` and ``dwarfs``, a word a user made up, are learnt
-as any other label by `RelationClassifier(multi_label=True)` from simulated scenes and asked of scenes of other
-shapes; then of the same scenes from the other side of the table, where left and right change places. `between` and
-`in` as the thesis proposes them are held against geometry. What the words mean is in `view_words`. Thesis: §2.3.5,
-§5.2.
+Cells of *lessons* and of held-out scenes keep the features of every near pair and all words that are true of it by
+`view_words`; held-out scenes once more as a camera on the other side of the table sees them. Cells of *compound*
+scenes count what the thesis's `between` and `in`, and definitions of our own, say of scenes that were settled on
+purpose.
 """
 
-import json
-from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Mapping, Sequence
+from itertools import combinations, permutations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ADJACENT, BOTH, PairLabel
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.relation_scoring import wilson
-from lifelore.experiments.chapter5.c5_01_more_relations.view_words import USER_WORD, VIEW_WORDS, WORDS
-from lifelore.experiments.chapter5.c5_01_more_relations.word_scenes import (
-    COMPOUND,
-    HELD_OUT,
-    KINDS,
-    LESSON,
-    labels_of,
-    run_cell,
-    word_cells,
-)
-from lifelore.experiments.engine.cell_store import canonical
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import UNMEASURED
-from lifelore.experiments.engine.predicate import Predicate
-from lifelore.perception.pairs.pair_features import COLUMNS, PairFeatures
-from lifelore.perception.pairs.scene_pairs import ScenePairs
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.domains.tabletop.depth_camera import CAMERAS
+from lifelore.domains.tabletop.layout import Group, put_beside, stand
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT, photograph
+from lifelore.domains.tabletop.physics import Tabletop
+from lifelore.domains.tabletop.pose import Pose, about
+from lifelore.domains.tabletop.shapes import ball, box, cup
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, draw_scene
+from lifelore.experiments.chapter2.arranged_scenes import Placement, arranged, settled, turned
+from lifelore.experiments.chapter2.spoilt_scenes import shipped_model_digest
+from lifelore.experiments.chapter2.tabletop_pairs import without_table
+from lifelore.experiments.chapter5.c5_01_more_relations.view_words import Points, is_between, is_in, said_of_pair
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.pairs.pair_features import pair_features
+from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.reasoning.compound_relations import compound_relations
+from lifelore.perception.reasoning.geometric_relations import geometric_relations
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.scene import Scene
 
-FULL = {"lessons": [20, 60, 200], "scenes": 200, "compound": 100}
-QUICK = {"lessons": [12], "scenes": 4, "compound": 1}
-OPPOSITE = {"left_of": "right_of", "right_of": "left_of", "behind": "in_front_of", "in_front_of": "behind"}
-"""What a word of view becomes, for the same order of the pair, from the other side."""
-RESAMPLES = 1000
-COMPOUNDS = ("between", "in")
-WAYS = ("thesis", "thesis_perceived", "lifelore")
-RULE = "rule"
-"""The definitions themselves, asked of visible points: a peer that was told what the words mean."""
-Ordered = tuple[int, int]
-Said = dict[str, frozenset[Ordered]]
-"""By word the ordered pairs of a scene that it holds of."""
+LOT = 8
+COMPOUND_LOT = 10
+DIGITS = 5
+LESSON, HELD_OUT, COMPOUND = "lesson", "held-out", "compound"
+Said = set[tuple[str, tuple[int, ...]]]
 
 
-def _check(settings: Mapping) -> None:
+def place_angle(rng: np.random.Generator) -> Group:
+    """A block and two neighbours at a right angle: it is adjacent to both, and not between them."""
+    blocks = [stand(box(*rng.uniform(0.06, 0.1, 3)), about(2, rng.normal(0, 0.05))) for _ in range(3)]
+    gaps = rng.uniform(0.0005, 0.012, 2)
+    group = blocks[:1]
+    for block, direction, gap in zip(blocks[1:], (0.0, np.pi / 2), gaps, strict=True):
+        group = [*group, *put_beside(blocks[:1], [block], direction, float(gap))]
+    return turned(rng, group)
+
+
+def place_in_cup(rng: np.random.Generator) -> Group:
+    """A ball in a wide cup."""
+    radius, wall = float(rng.uniform(0.022, 0.03)), 0.005
+    wide = radius + wall + float(rng.uniform(0.004, 0.02))
+    vessel = stand(cup(0.9 * wide, 1.15 * wide, float(rng.uniform(0.9, 1.5)) * radius, wall, handle=False))
+    shift = rng.uniform(-0.3, 0.3, 2) * (wide - wall - radius)
+    return [vessel, stand(ball(radius), height=wall + 0.002).moved(*map(float, shift))]
+
+
+OURS = {
+    "angle": Placement(place_angle, frozenset({(2, 3, ADJACENT), (2, 4, ADJACENT)})),
+    "cup": Placement(place_in_cup),
+}
+KINDS = ("mixed", "row", "angle", "cup", "corner", "leaning")
+"""Of compound scenes: *row* shows between, *angle* does not; *cup* shows in, *corner* and *leaning* do not."""
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """Lots of lessons, of held-out scenes, and of each kind of compound scenes."""
+    lots = [{"kind": LESSON, "first": k} for k in range(0, max(settings["lessons"]), LOT)]
+    lots += [{"kind": HELD_OUT, "first": k} for k in range(0, settings["scenes"], LOT)]
+    model = shipped_model_digest()
+    firsts = range(0, settings["compound"], COMPOUND_LOT)
+    return lots + [{"kind": COMPOUND, "of": kind, "first": k, "model": model} for kind in KINDS for k in firsts]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """``{"kind", "of", "scenes": […]}``."""
+    kind, n = cell["kind"], {LESSON: max(settings["lessons"]), HELD_OUT: settings["scenes"]}
+    last = (
+        min(cell["first"] + LOT, n[kind]) if kind in n else min(cell["first"] + COMPOUND_LOT, settings["compound"])
+    )
+    numbers = range(cell["first"], last)
+    if kind == COMPOUND:
+        scenes = [compound_counts(compound_scene(cell["of"], seed, number)) for number in numbers]
+    elif kind == LESSON:
+        scenes = [seen(scene, scene.cloud) for scene in (_drawn(seed, "training", number) for number in numbers)]
+    else:
+        scenes = [_asked(seed, number) for number in numbers]
+    return {"kind": kind, "of": cell.get("of", ""), "scenes": scenes}
+
+
+def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
+    own = int(stream(seed, "word scenes", shapes).integers(2**31))
+    return draw_scene(own, number, TabletopSettings(shapes=shapes))
+
+
+def _asked(seed: int, number: int) -> dict:
+    scene = _drawn(seed, "held-out", number)
+    behind = from_the_other_side(scene, stream(seed, "word scenes", "other side", number))
+    return seen(scene, scene.cloud) | {"other_side": seen(scene, behind) if behind is not None else None}
+
+
+def outlines(scene: TabletopScene) -> dict[int, Points]:
+    """Points that span each thing, by label."""
+    placed = zip(scene.shapes, scene.poses, strict=True)
+    return {FIRST_OBJECT + k: pose.apply(shape.outline()) for k, (shape, pose) in enumerate(placed)}
+
+
+def from_the_other_side(scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud | None:
+    """The same things from a camera carried half round the table; None where one of them is hidden from it."""
+    spans = list(outlines(scene).values())
+    every = np.concatenate(spans)
+    middle = np.append((every.min(axis=0) + every.max(axis=0))[:2] / 2, 0.0)
+    view: Pose = scene.view.moved(-middle).turned(np.pi).moved(middle)
+    photo = photograph(Tabletop(scene.shapes, scene.poses), spans, view, CAMERAS["kinect"], rng)
+    return None if photo is None else photo.cloud
+
+
+def seen(scene: TabletopScene, cloud: LabelledCloud) -> dict:
+    """Features of the near pairs; words true of all labelled pairs of things; words by visible points alone."""
+    bare = without_table(cloud)
+    features = pair_features(bare, interfaces(bare))
+    spans = outlines(scene)
+    visible = {label: bare.of(label) for label in bare.objects}
+    pairs = [(min(t.a, t.b), max(t.a, t.b)) for t in scene.truth if TABLE not in (t.a, t.b)]
+    assert cloud.camera is not None
+    return {
+        "pairs": features.pairs.tolist(),
+        "gaps": np.round(features.gaps, DIGITS).tolist(),
+        "features": np.round(features.matrix, DIGITS).tolist(),
+        "labelled": pairs,
+        "truth": _said(pairs, spans, cloud.camera),
+        "by_rule": _said(pairs, visible, cloud.camera),
+    }
+
+
+def _said(pairs: Sequence[tuple[int, int]], points: Mapping[int, Points], camera: Points) -> list[list]:
+    labels = [label for a, b in pairs for label in said_of_pair(a, b, points[a], points[b], camera)]
+    return [[label.a, label.b, label.relation] for label in labels]
+
+
+def compound_scene(kind: str, seed: int, number: int) -> TabletopScene:
+    """Scene `number` of a kind."""
+    if kind == "mixed":
+        return _drawn(seed, "held-out", number)
+    if kind == "leaning":
+        own = int(stream(seed, "word scenes", kind).integers(2**31))
+        return draw_scene(own, number, TabletopSettings(arrangement="pair", mix={BOTH: 1.0}, shapes="all"))
+    return settled(OURS[kind], kind, seed, number) if kind in OURS else arranged(kind, seed, number)
+
+
+def compound_counts(scene: TabletopScene) -> dict:
+    """What is true by geometry, and what each way says: ``{"true", "thesis", "thesis_perceived", "lifelore"}``.
+
+    Each a list of ``[word, things…]``. *thesis*: its rules on true relations; *thesis_perceived*: on perceived
+    ones; *lifelore*: `geometric_relations` of the perceived scene.
+    """
+    perceived = perceived_scene(scene.cloud, shipped_model())
+    told = tuple(Relation(t.a, t.b, t.relation, 1.0, 0.0) for t in scene.truth)
+    ways = {
+        "true": true_compounds(scene),
+        "thesis": _thesis(told, scene.cloud.objects),
+        "thesis_perceived": _thesis(perceived.relations, scene.cloud.objects),
+        "lifelore": _by_points(perceived),
+    }
+    return {way: sorted([word, *things] for word, things in said) for way, said in ways.items()}
+
+
+def true_compounds(scene: TabletopScene) -> Said:
+    """`between` (b, a, c) with a < c, and `in` (a, b), of the true shapes."""
+    spans = outlines(scene)
+    parts = {
+        FIRST_OBJECT + k: [pose.apply(part.outline()) for part in shape.parts]
+        for k, (shape, pose) in enumerate(zip(scene.shapes, scene.poses, strict=True))
+    }
+    near = {frozenset((t.a, t.b)) for t in scene.truth}
+    found: Said = set()
+    for b in spans:
+        beside = [thing for thing in spans if frozenset((thing, b)) in near and thing != b]
+        for a, c in combinations(sorted(beside), 2):
+            if is_between(spans[b], spans[a], spans[c]):
+                found.add(("between", (b, a, c)))
+    for a, b in permutations(spans, 2):
+        if frozenset((a, b)) in near and is_in(spans[a], parts[b]):
+            found.add(("in", (a, b)))
+    return found
+
+
+def _thesis(relations: Sequence[Relation], objects: Sequence[int]) -> Said:
+    facts = compound_relations(relations, objects)
+    return {(fact.name, fact.arguments) for fact in facts if fact.name in ("between", "in")}
+
+
+def _by_points(scene: Scene) -> Said:
+    names = {"enclosed_between": "between", "contained": "in"}
+    return {(names[fact.name], fact.arguments) for fact in geometric_relations(scene)}
+
+
+def labels_of(rows: Sequence[Sequence]) -> list[PairLabel]:
+    """Rows ``[a, b, word]`` as labels."""
+    return [PairLabel(int(a), int(b), str(word)) for a, b, word in rows]
+
+
+def check(settings: Mapping) -> None:
     lessons = settings["lessons"]
     if not lessons or min(lessons) < 2 or sorted(lessons) != list(lessons):
         raise InputError(f"lessons must be numbers of scenes, rising, at least 2 each, got {lessons}")
@@ -59,273 +214,3 @@ def _check(settings: Mapping) -> None:
         raise InputError(
             f"scenes and compound must be at least 1, got {settings['scenes']}, {settings['compound']}"
         )
-
-
-# --- words ------------------------------------------------------------------------------------------------
-
-
-def scene_of(row: Mapping) -> ScenePairs:
-    """A scene's row as the classifier sees a scene."""
-    matrix = np.array(row["features"], float).reshape(-1, len(COLUMNS))
-    pairs = np.array(row["pairs"], np.int64).reshape(-1, 2)
-    return ScenePairs(PairFeatures(COLUMNS, matrix, pairs, np.array(row["gaps"], float)), ())
-
-
-def taught(lessons: Sequence[Mapping]) -> RelationClassifier:
-    """The words of these scenes, each learnt by itself."""
-    model = RelationClassifier(multi_label=True)
-    return model.fit_pairs([scene_of(one) for one in lessons], [labels_of(one["truth"]) for one in lessons])
-
-
-def said_by(model: RelationClassifier, row: Mapping) -> Said:
-    """What the model says of a scene."""
-    found: dict[str, set[Ordered]] = {word: set() for word in WORDS}
-    for relation in model.predict_pairs(scene_of(row)) if row["pairs"] else ():
-        if relation.relation in found:
-            found[relation.relation].add((relation.a, relation.b))
-            if relation.relation in model.symmetric:
-                found[relation.relation].add((relation.b, relation.a))
-    return {word: frozenset(pairs) for word, pairs in found.items()}
-
-
-def said_in(rows: Sequence[Sequence]) -> Said:
-    """What rows ``[a, b, word]`` say."""
-    return {word: frozenset((a, b) for a, b, name in rows if name == word) for word in WORDS}
-
-
-def both_orders(row: Mapping) -> list[Ordered]:
-    """Every labelled pair of a scene in both orders."""
-    return [order for a, b in row["labelled"] for order in ((a, b), (b, a))]
-
-
-def word_counts(scenes: Sequence[Mapping], told: Sequence[Said], word: str) -> NDArray[np.float64]:
-    """Of each scene: right yes, said yes, true yes, right answers, ordered pairs, ``(n, 5)``."""
-    rows = []
-    for row, said in zip(scenes, told, strict=True):
-        true, orders = said_in(row["truth"])[word], both_orders(row)
-        answers = said[word] & set(orders)
-        right = sum((order in true) == (order in answers) for order in orders)
-        rows.append((len(true & answers), len(answers), len(true), right, len(orders)))
-    return np.array(rows, float).reshape(-1, 5)
-
-
-def f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """2 right / (said + true) of counts ``(…, 5)``; 0 where nothing is said nor true."""
-    return 2 * counts[..., 0] / np.maximum(counts[..., 1] + counts[..., 2], 1)
-
-
-def recall(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Right yes of true yes."""
-    return counts[..., 0] / np.maximum(counts[..., 2], 1)
-
-
-def precision(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Right yes of said yes."""
-    return counts[..., 0] / np.maximum(counts[..., 1], 1)
-
-
-def accuracy(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Right answers of all ordered pairs."""
-    return counts[..., 3] / np.maximum(counts[..., 4], 1)
-
-
-def resampled(
-    counts: NDArray[np.float64], statistic: Callable[[NDArray[np.float64]], NDArray[np.float64]], n: int
-) -> Estimate:
-    """A statistic of summed counts, scenes resampled (percentiles); `n` is what it is a share of."""
-    if not len(counts) or n == 0:
-        return UNMEASURED
-    value = float(statistic(counts.sum(axis=0)))
-    draws = stream(len(counts), "words resampled").multinomial(
-        len(counts), np.full(len(counts), 1 / len(counts)), size=RESAMPLES
-    )
-    low, high = np.quantile(statistic(draws @ counts), [0.025, 0.975])
-    ends = (float(low), float(high)) if low < high else None
-    return Estimate(value, value, ends or _of_one_kind(value, n), n)
-
-
-def _of_one_kind(value: float, n: int) -> tuple[float, float]:
-    """Wilson's interval where all scenes agree."""
-    return wilson(round(value * n), n)
-
-
-@lru_cache(maxsize=2)
-def _told(lessons: tuple[int, ...], results: str) -> dict[str, tuple[list[dict], list[Said]]]:
-    """Held-out scenes and what is said of them, by the number learnt from (as text), and by the rule.
-
-    With ``"other side"``, the scenes and answers from there after the most lessons. Kept, since measures and
-    rows ask.
-    """
-    read = json.loads(results)
-    learnt = [scene for r in read if r["kind"] == LESSON for scene in r["scenes"]]
-    scenes = [scene for r in read if r["kind"] == HELD_OUT for scene in r["scenes"]]
-    found: dict[str, tuple[list[dict], list[Said]]] = {RULE: (scenes, [said_in(one["by_rule"]) for one in scenes])}
-    for n in lessons:
-        model = taught(learnt[:n])
-        found[str(n)] = scenes, [said_by(model, one) for one in scenes]
-        if n == lessons[-1]:
-            behind = [one["other_side"] for one in scenes if one["other_side"]]
-            found["other side"] = behind, [said_by(model, one) for one in behind]
-    return found
-
-
-def _words(settings: Mapping, results: Sequence[Mapping]) -> dict[str, tuple[list[dict], list[Said]]]:
-    return _told(tuple(settings["lessons"]), canonical(list(results)))
-
-
-# --- the other side ---------------------------------------------------------------------------------------
-
-
-def turned_counts(
-    scenes: Sequence[Mapping], told: Sequence[Said], behind: Mapping[int, Said], word: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """How often a word that was rightly said from the front is said as it must be from the other side.
-
-    Returns
-    -------
-    kept, n : (scenes,) float64
-        Words of view must change into their opposites and leave; others must stay.
-    """
-    kept, n = [], []
-    for number, (row, said) in enumerate(zip(scenes, told, strict=True)):
-        if number not in behind:
-            continue
-        asked = {tuple(pair) for pair in row["other_side"]["pairs"]}
-        true_there = said_in(row["other_side"]["truth"])
-        must = OPPOSITE.get(word, word)
-        orders = [o for o in said_in(row["truth"])[word] & said[word] if o in asked and o in true_there[must]]
-        there = behind[number]
-        kept.append(sum(o in there[must] and (must == word or o not in there[word]) for o in orders))
-        n.append(len(orders))
-    return np.array(kept, float), np.array(n, float)
-
-
-def _share(kept: NDArray[np.float64], n: NDArray[np.float64]) -> Estimate:
-    """Share over scenes, scenes resampled; Wilson's interval where all agree."""
-    asked = n > 0
-    if not asked.any():
-        return UNMEASURED
-    found = ratio_estimate(kept[asked], n[asked])
-    total, right = int(n.sum()), int(kept.sum())
-    interval = found.ci95 if 0 < right < total else None
-    return Estimate(found.value, found.median, interval or wilson(right, total), total)
-
-
-# --- between and in ---------------------------------------------------------------------------------------
-
-
-def compound_counts(results: Sequence[Mapping], kind: str, way: str, word: str) -> NDArray[np.float64]:
-    """Of each scene: right, said, true, two zeros: as `word_counts`, where nobody counts what is neither."""
-    rows = []
-    for result in results:
-        if result["kind"] == COMPOUND and kind in (result["of"], "all"):
-            for scene in result["scenes"]:
-                said, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in (way, "true"))
-                rows.append((len(said & true), len(said), len(true), 0, 0))
-    return np.array(rows, float).reshape(-1, 5)
-
-
-# --- measures ---------------------------------------------------------------------------------------------
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Of each word accuracy, F1, recall and precision; the least F1; the other side; between and in."""
-    told = _words(settings, results)
-    most = str(settings["lessons"][-1])
-    found: dict[str, Estimate] = {}
-    for word in WORDS:
-        found |= _word_measures(word_counts(*told[most], word), word)
-        found[f"f1_of_the_rule_{word}"] = _f1_estimate(word_counts(*told[RULE], word))
-    learnt = [found[f"f1_{word}"] for word in WORDS if word != USER_WORD]
-    found["least_f1_of_the_five"] = min(learnt, key=lambda one: one.value if one.n else 2.0)
-    found |= _side_measures(told, most)
-    for word in COMPOUNDS:
-        for way in WAYS:
-            counts = compound_counts(results, "all", way, word)
-            said, true = (int(counts[:, column].sum()) for column in (1, 2))
-            found[f"precision_{word}_{way}"] = resampled(counts, precision, said)
-            found[f"recall_{word}_{way}"] = resampled(counts, recall, true)
-    return found
-
-
-def _f1_estimate(counts: NDArray[np.float64]) -> Estimate:
-    return resampled(counts, f1, int(counts[:, 2].sum())) if len(counts) else UNMEASURED
-
-
-def _word_measures(counts: NDArray[np.float64], word: str) -> dict[str, Estimate]:
-    _, said, true, _, pairs = counts.sum(axis=0).astype(int)
-    never = 1 - true / max(pairs, 1)
-    return {
-        f"accuracy_{word}": resampled(counts, accuracy, int(pairs)),
-        f"accuracy_of_never_{word}": Estimate(never, never, None, int(pairs)),
-        f"f1_{word}": _f1_estimate(counts),
-        f"recall_{word}": resampled(counts, recall, int(true)),
-        f"precision_{word}": resampled(counts, precision, int(said)),
-    }
-
-
-def _side_measures(told: Mapping[str, tuple[list[dict], list[Said]]], most: str) -> dict[str, Estimate]:
-    scenes, said = told[most]
-    there = iter(told["other side"][1])
-    behind = {number: next(there) for number, one in enumerate(scenes) if one["other_side"]}
-    found, of_view = {}, []
-    for word in WORDS:
-        kept, n = turned_counts(scenes, said, behind, word)
-        found[f"{'turned' if word in VIEW_WORDS else 'stays'}_{word}"] = _share(kept, n)
-        if word in ("left_of", "right_of"):
-            of_view.append((kept, n))
-    (kept_left, n_left), (kept_right, n_right) = of_view
-    found["left_and_right_change_places"] = _share(kept_left + kept_right, n_left + n_right)
-    for word in WORDS:
-        found[f"f1_from_the_other_side_{word}"] = _f1_estimate(word_counts(*told["other side"], word))
-    return found
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Of each word and number of lessons the scores; of each kind of scene what between and in counted."""
-    found = []
-    for who, (scenes, said) in _words(settings, results).items():
-        for word in WORDS:
-            counts = word_counts(scenes, said, word)
-            right, yes, true, _, pairs = counts.sum(axis=0).astype(int).tolist() if len(counts) else [0] * 5
-            line = {"word": word, "lessons": who, "right": right, "said": yes, "true": true, "pairs": pairs}
-            found.append(line | {"f1": _f1_estimate(counts).to_dict()})
-    for kind in KINDS:
-        for word in COMPOUNDS:
-            for way in WAYS:
-                counts = compound_counts(results, kind, way, word).sum(axis=0).astype(int).tolist()
-                line = {"compound": word, "scenes": kind, "way": way, "right": counts[0]}
-                found.append(line | {"said": counts[1], "true": counts[2]})
-    drawn = Counter(r["of"] for r in results if r["kind"] == COMPOUND for _ in r["scenes"])
-    return [*found, {"compound_scenes": dict(drawn)}]
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter5.c5_01_more_relations.figure_word_scores import draw_word_scores
-
-    return draw_word_scores(result["rows"], WORDS, str(result["settings"]["lessons"][-1]), KINDS)
-
-
-_LEARNT = "words that depend on the view are learnt from the visible side, whose middle is not the thing's"
-CLAIM = Claim(
-    id="C5.1",
-    title="More learnt relations, and compound ones by logic",
-    thesis="under, in front of, behind, left of, right of and any user's label can be learnt in the same way; "
-    "between is two different adjacent relationships, in is on as well as adjacent.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C5.1"),
-    cells=word_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "the five are learnt": _LEARNT,
-        "between is what is said": "two neighbours at a right angle make it hold, and what stands between two "
-        "others need not be adjacent to either",
-        "between is found": "what stands between two others need not be adjacent to them",
-        "in is what is said": "a leaning thing and a block in a corner are on and adjacent, and in nothing",
-        "in is found": "a ball in a cup rests on its floor and touches no wall",
-    },
-    check=_check,
-)

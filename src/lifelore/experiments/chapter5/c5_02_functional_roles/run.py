@@ -1,118 +1,198 @@
-"""C5.2: things that are used alike are found by the topology of their contact point networks.
+"""Things in known roles: what each does in its scene, by how it was put and what physics made of it.
 
-Each thing of a scene is a query, and all things of the other pool of shapes, which has no kind of shape in
-common, are ranked by how alike they are; those of the same role should come first. What a role is was settled by
-how the scene was put and what physics made of it (`thing_roles`), not by perception. Beside the networks'
-topology stand the predicates alone, a descriptor of shape (D2), and chance. Equal scores are ordered by chance,
-and counted as expected. Scenes are resampled, and `n` counts scenes. Thesis: §5.2, "functional similarity between
-different objects".
+All things are flat pieces of one range of sizes, whatever their role, so that shape tells nothing of it; two
+pools have no kind of shape in common. Ten roles: *alone*; *base*, *middle* and *top* of a stack; *span* and
+*pillar* of a bridge; *leaner* and *leant on*; *neighbour*; *between* two neighbours.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter2.scene_example import scene_of_row
-from lifelore.experiments.chapter5.c5_02_functional_roles.ranking import average_precision, mean_by_cluster
-from lifelore.experiments.chapter5.c5_02_functional_roles.thing_roles import ROLES, role_cells, run_cell
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.predicate import Predicate
-from lifelore.perception.topology.functional_similarity import overlap
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
+from lifelore.domains.tabletop.pose import about
+from lifelore.domains.tabletop.shapes import Shape, box, cross, cylinder, paddle, prism
+from lifelore.experiments.chapter2.arranged_scenes import Placement, settled, turned
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.skeleton_reading import NEAR, perceived, reading
+from lifelore.perception.scene import Scene
+from lifelore.perception.topology.functional_similarity import role, shape_distribution
 
-FULL = {"scenes": 20}
-QUICK = {"scenes": 1}
-BAGS = ("topology", "near", "predicates")
-METHODS = {
-    "topology": "topology of networks",
-    "near": "the same of all near pairs",
-    "predicates": "predicates alone",
-    "shape": "shape (D2)",
-    "chance": "chance",
+LOT = 10
+Draw = Callable[[np.random.Generator], Shape]
+
+
+def _bar(rng: np.random.Generator) -> Shape:
+    return box(*rng.uniform((0.12, 0.06, 0.03), (0.18, 0.09, 0.05)))
+
+
+def _cross(rng: np.random.Generator) -> Shape:
+    return cross(*rng.uniform((0.12, 0.05, 0.03), (0.16, 0.08, 0.05)))
+
+
+def _paddle(rng: np.random.Generator) -> Shape:
+    broad = rng.uniform(0.07, 0.1)
+    return paddle(rng.uniform(0.12, 0.18), broad, 0.7 * broad, rng.uniform(0.03, 0.05))
+
+
+def _plate(rng: np.random.Generator) -> Shape:
+    return prism(int(rng.integers(5, 9)), rng.uniform(0.06, 0.08), rng.uniform(0.03, 0.05))
+
+
+def _disc(rng: np.random.Generator) -> Shape:
+    return cylinder(rng.uniform(0.055, 0.075), rng.uniform(0.03, 0.05))
+
+
+POOLS: dict[str, tuple[Draw, ...]] = {"first": (_bar, _cross), "second": (_paddle, _plate, _disc)}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A kind of scene: roles of its things in the order of their labels, from 2; how to place; what must be."""
+
+    roles: tuple[str, ...]
+    place: Callable[[np.random.Generator, Draw], Group]
+    true: frozenset[tuple[int, int, str]]
+
+
+def _piece(rng: np.random.Generator, draw: Draw, height: float = 0.0) -> Placed:
+    return stand(draw(rng).centred(), about(2, rng.normal(0, 0.15)), height)
+
+
+def place_tower(n: int) -> Callable[[np.random.Generator, Draw], Group]:
+    """`n` pieces on one another, nearly over one another."""
+
+    def place(rng: np.random.Generator, draw: Draw) -> Group:
+        group: Group = []
+        for _ in range(n):
+            x, y = rng.uniform(-0.015, 0.015, 2)
+            group.append(_piece(rng, draw, top(group) if group else 0.0).moved(float(x), float(y)))
+        return turned(rng, group)
+
+    return place
+
+
+def place_bridge(rng: np.random.Generator, draw: Draw) -> Group:
+    """A piece across two of one height, a finger or two apart."""
+    pillar = draw(rng).centred()
+    pillars = [stand(pillar, about(2, np.pi / 2))]
+    pillars += put_beside(pillars, [stand(pillar, about(2, np.pi / 2))], 0.0, float(rng.uniform(0.025, 0.04)))
+    middle = float(np.mean([thing.pose.position[0] for thing in pillars]))
+    return turned(rng, [*pillars, stand(draw(rng).centred(), height=top(pillars)).moved(middle, 0.0)])
+
+
+def place_leaner(rng: np.random.Generator, draw: Draw) -> Group:
+    """A piece put slantwise over the edge of another, its foot on the table."""
+    support, slope = _piece(rng, draw), rng.uniform(0.4, 0.7)
+    outline, slanted = support.outline(), stand(draw(rng).centred(), about(1, slope))
+    points = slanted.outline()
+    edge = outline[np.abs(outline[:, 1]) < 0.03][:, 0].max() if (np.abs(outline[:, 1]) < 0.03).any() else 0.05
+    foot = edge + outline[:, 2].max() / np.tan(slope)
+    return turned(rng, [support, slanted.moved(float(foot - points[points[:, 2].argmin(), 0] + 0.002), 0.0)])
+
+
+def place_neighbours(n: int) -> Callable[[np.random.Generator, Draw], Group]:
+    """`n` pieces side by side in a row."""
+
+    def place(rng: np.random.Generator, draw: Draw) -> Group:
+        group: Group = [_piece(rng, draw)]
+        for _ in range(n - 1):
+            group += put_beside(group[-1:], [_piece(rng, draw)], 0.0, float(rng.uniform(0.0005, 0.012)))
+        return turned(rng, group)
+
+    return place
+
+
+def _on_table(*labels: int) -> set[tuple[int, int, str]]:
+    return {(label, TABLE, ON) for label in labels}
+
+
+PARTS = {
+    "alone": Part(("alone",), place_tower(1), frozenset(_on_table(2))),
+    "two": Part(("base", "top"), place_tower(2), frozenset({(3, 2, ON), (3, TABLE, NONE)})),
+    "tower": Part(
+        ("base", "middle", "top"), place_tower(3), frozenset({(3, 2, ON), (4, 3, ON), (4, TABLE, NONE)})
+    ),
+    "bridge": Part(
+        ("pillar", "pillar", "span"), place_bridge, frozenset({(4, 2, ON), (4, 3, ON), (4, TABLE, NONE)})
+    ),
+    "lean": Part(("leant on", "leaner"), place_leaner, frozenset({(3, 2, BOTH), *_on_table(2, 3)})),
+    "neighbours": Part(
+        ("neighbour", "neighbour"), place_neighbours(2), frozenset({(2, 3, ADJACENT), *_on_table(2, 3)})
+    ),
+    "row": Part(
+        ("neighbour", "between", "neighbour"),
+        place_neighbours(3),
+        frozenset({(2, 3, ADJACENT), (3, 4, ADJACENT), *_on_table(2, 3, 4)}),
+    ),
 }
+ROLES = tuple(dict.fromkeys(role for part in PARTS.values() for role in part.roles))
 
 
-def _check(settings: Mapping) -> None:
+def cells(settings: Mapping) -> list[dict]:
+    """Scenes in lots, by pool of shapes and kind of scene."""
+    return [
+        {"pool": pool, "part": part, "first": first}
+        for pool in POOLS
+        for part in PARTS
+        for first in range(0, settings["scenes"], LOT)
+    ]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """The things of a lot of scenes, each with its role and all descriptors; a picture from the first lot."""
+    part, draws = PARTS[cell["part"]], POOLS[cell["pool"]]
+    things, examples = [], []
+    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+        name = f"{cell['pool']} {cell['part']}"
+        world = settled(Placement(lambda rng: part.place(rng, _any(draws)), part.true), name, seed, number)
+        scene = perceived(world.cloud)
+        rng = stream(seed, "pairs of points", name, number)
+        for label, what in enumerate(part.roles, start=2):
+            things.append({"scene": f"{name} {number}", "role": what, **descriptors(scene, label, rng)})
+        if number == 0 and cell["pool"] == "second" and cell["part"] in ("tower", "bridge", "lean"):
+            examples.append(scene_row(reading(scene), ", ".join(part.roles)))
+    return {"pool": cell["pool"], "things": things, "examples": examples}
+
+
+def _any(draws: tuple[Draw, ...]) -> Draw:
+    """A draw of any of the kinds, afresh for each thing."""
+    return lambda rng: draws[int(rng.integers(len(draws)))](rng)
+
+
+def descriptors(scene: Scene, label: int, rng: np.random.Generator) -> dict:
+    """How a thing is used: by its network among related pairs (`topology`), among all near ones (`near`), by its
+    predicates alone (`predicates`), each a bag of tokens; and its `shape`, a histogram.
+    """
+    return {
+        "topology": _bag(role(reading(scene, ground=True), label)),
+        "near": _bag(role(reading(scene, NEAR, ground=True), label)),
+        "predicates": _bag(predicate_bag(scene, label)),
+        "shape": [round(float(x), 5) for x in shape_distribution(scene.cloud.of(label), rng)],
+    }
+
+
+def predicate_bag(scene: Scene, label: int) -> Counter:
+    """What a thing is said to be: how often each predicate holds of it, first or second, and with what kind."""
+    bag: Counter = Counter()
+    for said in scene.relations:
+        if label in (said.a, said.b) and said.relation != NONE:
+            other = said.b if said.a == label else said.a
+            place = "either" if said.relation == ADJACENT else "first" if said.a == label else "second"
+            bag[said.relation, place, "table" if other == TABLE else "thing"] += 1
+    return bag
+
+
+def _bag(tokens: Counter) -> dict[str, int]:
+    return {" ".join(map(str, token)): n for token, n in sorted(tokens.items(), key=str)}
+
+
+def check(settings: Mapping) -> None:
     if settings["scenes"] < 1:
         raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Mean average precision by method, differences to peers on the same queries, and by role."""
-    queries = judged_queries(results)
-    scenes = [query["scene"] for query in queries]
-    found = {f"map_{name}": mean_by_cluster([q[name] for q in queries], scenes) for name in METHODS}
-    for peer in ("shape", "chance", "predicates", "near"):
-        found[f"topology_less_{peer}"] = mean_by_cluster([q["topology"] - q[peer] for q in queries], scenes)
-    for role in ROLES:
-        own = [query for query in queries if query["role"] == role]
-        values, clusters = [q["topology"] for q in own], [q["scene"] for q in own]
-        found[f"map_topology_{role.replace(' ', '_')}"] = mean_by_cluster(values, clusters)
-    return found
-
-
-def judged_queries(results: Sequence[Mapping]) -> list[dict]:
-    """For each thing its scene, its role, and by method the average precision among the other pool's things."""
-    things = {pool: [t for r in results if r["pool"] == pool for t in r["things"]] for pool in ("first", "second")}
-    queries = []
-    for pool, others in (("first", things["second"]), ("second", things["first"])):
-        for thing in things[pool]:
-            relevant = [other["role"] == thing["role"] for other in others]
-            scores = {name: _overlaps(thing[name], [other[name] for other in others]) for name in BAGS}
-            scores["shape"] = _likeness(thing["shape"], [other["shape"] for other in others])
-            scores["chance"] = np.zeros(len(others))
-            precision = {name: average_precision(scores[name], relevant) for name in METHODS}
-            queries.append({"scene": thing["scene"], "role": thing["role"], **precision})
-    return queries
-
-
-def _overlaps(bag: Mapping[str, int], others: Sequence[Mapping[str, int]]) -> np.ndarray:
-    own = Counter(bag)
-    return np.array([overlap(own, Counter(other)) for other in others])
-
-
-def _likeness(histogram: Sequence[float], others: Sequence[Sequence[float]]) -> np.ndarray:
-    """As `functional_similarity.shape_similarity`, from histograms known already."""
-    return 1 - np.abs(np.asarray(others) - np.asarray(histogram)).sum(axis=1) / 2
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """By role the mean average precision of each method; and pictures."""
-    queries = judged_queries(results)
-    table = []
-    for role in ROLES:
-        own = [query for query in queries if query["role"] == role]
-        table.append(
-            {"role": role, "queries": len(own), **{m: float(np.mean([q[m] for q in own])) for m in METHODS}}
-        )
-    return table + [example for result in results for example in result["examples"]]
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter5.c5_02_functional_roles.figure_role_precision import draw_role_precision
-
-    table = [row for row in result["rows"] if "role" in row]
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    overall = {name: result["measured"][f"map_{name}"] for name in METHODS}
-    return draw_role_precision(table, overall, METHODS, examples)
-
-
-CLAIM = Claim(
-    id="C5.2",
-    title="Things used alike, found by the topology of their networks",
-    thesis="Proposed, not tested: functional similarity between different objects, to classify objects by the "
-    "way in which they are used in a scene.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C5.2"),
-    cells=role_cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    causes={
-        "found": "contacts that come out as two points, or carry through a thin thing, change a role's topology"
-    },
-    check=_check,
-)

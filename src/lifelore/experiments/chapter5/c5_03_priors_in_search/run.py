@@ -1,67 +1,217 @@
-"""C5.3: action priors guide Monte-Carlo tree search, order depth-first search and start the arms of bandits.
+"""Searches and bandits in noise mazes, with an action prior and without.
 
-All in 23×23 noise mazes with goals that no prior has met. What was known beforehand: the searches know the maze;
-the prior on places knows the optimal policies of 10 other goals of the same maze, the one on percepts those of 10
-goals in 10 other mazes; without a prior nothing else is known. Five forms of each prior are measured; the default
-of tree search is the support, of the others the proportion. Intervals are over mazes, paired.
-Thesis: §3.8, §5.2 (both name these uses as future work, without numbers).
+A cell is one maze with a held-out goal. A prior on *places* comes from other goals of the same maze, one on
+*percepts* from other mazes, a goal in each; neither has met the goal in question. What is compared within a maze
+meets the same starts, worlds and payoffs. A bandit here is one place of the maze: its arms are the moves, and a
+pull says whether the move is on a shortest way, wrongly in some cases. Thesis: §3.8, §5.2.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping
+from itertools import product
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.action.priors.action_prior import FORMS
+from lifelore.action.priors.action_prior import FORMS, ActionPrior
+from lifelore.action.search import bandit
+from lifelore.action.search.depth_first import Found, depth_first, iterative_deepening, preferences
+from lifelore.action.search.tree_search import SearchSettings, guidance, play
 from lifelore.core.errors import InputError
-from lifelore.core.learning.learning_metrics import jumpstart
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter5.c5_03_priors_in_search.guided_choices import (
-    ARMS_FORM,
-    EVEN,
-    FLAT,
-    INDICES,
-    KINDS,
-    MOST,
-    ORDER_FORM,
-    PLAIN,
-    PRUNED,
-    WAYS,
-    cells,
-    run_cell,
-)
-from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.estimates import is_above, is_below, share_of
+from lifelore.core.mdp import Tables
+from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.core.streams import stream
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.grids.noise_maze import noise_maze
 from lifelore.experiments.engine.learning_settings import check_among, check_counts
-from lifelore.experiments.engine.predicate import Predicate
 
-FULL = {
-    "size": 23,
-    "density": [0.5, 0.8],
-    "discount": 0.95,
-    "mazes": 200,
-    "training_tasks": 10,
-    "forms": list(FORMS),
-    "alpha0": 0.1,
-    "escape": 0.02,
-    "tempering": 0.5,
-    "simulations": [50, 200],
-    "depth": 40,
-    "exploration": 1.25,
-    "max_steps": 100,
-    "starts": 10,
-    "prune": 0.01,
-    "pulls": 200,
-    "slip": 0.2,
-    "strength": 4.0,
-    "other_strengths": [1.0, 16.0],
-}
-QUICK = {**FULL, "size": 11, "mazes": 4, "training_tasks": 3, "max_steps": 20, "starts": 3, "pulls": 40}
+PLACE, PERCEPT = KINDS = ("place", "percept")
+TREE, BOTH = GUIDES = ("tree", "tree and rollouts")
+"""What the prior guides; without it, rollouts are uniform."""
+MOST, MEAN = "most tried", "best mean"
+WAYS = ((BOTH, MOST), (TREE, MOST), (BOTH, MEAN))
+"""What the prior guides and which move follows a search: the default, and each choice alone made otherwise."""
+PLAIN = "uniform"
+PRUNED = "pruned"
+UCB1, BETA, GAUSSIAN = INDICES = ("ucb1", "beta", "gaussian")
+FLAT, EVEN = "flat", "even"
+"""Bandits without the prior: nothing known, and as many pseudo-counts spread evenly."""
+ORDER_FORM = ARMS_FORM = "proportion"
+"""Form whose order is pruned and deepened, and whose arms start at other strengths too."""
+BLOCKS = 20
+"""Points of a stored curve of regret."""
+
+
+class Maze(NamedTuple):
+    """One test: tables of the held-out goal, its best actions, the start, more starts, and the priors' rows.
+
+    `probs_of` maps (kind, form) to the (n_states, n_actions) probabilities that the states read.
+    """
+
+    tables: Tables
+    best: NDArray[np.bool_]
+    start: int
+    starts: NDArray[np.int64]
+    probs_of: dict[tuple[str, str], NDArray[np.float64]]
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """A maze each."""
+    return [{"maze": number} for number in range(settings["mazes"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One maze: every search and every bandit in it."""
+    names = (seed, "C5.3", cell["maze"])
+    maze = maze_of(settings, names)
+    return {
+        **cell,
+        "search": list(_searches(settings, maze, names)),
+        "depth_first": list(_depth_first_searches(settings, maze, names)),
+        "bandit": list(_bandits(settings, maze, names)),
+    }
+
+
+def maze_of(settings: Mapping, names: tuple) -> Maze:
+    """The maze of the streams `names`; more training tasks leave it as it is."""
+    random = stream(*names, "test")
+    world, n_tasks = _world(settings, random), settings["training_tasks"]
+    goal, start = (int(state) for state in random.choice(world.n_states, 2, replace=False))
+    others = np.delete(np.arange(world.n_states), goal)
+    starts = random.choice(others, settings["starts"])
+    goals = random.permutation(others)[:n_tasks]
+    tables, best = _solved(world, goal)
+    priors = {
+        PLACE: _prior(settings, [(np.arange(world.n_states), _solved(world, int(g))[1]) for g in goals]),
+        PERCEPT: _prior(settings, [_percepts_elsewhere(settings, (*names, i)) for i in range(n_tasks)]),
+    }
+    contexts = {PLACE: np.arange(world.n_states), PERCEPT: world.percepts}
+    probs_of = {
+        (kind, form): _rows(settings, priors[kind], contexts[kind], form, (*names, kind))
+        for kind, form in product(KINDS, settings["forms"])
+    }
+    return Maze(tables, best, start, starts, probs_of)
+
+
+def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
+    density = float(random.uniform(*settings["density"]))
+    return noise_maze(random, settings["size"], density, discount=settings["discount"])
+
+
+def _solved(world: GridWorld, goal: int) -> tuple[Tables, NDArray[np.bool_]]:
+    tables = world.task(goal).tables()
+    best = best_actions(optimal_q(tables, world.discount))
+    best[goal] = False  # every action ties at the goal: nothing was chosen there
+    return tables, best
+
+
+def _percepts_elsewhere(settings: Mapping, names: tuple) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    random = stream(*names, "training")
+    world = _world(settings, random)
+    return world.percepts, _solved(world, int(random.integers(world.n_states)))[1]
+
+
+def _prior(settings: Mapping, tasks: list) -> ActionPrior:
+    prior = ActionPrior(4, settings["alpha0"])
+    for contexts, best in tasks:
+        prior.update(contexts, best)
+    return prior
+
+
+def _rows(settings: Mapping, prior: ActionPrior, contexts, form: str, names: tuple) -> NDArray[np.float64]:
+    """Probabilities by state; ``dirichlet`` draws θ once for each context."""
+    codes, row = np.unique(contexts, return_inverse=True)
+    random = stream(*names, "dirichlet")
+    beta = settings["tempering"] if form == "tempered" else 1.0
+    return prior.probs(codes, form, generator=random, beta=beta, escape=settings["escape"])[row]
+
+
+def _searches(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
+    """Monte-Carlo tree search: an episode each way."""
+    ways: list[tuple] = [(None, PLAIN, None, move) for move in (MOST, MEAN)]
+    ways += [(*which, *way) for which, way in product(maze.probs_of, WAYS)]
+    for simulations, (kind, form, guides, move) in product(settings["simulations"], ways):
+        probs = None if kind is None else maze.probs_of[kind, form]
+        guide = guidance(maze.tables, probs, rollout="prior" if guides == BOTH else "uniform")
+        numbers = settings["depth"], settings["exploration"], settings["discount"]
+        how = SearchSettings(simulations, *numbers, by_mean=move == MEAN)
+        randoms = stream(*names, "world"), stream(*names, "search")
+        played = play(maze.tables, guide, maze.start, how, settings["max_steps"], *randoms)
+        about = {"kind": kind, "form": form, "guides": guides, "move": move, "simulations": simulations}
+        yield {**about, "reached": played.reached, "steps": played.steps, "collisions": played.collisions}
+
+
+def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
+    """Depth-first search in each order, pruned and deepened in one; means over the starts."""
+    flat = np.full(maze.best.shape, 1 / maze.best.shape[1])
+
+    def mean(search, probs, prune=0.0):
+        found = []
+        for number, start in enumerate(maze.starts.tolist()):
+            liked = preferences(probs, stream(*names, "order", number), prune)
+            found.append(search(maze.tables, start, liked))
+        return _means(found)
+
+    for search_name, search in (("depth first", depth_first), ("deepening", iterative_deepening)):
+        yield {"search": search_name, "kind": None, "form": PLAIN, **mean(search, flat)}
+        for (kind, form), probs in maze.probs_of.items():
+            if search is depth_first or form == ORDER_FORM:
+                yield {"search": search_name, "kind": kind, "form": form, **mean(search, probs)}
+    for (kind, form), probs in maze.probs_of.items():
+        if form == ORDER_FORM:
+            pruned = mean(depth_first, probs, settings["prune"])
+            yield {"search": PRUNED, "kind": kind, "form": form, **pruned}
+
+
+def _means(found: list[Found]) -> dict:
+    return {
+        "expanded": float(np.mean([f.expanded for f in found])),
+        "reached": float(np.mean([f.reached for f in found])),
+        "moves": float(np.mean([len(f.actions) for f in found])),
+    }
+
+
+def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
+    """Regret from each start of the arms, the mean over the places; its curve where it is drawn."""
+    slip, horizon = settings["slip"], settings["pulls"]
+    means = np.where(maze.best[maze.starts], 1 - slip, slip)
+    random = stream(*names, "payoffs")
+    shape = (len(means), horizon, means.shape[1])
+    yes_no = (random.random(shape) < means[:, None]).astype(float)
+    noise = float(np.sqrt(slip * (1 - slip)))  # as much as a payoff of yes or no has
+    normal = means[:, None] + noise * random.standard_normal(shape)
+    index_of = {UCB1: bandit.ucb1, BETA: bandit.beta_thompson, GAUSSIAN: bandit.gaussian_thompson(noise)}
+    begun = list(_arms(settings, maze))
+    every = bandit.Arms(*(np.concatenate(part) for part in zip(*(arms for _, arms in begun), strict=True)))
+    at = np.unique(np.linspace(0, horizon - 1, BLOCKS).astype(int))
+    for name, index in index_of.items():
+        payoffs = np.tile(normal if name == GAUSSIAN else yes_no, (len(begun), 1, 1))
+        pulled = bandit.play(index, every, payoffs, stream(*names, "pulls", name))
+        lost = bandit.regret(pulled, np.tile(means, (len(begun), 1))).reshape(len(begun), len(means), horizon)
+        for (about, _), curve in zip(begun, lost.mean(axis=1), strict=True):
+            found = {"index": name, **about, "regret": float(curve[-1])}
+            drawn = about["form"] in (FLAT, EVEN, ARMS_FORM) and about["strength"] in (0.0, settings["strength"])
+            yield {**found, "curve": np.round(curve[at], 4).tolist()} if drawn else found
+
+
+def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
+    """What is known of the moves at each place before the first pull."""
+    shape = (len(maze.starts), maze.best.shape[1])
+    flat = np.full(shape, 1 / shape[1])
+    strength = settings["strength"]
+    yield {"kind": None, "form": FLAT, "strength": 0.0}, bandit.flat_arms(*shape)
+    yield {"kind": None, "form": EVEN, "strength": strength}, bandit.prior_arms(flat, strength)
+    for (kind, form), probs in maze.probs_of.items():
+        other = [s for s in settings["other_strengths"] if form == ARMS_FORM]
+        for worth in (strength, *other):
+            about = {"kind": kind, "form": form, "strength": worth}
+            yield about, bandit.prior_arms(probs[maze.starts], worth)
+
+
 SEARCH_FORM = "support"
 
-Found = dict[tuple, list[Mapping]]
 
-
-def _check(settings: Mapping) -> None:
+def check(settings: Mapping) -> None:
     check_counts(settings, ("mazes", "training_tasks", "simulations", "depth", "max_steps", "starts", "pulls"))
     check_among(settings, "forms", FORMS)
     missing = [form for form in (SEARCH_FORM, ORDER_FORM) if form not in settings["forms"]]
@@ -76,135 +226,3 @@ def _check(settings: Mapping) -> None:
         raise InputError(f"prune must lie in [0, 1], got {settings['prune']}")
     if min(settings["strength"], *settings["other_strengths"]) <= 0:
         raise InputError("strength and other_strengths must be positive: 0 is the flat start, always measured")
-
-
-def _by_way(results: Sequence[Mapping], use: str, keys: Sequence[str]) -> Found:
-    """What tells the ways of one use apart to their numbers, maze by maze."""
-    found: Found = {}
-    for result in results:
-        for numbers in result[use]:
-            found.setdefault(tuple(numbers[key] for key in keys), []).append(numbers)
-    return found
-
-
-def _of(numbers: Sequence[Mapping], key: str) -> np.ndarray:
-    return np.array([one[key] for one in numbers], float)
-
-
-SEARCH_KEYS = ("kind", "form", "guides", "move", "simulations")
-ORDER_KEYS = ("search", "kind", "form")
-ARMS_KEYS = ("index", "kind", "form", "strength")
-
-
-def _search_gains(results: Sequence[Mapping]) -> dict[tuple, dict[str, Estimate]]:
-    """Each guided way: the share of goals reached, and how much more that is than without the prior."""
-    found, gains = _by_way(results, "search", SEARCH_KEYS), {}
-    for way, numbers in found.items():
-        reached, plain = (_of(n, "reached") for n in (numbers, found[None, PLAIN, None, *way[3:]]))
-        gains[way] = {"success": mean_estimate(reached)}
-        gains[way] |= {key: mean_estimate(_of(numbers, key)) for key in ("steps", "collisions")}
-        if way[0] is not None:
-            gains[way]["gain"] = jumpstart(reached, plain)
-    return gains
-
-
-def _order_ratios(results: Sequence[Mapping]) -> dict[tuple, dict[str, Estimate]]:
-    """Each order: nodes expanded and moves of the way as ratios to a random order's, and the share found."""
-    found, ratios = _by_way(results, "depth_first", ORDER_KEYS), {}
-    for way, numbers in found.items():
-        plain = found["depth first" if way[0] == PRUNED else way[0], None, PLAIN]
-        ratios[way] = {key: mean_estimate(_of(numbers, key)) for key in ("expanded", "moves", "reached")}
-        if way[1] is not None:
-            ratios[way]["ratio"] = ratio_estimate(_of(numbers, "expanded"), _of(plain, "expanded"))
-            ratios[way]["moves_ratio"] = ratio_estimate(_of(numbers, "moves"), _of(plain, "moves"))
-    return ratios
-
-
-def _arms_ratios(settings: Mapping, results: Sequence[Mapping]) -> dict[tuple, dict[str, Estimate]]:
-    """Each start of the arms: regret, and its ratio to that of a flat start and of evenly spread pseudo-counts."""
-    found, ratios = _by_way(results, "bandit", ARMS_KEYS), {}
-    for way, numbers in found.items():
-        lost = _of(numbers, "regret")
-        ratios[way] = {"regret": mean_estimate(lost)}
-        if way[1] is not None:
-            flat, even = found[way[0], None, FLAT, 0.0], found[way[0], None, EVEN, settings["strength"]]
-            ratios[way]["ratio"] = ratio_estimate(lost, _of(flat, "regret"))
-            ratios[way]["even_ratio"] = ratio_estimate(lost, _of(even, "regret"))
-    return ratios
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The defaults of each use, and in how many ways of guiding a tree search the prior helps or harms."""
-    gains, orders = _search_gains(results), _order_ratios(results)
-    arms = _arms_ratios(settings, results)
-    measured = {}
-    for n in settings["simulations"]:
-        measured[f"success_uniform_{n}"] = gains[None, PLAIN, None, MOST, n]["success"]
-    for kind in KINDS:
-        for n in settings["simulations"]:
-            found = gains[kind, SEARCH_FORM, *WAYS[0], n]
-            measured |= {f"success_{kind}_{n}": found["success"], f"gain_{kind}_{n}": found["gain"]}
-        ordered = orders["depth first", kind, ORDER_FORM]
-        measured |= {f"nodes_ratio_{kind}": ordered["ratio"], f"moves_ratio_{kind}": ordered["moves_ratio"]}
-        measured[f"deepening_ratio_{kind}"] = orders["deepening", kind, ORDER_FORM]["ratio"]
-        pruned = orders[PRUNED, kind, ORDER_FORM]
-        measured |= {f"pruned_ratio_{kind}": pruned["ratio"], f"pruned_found_{kind}": pruned["reached"]}
-        for index in INDICES:
-            found = arms[index, kind, ARMS_FORM, settings["strength"]]
-            measured[f"{index}_ratio_{kind}"] = found["ratio"]
-            measured[f"{index}_even_ratio_{kind}"] = found["even_ratio"]
-    every = [found["gain"] for found in gains.values() if "gain" in found]
-    measured["share_of_ways_better"] = share_of([is_above(gain, 0.0) for gain in every])
-    measured["share_of_ways_worse"] = share_of([is_below(gain, 0.0) for gain in every])
-    return measured
-
-
-def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Every way of each use with its numbers, then the curves of regret."""
-    uses = (
-        ("search", SEARCH_KEYS, _search_gains(results)),
-        ("depth first", ORDER_KEYS, _order_ratios(results)),
-        ("bandit", ARMS_KEYS, _arms_ratios(settings, results)),
-    )
-    kept = [
-        {"use": use, **dict(zip(keys, way, strict=True)), **{name: e.to_dict() for name, e in numbers.items()}}
-        for use, keys, found in uses
-        for way, numbers in found.items()
-    ]
-    return kept + _curve_rows(results)
-
-
-def _curve_rows(results: Sequence[Mapping]) -> list[dict]:
-    """Mean regret over the pulls with its standard error over mazes."""
-    found = _by_way(results, "bandit", ARMS_KEYS)
-    kept = []
-    for way, numbers in found.items():
-        if "curve" in numbers[0]:
-            curves = np.array([one["curve"] for one in numbers])
-            error = curves.std(axis=0, ddof=1) / len(curves) ** 0.5 if len(curves) > 1 else 0 * curves[0]
-            curve = {"mean": curves.mean(axis=0).round(4).tolist(), "error": error.round(4).tolist()}
-            kept.append({"use": "curve", **dict(zip(ARMS_KEYS, way, strict=True)), **curve})
-    return kept
-
-
-def _draw(result: Mapping):
-    from lifelore.experiments.chapter5.c5_03_priors_in_search.figure_guided_choices import draw_guided_choices
-
-    return draw_guided_choices(result)
-
-
-CLAIM = Claim(
-    id="C5.3",
-    title="Action priors in tree search, depth-first search and bandits (§3.8, §5.2)",
-    thesis="Action priors could guide Monte-Carlo tree search, give a preference list for depth-first search (and "
-    "prune actions), and propose initial values of bandit arms for faster convergence with less exploration. "
-    "Proposed without numbers.",
-    sizes={"quick": QUICK, "full": FULL},
-    predicate=Predicate.of("C5.3"),
-    cells=cells,
-    run_cell=run_cell,
-    measure=measure,
-    rows=rows,
-    draw=_draw,
-    check=_check,
-)

@@ -1,0 +1,169 @@
+"""Measures and rows of claim C2.13."""
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from lifelore.core.metrics import Estimate
+from lifelore.core.relations import ON, SYMMETRIC
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import LESSON, NODES, SCENE
+from lifelore.experiments.chapter2.pair_validation import (
+    THRESHOLD,
+    Reading,
+    as_scene,
+    as_seen,
+    gap_of,
+    label_of,
+    told_by_neighbours,
+    vote,
+)
+from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
+from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
+from lifelore.perception.peers import PEERS
+from lifelore.perception.relations.relation_classifier import RelationClassifier
+
+CONTACTS, CENTRES, OURS = "contacts", "centres", "lifelore"
+OTHERS = {"closest_points": "closest-point k-NN", "bounding_boxes": "bounding-box rule"}
+Lot = tuple[list[Row], list[Row]]
+"""Lessons and scenes."""
+
+
+def _lot(results: Sequence[Mapping], camera: str) -> Lot:
+    lessons, scenes = (
+        [row for one in results if (one["kind"], one["camera"]) == (kind, camera) for row in one["rows"]]
+        for kind in (LESSON, SCENE)
+    )
+    return lessons, scenes
+
+
+def nodes(row: Row, kernel: str = STANDARD) -> np.ndarray:
+    """Height (metres) and support vectors of each of the block's nodes, none dropped, ``(n, 2)``."""
+    return np.array(row["contacts"][kernel]["a"], float).reshape(-1, 4)[:, 2:]
+
+
+def strong(found: np.ndarray) -> np.ndarray:
+    """Those of at least `THRESHOLD` support vectors."""
+    return found[found[:, 1] >= THRESHOLD]
+
+
+def topmost_alone_remains(found: np.ndarray) -> bool:
+    """Whether one node is strong and no other is higher."""
+    kept = strong(found)
+    return len(kept) == 1 and bool(kept[0, 0] >= found[:, 0].max())
+
+
+def node_measures(scenes: Sequence[Row]) -> dict[str, Estimate]:
+    """Shares of scenes by the block's nodes, with the threshold and without."""
+    found = [nodes(row) for row in scenes]
+    n, left = [len(one) for one in found], [len(strong(one)) for one in found]
+    return {
+        "rank_of_three_nodes": mean_or_unmeasured((k < NODES) + 0.5 * (k == NODES) for k in n),
+        "three_nodes_without_threshold": exact_share(k == NODES for k in n),
+        "several_nodes_without_threshold": exact_share(k > 1 for k in n),
+        "one_node_with_threshold": exact_share(k == 1 for k in left),
+        "one_node_with_threshold_strongest_kept": exact_share(k <= 1 for k in left),
+        "kept_node_is_topmost": exact_share(topmost_alone_remains(one) for one in found),
+        "one_node_of_the_ball": exact_share(len(row["contacts"][STANDARD]["b"]) == 1 for row in scenes),
+    }
+
+
+def node_counts(scenes: Sequence[Row], kernel: str) -> dict[str, list[int]]:
+    """How many scenes have 0, 1, 2, 3, and more nodes, of all contacts and of strong ones."""
+    found = [nodes(row, kernel) for row in scenes]
+    counted = {"every contact": map(len, found), "strong": (len(strong(one)) for one in found)}
+    return {
+        words: np.bincount([min(k, NODES + 1) for k in n], minlength=NODES + 2).tolist()
+        for words, n in counted.items()
+    }
+
+
+def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[JudgedPair]]:
+    """By method, what is said of each scene, its direction included."""
+    displacement = RelationClassifier("displacement", symmetric=SYMMETRIC)
+    models: dict[str, tuple[Any, Any]] = {
+        CONTACTS: (displacement, as_scene),
+        CENTRES: (PEERS["centroid k-NN"](), as_seen("centroid k-NN")),
+        OURS: (RelationClassifier(symmetric=SYMMETRIC), as_scene),
+        **{name: (PEERS[peer](), as_seen(peer)) for name, peer in OTHERS.items()},
+    }
+    near = [row for row in lessons if row["gap"] is not None]
+    truths = [[label_of(row)] for row in near]
+    found = {}
+    for name, (model, look) in models.items():
+        model.fit_pairs([look(row) for row in near], truths)
+        said = [
+            next(iter(model.predict_pairs(look(row))), None) if row["gap"] is not None else None for row in scenes
+        ]
+        found[name] = [
+            JudgedPair(row["scene"], label_of(row), one, gap_of(row))
+            for row, one in zip(scenes, said, strict=True)
+        ]
+    return found
+
+
+def given(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[str]]:
+    """The relation told of each scene with A and B given, by displacements of contact points and of centres."""
+    rows = [row for row in [*lessons, *scenes] if row["gap"] is not None]
+    train = np.arange(len(rows)) < len(rows) - sum(row["gap"] is not None for row in scenes)
+    owner = np.arange(len(rows))
+    by_contacts = told_by_neighbours(rows, Reading(), train)
+    by_centres = vote(np.array([centres_apart(row) for row in rows]), owner, rows, Reading(), train)
+    return {
+        name: [one for one, known in zip(told.united(len(rows)), train, strict=True) if not known]
+        for name, told in ((CONTACTS, by_contacts), (CENTRES, by_centres))
+    }
+
+
+def centres_apart(row: Row) -> np.ndarray:
+    """From B's centre of mass to A's, in the order of the truth, ``(3,)``, metres."""
+    forward, backward = np.array(row["peers"]["centroid k-NN"])
+    return forward if row["a"] == row["pair"][0] else backward
+
+
+def on_measures(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, Estimate]:
+    """Shares of scenes told to be on(ball, block), by method."""
+    judged = inferred(lessons, scenes)
+    found = {f"on_by_{name}": exact_share(pair.exact for pair in pairs) for name, pairs in judged.items()}
+    found["on_by_contacts_less_by_centres"] = difference(judged[CONTACTS], judged[CENTRES])
+    for name, said in given(lessons, scenes).items():
+        found[f"on_by_{name}_in_given_order"] = exact_share(one == ON for one in said)
+    away = 1000 * np.array([centres_apart(row) for row in scenes if row["gap"] is not None]).reshape(-1, 3)
+    found["mm_of_centres_apart_sideways"] = mean_or_unmeasured(np.hypot(away[:, 0], away[:, 1]))
+    found["mm_of_centres_apart_upwards"] = mean_or_unmeasured(away[:, 2])
+    return found
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Nodes and *on* by the first camera; by any other with its name behind."""
+    found = {}
+    for number, camera in enumerate(settings["cameras"]):
+        lessons, scenes = _lot(results, camera)
+        ends = f"_{camera}" if number else ""
+        measured = node_measures(scenes) | on_measures(lessons, scenes)
+        found |= {f"{name}{ends}": one for name, one in measured.items()}
+    return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Scenes by number of nodes, by kernel and camera; what each method says how often; pictures."""
+    found: list[dict] = []
+    for camera in settings["cameras"]:
+        lessons, scenes = _lot(results, camera)
+        for kernel in KERNELS:
+            name = kernel_name(*kernel)
+            found.append({"camera": camera, "kernel": name, "scenes by nodes": node_counts(scenes, name)})
+        for method, pairs in inferred(lessons, scenes).items():
+            said = Counter(_words(pair) for pair in pairs)
+            found.append({"camera": camera, "method": method, "said": dict(sorted(said.items()))})
+        for one in results:
+            if one["camera"] == camera:
+                found += [row | {"example": f"{camera}, {row['example']}"} for row in one["examples"]]
+    return found
+
+
+def _words(pair: JudgedPair) -> str:
+    turned = "" if pair.same_way else ", turned"
+    return f"{pair.relation}{turned}"

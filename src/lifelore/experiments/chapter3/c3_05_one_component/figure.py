@@ -1,0 +1,5 @@
+"""Figure of claim C3.5."""
+
+from lifelore.experiments.chapter3.factory_gains import draw
+
+__all__ = ["draw"]

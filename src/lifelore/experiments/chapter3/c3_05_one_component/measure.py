@@ -1,0 +1,5 @@
+"""Measures and rows of claim C3.5."""
+
+from lifelore.experiments.chapter3.factory_gains import measure, rows
+
+__all__ = ["measure", "rows"]

@@ -1,0 +1,68 @@
+"""Figure of claim C3.10: the share of runs in which each feature is chosen, after each task."""
+
+from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lifelore.experiments.chapter3.feature_bars import FEATURES
+from lifelore.figures.style import BLUE, GREY, PAPER, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def draw(result: Mapping):
+    return draw_feature_shares(result)
+
+
+_COLUMNS = 4
+
+
+def draw_feature_shares(result: Mapping) -> "Figure":
+    """The figure from the result of C3.10."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    series, settings = result["rows"], result["settings"]
+    blues = LinearSegmentedColormap.from_list("share", [PAPER, BLUE])
+    n_rows = -(-len(series) // _COLUMNS)
+    with house_style():
+        figure = new_figure(12.6, 0.7 + 2.5 * n_rows)
+        panels = figure.subplots(n_rows, _COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
+        images = [_draw_series(axes, row, blues) for axes, row in zip(panels, series, strict=False)]
+        for axes in panels[len(series) :]:
+            axes.set_axis_off()
+        for axes in panels[max(0, len(series) - _COLUMNS) : len(series)]:
+            axes.set_xlabel("tasks")
+            axes.tick_params(labelbottom=True)
+        figure.colorbar(images[0], ax=list(panels), shrink=0.5, pad=0.01, label="share of runs")
+        figure.supxlabel(
+            f"{settings['runs']} runs. Learnt: {settings['episodes']} episodes a task, longer: "
+            f"{settings['long_episodes']}. Above the line: N, W, E and S, the features of φ2.",
+            fontsize=8, color=GREY,
+        )  # fmt: skip
+    return figure
+
+
+def _draw_series(axes: "Axes", row: Mapping, colours):
+    shares = np.array([row["shares"][feature] for feature in FEATURES])
+    n_tasks = shares.shape[1]
+    extent = (0.5, n_tasks + 0.5, len(FEATURES) - 0.5, -0.5)
+    image = axes.imshow(
+        shares, cmap=colours, vmin=0, vmax=1, aspect="auto", interpolation="nearest", extent=extent
+    )
+    axes.axhline(3.5, color=GREY, linewidth=1.0)
+    axes.set_yticks(range(len(FEATURES)), FEATURES)
+    axes.tick_params(axis="y", length=0)
+    axes.set_title(_TITLES.get(row["series"]) or str(row["series"]), fontsize=9)
+    return image
+
+
+_TITLES = {
+    "exact": "exact, all states",
+    "learnt": "learnt, states tried",
+    "learnt, promising": "learnt, states that promise a reward",
+    "exact, on the way": "exact, states of an optimal way",
+    "learnt longer": "learnt longer, states tried",
+}

@@ -1,0 +1,49 @@
+"""Decisions of BEAT that are those of policy reuse, and why beliefs are kept in logs."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import EPSILONS
+from lifelore.figures.style import BLUE, INK, LIGHT, ORANGE, VERMILION, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+
+def draw(result: Mapping):
+    return draw_decision_agreement(result, list(EPSILONS))
+
+
+SMALLEST = 745.0
+"""Minus the log of the smallest positive float64."""
+
+
+def draw_decision_agreement(result: Mapping, epsilons: Sequence[str]) -> "Figure":
+    """The figure from the rows of C4.16's result."""
+    rows = result["rows"]
+    with house_style():
+        figure = new_figure(9.2, 2.9)
+        left, middle, right = figure.subplots(1, 3, width_ratios=[1.15, 1, 1])
+        for place, name in enumerate(epsilons):
+            mine = [row for row in rows if row["epsilon"] == name]
+            alike, decisions = (sum(row[key] for row in mine) for key in ("alike", "decisions"))
+            left.barh(place, 100 * alike / decisions, color=BLUE, height=0.6)
+            left.text(
+                50, place, f"{alike:,} of {decisions:,}", ha="center", va="center", color="white", fontsize=8
+            )
+        left.set_yticks(range(len(epsilons)), [f"ε = {name}" for name in epsilons])
+        left.set(xlim=(0, 100), xlabel="decisions alike (%)", title="BEAT and policy reuse")
+        left.invert_yaxis()
+        spread = np.array([x for row in rows for x in row["spread"]])
+        middle.hist(spread, bins=24, color=ORANGE)
+        middle.axvline(SMALLEST, color=INK, linestyle=(0, (4, 2)), linewidth=1.2)
+        middle.set(xlabel="log belief, best less worst (nats)", ylabel="sessions", title="after five episodes")
+        gone = np.array([x for row in rows for x in row["vanished"] if x])
+        if gone.size:
+            right.hist(gone, bins=24, color=VERMILION)
+        right.set(xlabel="step at which every type has 0", ylabel="sessions", title="never normalised")
+        for axes in (middle, right):
+            axes.grid(axis="y", color=LIGHT)
+    return figure
