@@ -12,10 +12,10 @@ from lifelore.experiments.chapter3.c3_01_useful_actions import run as c3_1
 from lifelore.experiments.chapter3.c3_01_useful_actions.measure import measure
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import (
     prior_of,
-    quantile_estimate,
     run_cell,
     uniform_maze,
 )
+from lifelore.experiments.engine.estimates import quantile_estimate
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.1")

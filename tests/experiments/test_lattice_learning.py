@@ -7,8 +7,6 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
 from lifelore.experiments.chapter3 import lattice_learning
 from lifelore.experiments.chapter3.lattice_learning import (
-    block_edges,
-    block_means,
     exact_prior,
     learn_task,
     mean_returns,
@@ -19,6 +17,7 @@ from lifelore.experiments.chapter3.lattice_learning import (
     summary,
 )
 from lifelore.experiments.engine import learning_run
+from lifelore.experiments.engine.curve_blocks import block_edges, block_means
 from lifelore.experiments.engine.registry import claim_of
 
 QUICK = dict(claim_of("C3.2").sizes["quick"])

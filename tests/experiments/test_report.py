@@ -6,17 +6,19 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.experiments.engine.predicate import number_in_words
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.report import read_results, render_report, write_report
+from lifelore.experiments.engine.report import read_results, render_pages, write_pages
 from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "results"
-PAGE = ROOT / "docs" / "reproduction.md"
+PAGES = ROOT / "docs" / "reproduction"
 
 
-def test_page_agrees_with_results():
-    assert PAGE.read_text(encoding="utf-8") == render_report(RESULTS), "run: make docs"
+def test_pages_agree_with_results():
+    committed = {path.name: path.read_text(encoding="utf-8") for path in PAGES.glob("*.md")}
+    assert committed == render_pages(RESULTS), "run: make docs"
 
 
 @pytest.mark.parametrize("result", read_results(RESULTS), ids=lambda r: r["claim"])
@@ -36,18 +38,23 @@ def test_every_claim_that_is_built_has_a_committed_result():
     assert [result["claim"] for result in read_results(RESULTS)] == list(built_ids())
 
 
-def test_page_of_a_quick_run(tmp_path):
+def test_pages_of_a_quick_run(tmp_path):
     reproduce(["C3.1"], "quick", {"mazes": 20}, out=tmp_path)
-    text = write_report(tmp_path, tmp_path / "page.md").read_text(encoding="utf-8")
+    folder = write_pages(tmp_path, tmp_path / "pages")
+    assert {path.name for path in folder.iterdir()} == {"index.md", "chapter3.md"}
     result = json.loads((tmp_path / "C3.1" / "result.json").read_text(encoding="utf-8"))
-    assert f"**Verdict: {result['verdict']}.** {result['why']}" in text
-    assert "| [C3.1](#c3-1) | Fig 3.1 |" in text
-    assert "54 of 55 claims have no result yet" in text
-    assert all(f"| `{name}` |" in text for name in result["measured"])
+    index, page = ((folder / name).read_text(encoding="utf-8") for name in ("index.md", "chapter3.md"))
+    assert "| [C3.1](chapter3.md#c3-1) | Fig 3.1 |" in index
+    assert f"**{result['verdict']} (quick run)** |" in index
+    assert "54 of 55 claims have no result yet" in index
+    assert f"**{result['verdict'].capitalize()}.** Fig 3.1" in page
+    for condition in claim_of("C3.1").predicate.conditions:
+        assert f"| {condition.words} | " in page
+        assert number_in_words(result["measured"][condition.measure]) in page
 
 
 def test_a_damaged_result_is_one_line(tmp_path):
     (tmp_path / "C3.1").mkdir()
     (tmp_path / "C3.1" / "result.json").write_text("{", encoding="utf-8")
     with pytest.raises(InputError, match=r"is not JSON; run `lifelore reproduce C3\.1 --full` again"):
-        render_report(tmp_path)
+        render_pages(tmp_path)

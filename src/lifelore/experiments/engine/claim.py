@@ -128,6 +128,10 @@ class Claim:
             timed=data.get("timed", False),
         )
 
+    def read_measures(self) -> set[str]:
+        """Names of the measures that conditions, figures or pages read."""
+        return {condition.measure for condition in self.predicate.conditions} | set(self.named)
+
     def settings(self, mode: str, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """The settings of a mode, with some of them overridden.
 

@@ -1,6 +1,6 @@
-"""The page of reproductions: every result under `results/`, rendered into ``docs/reproduction.md``.
+"""Pages of reproductions: every result under `results/`, rendered into `docs/reproduction/`, one page a chapter.
 
-Run ``python -m lifelore.experiments.engine.report`` after a full run; a test fails where page and results differ.
+Run ``python -m lifelore.experiments.engine.report`` after a full run; a test fails where pages and results differ.
 """
 
 import json
@@ -9,42 +9,62 @@ from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.experiments.engine.cell_store import write_atomically
+from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.ledger import entries
-from lifelore.experiments.engine.predicate import VERDICTS, number_in_words, short
+from lifelore.experiments.engine.predicate import VERDICTS, Condition, number_in_words, short
 from lifelore.experiments.engine.registry import claim_of
 
-HEAD = """# Reproduction
+INTRODUCTION = """# Reproduction
 
-What the thesis reports, what we measure, and whether it holds. This page is generated from `results/` by
-`python -m lifelore.experiments.engine.report`; do not edit it by hand. Each verdict is decided by conditions
-filed as data under `src/lifelore/experiments/engine/predicates/` before the first full run. Intervals are 95 %;
-ratios and differences are paired.
+What the thesis reports, what we measure, and whether it holds. These pages are generated from `results/` by
+`make docs`; do not edit them by hand. The conditions of each verdict were filed before the first full run and
+stand in the `claim.toml` of the claim's folder. Intervals are 95 %; ratios and differences are paired.
 """
+CHAPTERS = {
+    "2": "Chapter 2: perception",
+    "3": "Chapter 3: action",
+    "4": "Chapter 4: interaction",
+    "5": "Chapter 5: the abstractions together",
+}
+OPS = {">": "above", ">=": "at least", "<": "below", "<=": "at most", "between": "between"}
+ANSWERS = {True: "yes", False: "**no**", None: "not measured"}
 
 
-def render_report(results: str | Path = "results", figures: str = "../results") -> str:
-    """The page as Markdown.
+def render_pages(results: str | Path = "results", figures: str = "../../results") -> dict[str, str]:
+    """The pages as Markdown, by file name.
 
     Parameters
     ----------
     results : path
         Folder of ``<ID>/result.json``.
     figures : str
-        The same folder as the page's links see it.
+        The same folder as the pages' links see it.
     """
     found = read_results(results)
-    return "\n".join([HEAD, _overview(found), *(_section(result, figures) for result in found)])
+    pages = {"index.md": _index(found)}
+    for number, title in CHAPTERS.items():
+        sections = [_section(result, figures) for result in found if _chapter(result["claim"]) == number]
+        if sections:
+            pages[f"chapter{number}.md"] = "\n".join([f"# {title}", "", *sections])
+    return pages
 
 
-def write_report(results: str | Path = "results", page: str | Path = "docs/reproduction.md") -> Path:
-    """Render the page and write it; returns its path."""
-    page = Path(page)
-    write_atomically(page, render_report(results))
-    return page
+def write_pages(results: str | Path = "results", folder: str | Path = "docs/reproduction") -> Path:
+    """Render the pages and write them; returns their folder."""
+    folder = Path(folder)
+    for name, text in render_pages(results).items():
+        write_atomically(folder / name, text)
+    return folder
 
 
 def read_results(results: str | Path) -> list[dict]:
-    """All results of a folder, in the ledger's order."""
+    """All results of a folder, in the ledger's order.
+
+    Raises
+    ------
+    StoreError, InputError
+        A result cannot be read, or is not JSON.
+    """
     found = []
     for entry in entries():
         path = Path(results) / entry.id / "result.json"
@@ -58,15 +78,32 @@ def read_results(results: str | Path) -> list[dict]:
     return found
 
 
-def _overview(found: list[dict]) -> str:
-    lines = ["| claim | of | verdict | mode |", "|---|---|---|---|"]
+def _chapter(claim_id: str) -> str:
+    return claim_id[1:].partition(".")[0]
+
+
+def _index(found: list[dict]) -> str:
     where = {entry.id: entry.where for entry in entries()}
-    for result in found:
-        link = f"[{result['claim']}](#{_anchor(result['claim'])})"
-        lines.append(f"| {link} | {where[result['claim']]} | **{result['verdict']}** | {result['mode']} |")
+    lines = [INTRODUCTION]
+    for number, title in CHAPTERS.items():
+        results = [result for result in found if _chapter(result["claim"]) == number]
+        if not results:
+            continue
+        lines += [
+            f"## [{title}](chapter{number}.md)",
+            "",
+            "| claim | thesis | what | verdict |",
+            "|---|---|---|---|",
+        ]
+        for result in results:
+            claim_id = result["claim"]
+            link = f"[{claim_id}](chapter{number}.md#{_anchor(claim_id)})"
+            verdict = result["verdict"] if result["mode"] == "full" else f"{result['verdict']} (quick run)"
+            lines.append(f"| {link} | {where[claim_id]} | {claim_of(claim_id).title} | **{verdict}** |")
+        lines.append("")
     counts = [f"{sum(r['verdict'] == v for r in found)} {v}" for v in VERDICTS]
     left = len(entries()) - len(found)
-    lines += ["", f"{', '.join(counts)}; {left} of {len(entries())} claims have no result yet.", ""]
+    lines += [f"{', '.join(counts)}; {left} of {len(entries())} claims have no result yet.", ""]
     return "\n".join(lines)
 
 
@@ -75,33 +112,54 @@ def _anchor(claim_id: str) -> str:
 
 
 def _section(result: Mapping, figures: str) -> str:
-    claim_id = result["claim"]
+    claim = claim_of(result["claim"])
     lines = [
-        f'<a id="{_anchor(claim_id)}"></a>',
+        f'<a id="{_anchor(claim.id)}"></a>',
         "",
-        f"## {claim_id} — {claim_of(claim_id).title}",
+        f"## {claim.id} — {claim.title}",
+        "",
+        f"**{result['verdict'].capitalize()}.** {claim.where}",
         "",
         f"**Thesis.** {result['thesis']}",
         "",
-        f"**Verdict: {result['verdict']}.** {result['why']}",
+        f"**Run.** {claim.ran}",
         "",
-        f"![{claim_of(claim_id).title}]({figures}/{claim_id}/figure.png)",
-        "",
-        "| ours | value | median | n |",
+        "| condition | asked | measured [95 %] | met |",
         "|---|---|---|---|",
-        *(_measured_row(name, number) for name, number in result["measured"].items()),
+        *(_condition_row(c, result["measured"]) for c in claim.predicate.conditions),
+        "",
+        f"![{claim.title}]({figures}/{claim.id}/figure.png)",
+        "",
+        *_causes(claim, result["measured"]),
+        "<details><summary>Settings</summary>",
         "",
         f"Mode {result['mode']}, seed {result['seed']}, {short(result['seconds'])} s of computing. "
-        f"Settings: {_settings_in_words(result['settings'])}.",
+        f"{_settings_in_words(result['settings'])}.",
+        "",
+        "</details>",
         "",
     ]
     return "\n".join(lines)
 
 
-def _measured_row(name: str, number: Mapping) -> str:
-    value = number_in_words(number).rpartition(", n ")[0]
-    median = "–" if number["median"] is None else short(number["median"])
-    return f"| `{name}` | {value} | {median} | {number['n']} |"
+def _condition_row(condition: Condition, measured: Mapping) -> str:
+    number = measured.get(condition.measure)
+    value = number_in_words(number) if number else "–"
+    return f"| {condition.words} | {_asked(condition)} | {value} | {ANSWERS[condition.met(measured)]} |"
+
+
+def _asked(condition: Condition) -> str:
+    bounds = condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
+    words = f"{OPS[condition.op]} {' and '.join(short(bound) for bound in bounds)}"
+    return f"interval {words}" if condition.part == "interval" else words
+
+
+def _causes(claim: Claim, measured: Mapping) -> list[str]:
+    """Why conditions are not met, a line each, where a cause is known."""
+    failed = [c for c in claim.predicate.conditions if c.met(measured) is False and c.name in claim.causes]
+    if not failed:
+        return []
+    return ["**Why not.**", "", *(f"- {c.name}: {claim.causes[c.name]}." for c in failed), ""]
 
 
 def _settings_in_words(settings: Mapping) -> str:
@@ -109,4 +167,4 @@ def _settings_in_words(settings: Mapping) -> str:
 
 
 if __name__ == "__main__":
-    print(write_report())
+    print(write_pages())

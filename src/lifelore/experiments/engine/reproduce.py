@@ -136,17 +136,35 @@ def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: 
 
 
 def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Mapping]) -> dict:
-    """The result of a run from its finished cells, plain data."""
+    """The result of a run from its finished cells, plain data.
+
+    Measures that a condition, a figure or a page reads stand under ``measured``; the others are the last row,
+    ``{"other_measures": …}``.
+    """
     results = [found["result"] for found in kept]
-    estimates = claim.measure(settings, results)
-    measured = {name: rounded(estimate.to_dict()) for name, estimate in estimates.items()}
+    estimates = {name: rounded(estimate.to_dict()) for name, estimate in claim.measure(settings, results).items()}
+    measured, others = split_measures(claim, estimates)
+    rows = rounded(claim.rows(settings, results)) + others
     why = claim.predicate.why(measured, claim.causes)
     seconds = round(sum(found["seconds"] for found in kept), 1)
     values = (
         claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why,
-        settings, seed, versions(), seconds, rounded(claim.rows(settings, results)),
+        settings, seed, versions(), seconds, rows,
     )  # fmt: skip
     return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
+
+
+def split_measures(claim: Claim, estimates: Mapping[str, Mapping]) -> tuple[dict[str, Any], list[dict]]:
+    """The measures that are read, and a row of the others (no row where there are none)."""
+    read = claim.read_measures()
+    others = {name: number for name, number in estimates.items() if name not in read}
+    rows = [{"other_measures": others}] if others else []
+    return {name: number for name, number in estimates.items() if name in read}, rows
+
+
+def own_rows(result: Mapping) -> list[dict]:
+    """The rows of a result without that of the other measures."""
+    return [row for row in result["rows"] if "other_measures" not in row]
 
 
 def rounded(data: Any) -> Any:
@@ -173,7 +191,7 @@ def _write(claim: Claim, result: dict, folder: Path) -> None:
     if len(text.encode()) > MAX_BYTES:
         raise InputError(f"{claim.id}: result.json may hold {MAX_BYTES} bytes, got {len(text)}; compact its rows")
     write_atomically(folder / "result.json", text)
-    save_figure(claim.draw(result), folder / "figure.png")
+    save_figure(claim.draw({**result, "rows": own_rows(result)}), folder / "figure.png")
 
 
 def _one_row_a_line(result: dict) -> str:
