@@ -1,6 +1,6 @@
 """Curves with bands: a line for the mean of each series and a shaded interval around it."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -53,7 +53,7 @@ def draw_curves(
         look = {"color": GREY, **(looks or {}).get(label, {})}
         band = _band(curve, mean)
         if band is not None:
-            axes.fill_between(places, *band, color=look["color"], alpha=0.18, linewidth=0)
+            axes.fill_between(places, band[0], band[1], color=look["color"], alpha=0.18, linewidth=0)
         axes.plot(places, mean, label=label, **look)
     if level is not None:
         axes.axhline(level[0], color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label=level[1], zorder=1)
@@ -66,7 +66,7 @@ def draw_curves(
         axes.legend()
 
 
-def _band(curve: Mapping[str, Any], mean: np.ndarray) -> Sequence[np.ndarray] | None:
+def _band(curve: Mapping[str, Any], mean: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
     if curve.get("low") is not None:
         return np.asarray(curve["low"], float), np.asarray(curve["high"], float)
     half = curve.get("deviation", curve.get("error"))

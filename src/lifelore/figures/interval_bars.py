@@ -90,8 +90,8 @@ def _has(axes: "Axes", label: str) -> bool:
 
 def _write(axes: "Axes", text: str, end: float, at: float, horizontal: bool) -> None:
     place, offset = ((end, at), (4, 0)) if horizontal else ((at, end), (0, 3))
-    aligned = {"va": "center"} if horizontal else {"ha": "center"}
-    axes.annotate(text, place, offset, textcoords="offset points", fontsize=7.5, **aligned)
+    across, along = ("left", "center") if horizontal else ("center", "bottom")
+    axes.annotate(text, place, offset, textcoords="offset points", fontsize=7.5, ha=across, va=along)
 
 
 def _ticks(axes: "Axes", names: Sequence[str], horizontal: bool) -> None:

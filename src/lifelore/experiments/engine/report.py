@@ -1,10 +1,12 @@
 """Pages of reproductions: every result under `results/`, rendered into `docs/reproduction/`, one page a chapter.
 
 Run ``python -m lifelore.experiments.engine.report`` after a full run; a test fails where pages and results differ.
+Ids of claims as arguments (``… report C2.5 C3.1``) draw their figures again from the stored results.
 """
 
 import json
-from collections.abc import Mapping
+import sys
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
@@ -13,6 +15,7 @@ from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.predicate import VERDICTS, Condition, number_in_words, short
 from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.reproduce import own_rows
 
 INTRODUCTION = """# Reproduction
 
@@ -166,5 +169,16 @@ def _settings_in_words(settings: Mapping) -> str:
     return ", ".join(f"`{key}` {json.dumps(value, ensure_ascii=False)}" for key, value in settings.items())
 
 
+def redraw_figures(results: str | Path, ids: Sequence[str]) -> None:
+    """Draw the figures of stored results again; nothing is run."""
+    from lifelore.figures.style import save_figure
+
+    for claim_id in ids:
+        folder = Path(results) / claim_id
+        result = json.loads((folder / "result.json").read_text(encoding="utf-8"))
+        save_figure(claim_of(claim_id).draw({**result, "rows": own_rows(result)}), folder / "figure.png")
+
+
 if __name__ == "__main__":
+    redraw_figures("results", sys.argv[1:])
     print(write_pages())
