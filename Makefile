@@ -2,6 +2,8 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+# Tests marked as one group share a worker: the tests of one claim share its one quick run.
+PARALLEL := -n auto --dist loadgroup
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 # Real scenes and maps lie beside the checkout where they are at hand; tests read this variable alone.
@@ -16,7 +18,7 @@ DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 # So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
 CUDA := .venv-cuda
 
-.PHONY: help setup setup-test demo test test-deep test-cuda check format bench soak docs reproduce clean
+.PHONY: help setup setup-test demo test test-fast test-deep test-cuda check format bench soak docs reproduce clean
 
 help: ## Name every target
 	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
@@ -38,8 +40,11 @@ $(BIN)/.test: $(BIN)/.core
 demo: setup ## The main job on embedded defaults; pictures in out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
 
-test: setup-test ## The tests
-	$(BIN)/python -m pytest -m "not soak"
+test: setup-test ## The tests, on all cores
+	$(BIN)/python -m pytest $(PARALLEL) -m "not soak"
+
+test-fast: setup-test ## The tests that take less than a second each
+	$(BIN)/python -m pytest $(PARALLEL) -m "not soak and not slow"
 
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
