@@ -16,10 +16,13 @@ DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 # So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
 CUDA := .venv-cuda
 
-.PHONY: help setup setup-test demo test test-deep test-cuda check format bench soak docs reproduce clean
+PYTHON_FILES := src tests examples docs/conf.py
+
+.PHONY: help setup setup-test demo test test-deep test-cuda coverage check format bench soak docs reproduction-page \
+	wheel-test reproduce clean
 
 help: ## Name every target
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 20
 
 setup: $(BIN)/.core ## The environment with the core, in .venv
 
@@ -62,14 +65,14 @@ $(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
 	touch $@
 
 check: setup-test ## Formatting, lint, types, direction of imports
-	$(BIN)/ruff format --check src tests
-	$(BIN)/ruff check src tests
+	$(BIN)/ruff format --check $(PYTHON_FILES)
+	$(BIN)/ruff check $(PYTHON_FILES)
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
 format: setup-test ## Mend formatting and what lint can mend
-	$(BIN)/ruff format src tests
-	$(BIN)/ruff check --fix src tests
+	$(BIN)/ruff format $(PYTHON_FILES)
+	$(BIN)/ruff check --fix $(PYTHON_FILES)
 
 bench: setup-test ## Speed beside peers, side by side in one process
 	$(BIN)/lifelore bench kernels
@@ -77,8 +80,16 @@ bench: setup-test ## Speed beside peers, side by side in one process
 soak: setup-test ## Long runs: 200 kills, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
-docs: setup-test ## docs/reproduction.md from the committed results
+reproduction-page: setup-test ## docs/reproduction.md from the committed results
 	$(BIN)/python -m lifelore.experiments.engine.report
+
+docs: reproduction-page $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
+	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs
+	@echo "out/docs/index.html"
+
+$(BIN)/.docs: $(BIN)/.test
+	$(PIP) --editable '.[docs]'
+	touch $@
 
 reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full
