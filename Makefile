@@ -1,5 +1,6 @@
 # Everything a person or a machine does with a checkout. `make help` names it.
 PYTHON ?= python3
+PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
@@ -43,6 +44,9 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 
 test: setup-test ## The tests
 	$(BIN)/python -m pytest -m "not soak"
+
+coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
+	$(BIN)/python -m pytest -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
 
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
@@ -90,6 +94,9 @@ docs: reproduction-page $(BIN)/.docs ## The site in out/docs; a name that nothin
 $(BIN)/.docs: $(BIN)/.test
 	$(PIP) --editable '.[docs]'
 	touch $@
+
+wheel-test: setup-test ## The wheel in a clean environment outside the checkout; PYTHONS="python3.12 python3.13"
+	BUILDER=$(abspath $(BIN)/python) .ci/wheel-test $(PYTHONS)
 
 reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full

@@ -12,6 +12,8 @@ import pytest
 from lifelore import make_world
 from lifelore.action.priors.prior_file import load_prior
 from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.domains.tabletop.scene_folder import save_cloud
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
@@ -37,6 +39,14 @@ def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     assert played.startswith("Played(steps=")
     assert f"{ast.literal_eval(report)['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
+
+
+def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
+    (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "start" / "robots.md").read_text("utf-8"), flags=re.S)
+    save_cloud(tmp_path / "scene.pcd", draw_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
+    said = run([sys.executable, "-W", "error", "-c", code], tmp_path)
+    assert "Relation(a=2, b=1, relation='on'" in said
+    assert "relation='in_front_of'" in said
 
 
 def test_the_moves_that_pass_matter(tmp_path):
