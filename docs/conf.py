@@ -220,7 +220,8 @@ def resolve_errors(app: Sphinx, env: BuildEnvironment, node: pending_xref, conte
 
 
 def name_anchors(app: Sphinx, page: str, source: list[str]) -> None:
-    """Turn the HTML anchors that pages on a code host need into targets that Sphinx knows."""
+    """Turn what pages on a code host need into what Sphinx knows: HTML anchors, and the page of contributing."""
+    source[0] = source[0].replace("](../CONTRIBUTING.md", "](contributing.md")
     source[0] = re.sub(r'^<a id="([\w-]+)"></a>$', r"(\1)=", source[0], flags=re.M)
 
 

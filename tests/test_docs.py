@@ -5,6 +5,8 @@ import json
 import re
 import subprocess
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -31,6 +33,35 @@ def run(command: list[str], folder: Path, keys: str = "") -> str:
 
 def lifelore(arguments: list[str], folder: Path, keys: str = "") -> str:
     return run([sys.executable, "-m", "lifelore.app.command_line", *arguments[1:]], folder, keys)
+
+
+PAGES = [
+    DOCS.parent / "README.md",
+    *sorted(path for path in DOCS.rglob("*.md") if "reproduction" not in str(path)),
+]
+ROOMS = sorted(folder.name for folder in (DOCS.parent / "src" / "lifelore").iterdir() if folder.is_dir())
+
+
+def exists(dotted: str) -> bool:
+    """Whether a dotted name below `lifelore` is a module, or an attribute of a module."""
+    parent, _, last = f"lifelore.{dotted}".rpartition(".")
+    try:
+        module = find_spec(parent)
+    except ModuleNotFoundError:
+        return False
+    if module and module.submodule_search_locations and find_spec(f"{parent}.{last}"):
+        return True
+    return module is not None and hasattr(import_module(parent), last)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_modules_and_files_named_on_a_page_exist(page):
+    text = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.S | re.M)
+    rooms = "|".join(room for room in ROOMS if not room.startswith("_"))
+    dotted = re.findall(rf"`(?:lifelore\.)?((?:{rooms})(?:\.\w+)+)(?:\([^`]*\))?`", text)
+    assert not [name for name in dotted if not exists(name)]
+    files = re.findall(rf"`((?:{rooms})/[\w/.]+)`", text)
+    assert not [name for name in files if not (DOCS.parent / "src" / "lifelore" / name).exists()]
 
 
 def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
