@@ -1,5 +1,6 @@
 # Everything a person or a machine does with a checkout. `make help` names it.
 PYTHON ?= python3
+PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
 # Tests marked as one group share a worker: the tests of one claim share its one quick run.
@@ -18,10 +19,13 @@ DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 # So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
 CUDA := .venv-cuda
 
-.PHONY: help setup setup-test demo test test-fast test-deep test-cuda check format bench soak docs reproduce clean
+PYTHON_FILES := src tests examples docs/conf.py
+
+.PHONY: help setup setup-test demo test test-fast test-deep test-cuda coverage check format bench soak docs reproduction-page \
+	wheel-test reproduce clean
 
 help: ## Name every target
-	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 14
+	@grep -hE '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/:.*## /\t/' | expand -t 20
 
 setup: $(BIN)/.core ## The environment with the core, in .venv
 
@@ -46,6 +50,9 @@ test: setup-test ## The tests, on all cores
 test-fast: setup-test ## The tests that take less than a second each
 	$(BIN)/python -m pytest $(PARALLEL) -m "not soak and not slow"
 
+coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
+	$(BIN)/python -m pytest $(PARALLEL) -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
+
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
 	$(DEEP)/bin/python -m pytest -m deep $(DEEP_TESTS)
@@ -67,14 +74,14 @@ $(CUDA)/.ready: pyproject.toml constraints.txt constraints-cuda.txt
 	touch $@
 
 check: setup-test ## Formatting, lint, types, direction of imports
-	$(BIN)/ruff format --check src tests
-	$(BIN)/ruff check src tests
+	$(BIN)/ruff format --check $(PYTHON_FILES)
+	$(BIN)/ruff check $(PYTHON_FILES)
 	$(BIN)/pyright
 	$(BIN)/lint-imports
 
 format: setup-test ## Mend formatting and what lint can mend
-	$(BIN)/ruff format src tests
-	$(BIN)/ruff check --fix src tests
+	$(BIN)/ruff format $(PYTHON_FILES)
+	$(BIN)/ruff check --fix $(PYTHON_FILES)
 
 bench: setup-test ## Speed beside peers, side by side in one process
 	$(BIN)/lifelore bench kernels
@@ -82,8 +89,19 @@ bench: setup-test ## Speed beside peers, side by side in one process
 soak: setup-test ## Long runs: 200 kills, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
-docs: setup-test ## docs/reproduction.md from the committed results
+reproduction-page: setup-test ## docs/reproduction.md from the committed results
 	$(BIN)/python -m lifelore.experiments.engine.report
+
+docs: reproduction-page $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
+	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs
+	@echo "out/docs/index.html"
+
+$(BIN)/.docs: $(BIN)/.test
+	$(PIP) --editable '.[docs]'
+	touch $@
+
+wheel-test: setup-test ## The wheel in a clean environment outside the checkout; PYTHONS="python3.12 python3.13"
+	BUILDER=$(abspath $(BIN)/python) .ci/wheel-test $(PYTHONS)
 
 reproduce: setup ## Every built claim at full size
 	$(BIN)/lifelore reproduce --full

@@ -5,6 +5,8 @@ import json
 import re
 import subprocess
 import sys
+from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,8 @@ import pytest
 from lifelore import make_world
 from lifelore.action.priors.prior_file import load_prior
 from lifelore.core.planning.planning import best_actions, optimal_q
+from lifelore.domains.tabletop.scene_folder import save_cloud
+from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
@@ -31,12 +35,49 @@ def lifelore(arguments: list[str], folder: Path, keys: str = "") -> str:
     return run([sys.executable, "-m", "lifelore.app.command_line", *arguments[1:]], folder, keys)
 
 
+PAGES = [
+    DOCS.parent / "README.md",
+    *sorted(path for path in DOCS.rglob("*.md") if "reproduction" not in str(path)),
+]
+ROOMS = sorted(folder.name for folder in (DOCS.parent / "src" / "lifelore").iterdir() if folder.is_dir())
+
+
+def exists(dotted: str) -> bool:
+    """Whether a dotted name below `lifelore` is a module, or an attribute of a module."""
+    parent, _, last = f"lifelore.{dotted}".rpartition(".")
+    try:
+        module = find_spec(parent)
+    except ModuleNotFoundError:
+        return False
+    if module and module.submodule_search_locations and find_spec(f"{parent}.{last}"):
+        return True
+    return module is not None and hasattr(import_module(parent), last)
+
+
+@pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
+def test_modules_and_files_named_on_a_page_exist(page):
+    text = re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.S | re.M)
+    rooms = "|".join(room for room in ROOMS if not room.startswith("_"))
+    dotted = re.findall(rf"`(?:lifelore\.)?((?:{rooms})(?:\.\w+)+)(?:\([^`]*\))?`", text)
+    assert not [name for name in dotted if not exists(name)]
+    files = re.findall(rf"`((?:{rooms})/[\w/.]+)`", text)
+    assert not [name for name in files if not (DOCS.parent / "src" / "lifelore" / name).exists()]
+
+
 def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     said = run([sys.executable, "-W", "error", "-c", SEARCH], tmp_path)
     played, report = said.splitlines()
     assert played.startswith("Played(steps=")
     assert f"{ast.literal_eval(report)['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
+
+
+def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
+    (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "start" / "robots.md").read_text("utf-8"), flags=re.S)
+    save_cloud(tmp_path / "scene.pcd", draw_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
+    said = run([sys.executable, "-W", "error", "-c", code], tmp_path)
+    assert "Relation(a=2, b=1, relation='on'" in said
+    assert "relation='in_front_of'" in said
 
 
 def test_the_moves_that_pass_matter(tmp_path):

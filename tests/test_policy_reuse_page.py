@@ -76,7 +76,7 @@ def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():
 
 
 def test_every_rule_is_told():
-    named = set(re.findall(r"`([A-Z]\w+)\(", PAGE.split("## Choosing")[1].split("## What it believes")[0]))
+    named = set(re.findall(r"`([A-Z]\w+)\(", PAGE.split("## Choosing")[1].split("## Beliefs")[0]))
     assert {rule.__name__ for rule in RULES.values()} <= named
 
 

@@ -1,4 +1,4 @@
-"""The README's Python runs as it stands, only shorter."""
+"""The README's Python runs as it stands, only shorter; its make targets, links and pictures exist."""
 
 import json
 import re
@@ -6,47 +6,49 @@ import subprocess
 import sys
 from pathlib import Path
 
-from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
-
-README = Path(__file__).parents[1] / "README.md"
-
-
-def python_blocks() -> list[str]:
-    return re.findall(r"```python\n(.*?)```", README.read_text(), flags=re.S)
+ROOT = Path(__file__).parents[1]
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+LAKE, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
 
 
 def run(code: str, folder: Path) -> str:
-    """What the code prints."""
+    """The output of the code."""
     command = [sys.executable, "-W", "error", "-c", code]
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
 
 
-def test_the_ten_lines_of_python(tmp_path):
-    code = next(block for block in python_blocks() if "gymnasium" in block)
-    shorter = code.replace("tasks=30, episodes=500", "tasks=3, episodes=20")
-    assert shorter != code
+def test_an_own_gymnasium_world(tmp_path):
+    shorter = LAKE.replace("tasks=30, episodes=500", "tasks=3, episodes=20")
+    assert shorter != LAKE
     jumpstart = json.loads(run(shorter, tmp_path).replace("'", '"').replace("None", "null"))
     assert jumpstart["n"] == 1
     assert (tmp_path / "lake.db").is_file()
 
 
-def test_a_cloud_becomes_a_scene(tmp_path):
-    scene = draw_scene(3, 0, TabletopSettings(n_objects=(2, 2)))
-    save_cloud(tmp_path / "scene.pcd", scene)
-    said = run(next(block for block in python_blocks() if "perceived_scene" in block), tmp_path)
-    assert "Relation(a=2, b=1, relation='on'" in said
-    assert "relation='in_front_of'" in said
+def test_a_new_user(tmp_path):
+    assert run(USER, tmp_path) == "C [0. 0. 1.]\n"
 
 
-def test_every_block_is_run():
-    assert len(python_blocks()) == 2
+def test_its_make_targets_exist():
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    targets = re.findall(r"^make ([a-z-]+)", README, flags=re.M)
+    assert targets == ["demo", "test"]
+    assert all(re.search(rf"^{target}:", makefile, flags=re.M) for target in targets)
 
 
-def test_its_pictures_exist():
-    pictures = re.findall(r"!\[.*?\]\((.*?)\)", README.read_text())
+def test_its_links_lead_somewhere():
+    links = re.findall(r"\]\(([^)]+)\)", README)
+    assert len(links) > 10
+    assert not [link for link in links if not (ROOT / link).exists()]
+
+
+def test_its_pictures_are_small():
+    pictures = re.findall(r"!\[.*?\]\((.*?)\)", README)
     assert pictures
-    for picture in pictures:
-        assert (README.parent / picture).stat().st_size <= 300_000
+    assert all((ROOT / picture).stat().st_size <= 300_000 for picture in pictures)
+
+
+def test_it_fits_on_a_screen():
+    assert len(README.splitlines()) <= 75

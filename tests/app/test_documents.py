@@ -10,7 +10,7 @@ import typer
 from lifelore.app.command_line import app
 
 ROOT = Path(__file__).parents[2]
-DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md"), ROOT / "Makefile"])
+DOCUMENTS = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"), ROOT / "Makefile"])
 
 
 def commands_in(path: Path) -> list[str]:
@@ -58,8 +58,10 @@ def registered(command, path: tuple[str, ...] = ()) -> set[str]:
     return {name for key, part in command.commands.items() for name in registered(part, (*path, key))}
 
 
-def test_the_readme_lists_every_command_and_no_other():
-    rows = re.findall(r"^\| *`lifelore ([a-z -]+)` *\|", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE)
+def test_the_page_of_commands_lists_every_command_and_no_other():
+    rows = re.findall(
+        r"^\| *`lifelore ([a-z -]+)` *\|", (ROOT / "docs" / "commands.md").read_text("utf-8"), re.MULTILINE
+    )
     assert len(rows) == len(set(rows))
     assert set(rows) == registered(typer.main.get_command(app))
 

@@ -21,13 +21,18 @@ Step = Callable[[tuple, int, int, float], tuple[int, float, int]]
 
 
 class Tables(NamedTuple):
-    """A task enumerated: the lingua franca of kernels, solver and checks.
+    """All transitions of a task as arrays, which kernels, the exact solver and checks read.
 
+    Parameters
+    ----------
     next_state : (n_states, n_actions, n_outcomes) int32
     reward : (n_states, n_actions, n_outcomes) float64
-    event : (n_states, n_actions, n_outcomes) uint8, bits TERMINAL | COLLISION
-    outcome_cum : (n_outcomes,) float64, cumulative outcome probabilities, last one 1
-    starts : (n_starts,) int32, an episode starts in one of them, each as likely
+    event : (n_states, n_actions, n_outcomes) uint8
+        Bits ``TERMINAL`` (1: the episode ends) and ``COLLISION`` (2: the world refused the move).
+    outcome_cum : (n_outcomes,) float64
+        Cumulative probabilities of the outcomes; the last is 1.
+    starts : (n_starts,) int32
+        An episode starts in one of these states, drawn uniformly.
     """
 
     next_state: NDArray[np.int32]
@@ -38,10 +43,12 @@ class Tables(NamedTuple):
 
     @property
     def n_states(self) -> int:
+        """Number of states."""
         return self.next_state.shape[0]
 
     @property
     def n_actions(self) -> int:
+        """Number of actions."""
         return self.next_state.shape[1]
 
 
@@ -59,7 +66,7 @@ class Domain:
     discount : float
         γ in [0, 1).
     outcome_probs : sequence of float
-        Lengths of the intervals of `u` on which `step` is constant; they sum to 1. ``(1.0,)``
+        Lengths of the intervals of ``u`` on which `step` is constant; they sum to 1. ``(1.0,)``
         where the domain is deterministic.
     tabulate : callable, optional
         ``tabulate(params, midpoints) -> (next_state, reward, event)``: the same table from a compiled
@@ -96,7 +103,7 @@ class Task:
     ----------
     domain : Domain
     params : tuple
-        Arrays and numbers handed to the domain's `step`; the only thing tasks of one domain differ in.
+        Arrays and numbers passed to `Domain.step`; tasks of one domain differ in these alone.
     starts : (n_starts,) int
         Initial states S₀, drawn uniformly.
     goal : int, optional

@@ -14,19 +14,27 @@ Progress = Callable[[int, int, str], None]
 
 @runtime_checkable
 class World(Protocol):
-    """Anything with discrete actions that can be lived in, one task after another.
+    """A world with discrete actions, in which an agent lives through one task after another.
 
-    `reset` starts an episode of task number `task` and returns a hashable state; `step` returns
-    ``(state, reward, terminated, truncated)``; `context` is what an action prior is conditioned on.
+    Attributes
+    ----------
+    n_actions : int
+        Actions are the integers in [0, n_actions).
     """
 
     n_actions: int
 
-    def reset(self, task: int, seed: int) -> Hashable: ...
+    def reset(self, task: int, seed: int) -> Hashable:
+        """Start an episode of task number `task`; the hashable state in which it starts."""
+        ...
 
-    def step(self, action: int) -> tuple[Hashable, float, bool, bool]: ...
+    def step(self, action: int) -> tuple[Hashable, float, bool, bool]:
+        """Take an action: ``(state, reward, terminated, truncated)``."""
+        ...
 
-    def context(self, state: Hashable, last_reward: float) -> Hashable: ...
+    def context(self, state: Hashable, last_reward: float) -> Hashable:
+        """The hashable features of a state that an action prior is conditioned on."""
+        ...
 
 
 @runtime_checkable
@@ -50,7 +58,7 @@ class Record:
     """Something learnt, in the form memory keeps: integer slots with integer values, and how they merge.
 
     Memory never interprets a record. Learners encode (context, action) pairs as `slots` and fixed-point
-    weights or targets as `values`, and read old `version`s themselves.
+    weights or targets as `values`, and read records of an older `version` themselves.
 
     Parameters
     ----------

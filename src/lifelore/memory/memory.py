@@ -126,7 +126,7 @@ class Memory:
         return True
 
     def recall(self, kind: str, key: str, version: int) -> Record | None:
-        """The merged record of all robots, slots ascending, `about` of the newest; None if there is none."""
+        """The merged record of all robots, slots ascending, ``about`` of the newest; None if there is none."""
         with self._store.reading() as conn:
             return cache.read(conn, (kind, key, version))
 

@@ -52,12 +52,12 @@ def live_in(
     progress: Progress | None = None,
     stop: Event | None = None,
 ) -> dict:
-    """Live through `tasks` tasks of a world, `scratch` beside on the same random streams; keep what was learnt.
+    """Live through `tasks` tasks of a world, ``scratch`` beside on the same random streams; keep what was learnt.
 
-    Two agents learn each task by ε-greedy Q-learning from nothing (Q = 0). `scratch` explores uniformly; `lore`
-    by the action prior that its life has taught it so far: after each task the learnt policy's best actions
-    in the states that it holds to be worth something (value > 0) are counted by context. So a world whose
-    rewards are never positive teaches nothing (``n_contexts`` stays 0): shift them.
+    Two agents learn each task by ε-greedy Q-learning from nothing (Q = 0). ``scratch`` explores uniformly;
+    ``lore`` by the action prior that its life has taught it so far. After each task, the best actions of the
+    learnt policy are counted by context, in the states whose learnt value is above 0. So a world whose rewards
+    are never positive teaches nothing (``n_contexts`` stays 0): shift its rewards.
 
     Parameters
     ----------

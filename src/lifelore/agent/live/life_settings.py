@@ -45,7 +45,7 @@ class LifeSettings:
     prior : {"observation", "state", "none"}
         What action priors are conditioned on.
     agent : str
-        Who lives; `scratch` always lives beside. ``all``: everybody.
+        Who lives; ``scratch`` always lives beside. ``all``: everybody.
     robot : str
         Name under which memory keeps this life; one for each robot that runs at a time.
     start : (row, column), optional

@@ -86,7 +86,7 @@ class PolicyLibrary:
         ----------
         model : {"gaussian", "student-t", "histogram", "categorical"}
         **options
-            For the model's ``from_samples``: `shrinkage`, `edges`, `pseudo_count`.
+            For the model's ``from_samples``: ``shrinkage``, ``edges``, ``pseudo_count``.
 
         Raises
         ------
@@ -159,10 +159,12 @@ class PolicyLibrary:
 
     @property
     def n_types(self) -> int:
+        """Number of types."""
         return self.performance.n_types
 
     @property
     def n_policies(self) -> int:
+        """Number of policies."""
         return self.performance.n_policies
 
     def index_of_policy(self, policy: str | int) -> int:

@@ -106,6 +106,7 @@ class UserBeliefs:
 
     @property
     def n_users(self) -> int:
+        """Number of users."""
         return len(self.log_belief)
 
     # ---- many users at once ----------------------------------------------------------------------------

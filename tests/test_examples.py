@@ -1,0 +1,57 @@
+"""The scripts in `examples/` run without a warning, print what their pages show, and stay short."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
+
+
+def numbers(text: str) -> list[float]:
+    return [float(number) for number in re.findall(r"-?\d+\.\d+", text)]
+
+
+def lore_needs_fewer_steps(lines: list[str]) -> bool:
+    steps = [tuple(map(int, re.findall(r"\d+", line)[1:])) for line in lines[1:]]
+    return len(steps) == 10 and sum(lore for lore, _ in steps[1:]) < sum(scratch for _, scratch in steps[1:]) / 2
+
+
+def the_prior_starts_better(lines: list[str]) -> bool:
+    uniform, prior = (numbers(line)[0] for line in lines)
+    return prior > uniform + 20
+
+
+def choosing_for_each_user_pays(lines: list[str]) -> bool:
+    *interactions, single, best = (numbers(line)[0] for line in lines)
+    return len(interactions) == 5 and single < interactions[-1] < best
+
+
+HOLDS = {
+    "cloud_to_relations": lambda lines: {"on(3, 2)", "adjacent(2, 4)", "on(2, 1)", "on(4, 1)"} == set(lines),
+    "courier_in_an_office": lore_needs_fewer_steps,
+    "many_users": choosing_for_each_user_pays,
+    "one_user": lambda lines: len(lines) == 4 and "'bold': 1.0" in lines[-1],
+    "own_gymnasium_world": lambda lines: numbers(lines[0])[0] > 0,
+    "prior_guides_learning": the_prior_starts_better,
+}
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_runs_and_shows_its_point(example, tmp_path):
+    command = [sys.executable, "-W", "error", str(example)]
+    environment = os.environ | {"XDG_DATA_HOME": str(tmp_path)}
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert HOLDS[example.stem](done.stdout.splitlines()), done.stdout
+
+
+@pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
+def test_an_example_is_short_and_stands_on_a_page(example):
+    assert len(example.read_text(encoding="utf-8").splitlines()) <= 40
+    pages = (ROOT / "docs" / "start").glob("*.md")
+    assert any(f"examples/{example.name}" in page.read_text(encoding="utf-8") for page in pages)
