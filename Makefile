@@ -21,7 +21,7 @@ CUDA := .venv-cuda
 
 PYTHON_FILES := src tests examples docs/conf.py
 
-.PHONY: help setup setup-test demo test test-fast test-deep test-cuda coverage check format bench soak docs reproduction-page \
+.PHONY: help setup setup-test demo test test-fast test-deep test-cuda coverage check format bench soak docs reproduction-pages \
 	wheel-test reproduce clean
 
 help: ## Name every target
@@ -89,10 +89,10 @@ bench: setup-test ## Speed beside peers, side by side in one process
 soak: setup-test ## Long runs: 200 kills, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
-reproduction-page: setup-test ## docs/reproduction.md from the committed results
+reproduction-pages: setup-test ## The pages of docs/reproduction from the committed results
 	$(BIN)/python -m lifelore.experiments.engine.report
 
-docs: reproduction-page $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
+docs: reproduction-pages $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
 	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs
 	@echo "out/docs/index.html"
 

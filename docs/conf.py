@@ -29,8 +29,6 @@ author = "The Lifelore founders"
 release = version = lifelore.__version__
 extensions = ["sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax", "myst_parser"]
 exclude_patterns = ["_build", "api/_*"]
-if (HERE / "reproduction" / "index.md").exists():
-    exclude_patterns.append("reproduction.md")
 
 html_theme = "furo"
 html_title = "Lifelore"
