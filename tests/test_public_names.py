@@ -18,3 +18,16 @@ def test_importing_the_package_imports_nothing_heavy():
     heavy = ("numba", "numpy", "matplotlib", "sqlalchemy", "gymnasium", "scipy", "typer")
     code = f"import sys, lifelore; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
+
+
+def test_every_public_method_and_property_is_documented():
+    classes = [value for name in lifelore.__all__ if inspect.isclass(value := getattr(lifelore, name))]
+    members = [
+        (f"{owner.__name__}.{name}", getattr(member, "__func__", getattr(member, "func", member)))
+        for owner in classes
+        for name, member in vars(owner).items()
+        if not name.startswith("_")
+    ]
+    described = [(name, member) for name, member in members if callable(member) or isinstance(member, property)]
+    assert len(described) > 50
+    assert not [name for name, member in described if not inspect.getdoc(member)]
