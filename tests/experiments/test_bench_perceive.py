@@ -10,6 +10,7 @@ from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.experiments.bench import perceive
 from lifelore.experiments.bench.perceive import bench_perceive
+from lifelore.experiments.chapter2 import perception_stages
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_model_file import shipped_model
@@ -49,7 +50,9 @@ def test_the_answer_keeps_its_contract(small):
 
 def test_stages_together_are_the_whole_way(cloud, monkeypatch):
     documents = []
-    monkeypatch.setattr(perceive, "scene_document", lambda scene, seconds: documents.append(scene_document(scene)))
+    monkeypatch.setattr(
+        perception_stages, "scene_document", lambda scene, seconds: documents.append(scene_document(scene))
+    )
     model = shipped_model()
     assert set(timed_stages(cloud, model)) == set(STAGES)
     assert documents == [scene_document(perceived_scene(cloud, model).bearing)]

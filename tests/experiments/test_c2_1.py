@@ -17,7 +17,7 @@ from lifelore.experiments.chapter2.c2_01_nearest_displacements.measure import (
     hardest_margin,
     readings,
 )
-from lifelore.experiments.chapter2.c2_02_label_components import measure as c2_2
+from lifelore.experiments.chapter2.c2_02_label_components import figure as c2_2
 from lifelore.experiments.chapter2.pair_validation import Reading, as_seen, told_by_neighbours
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
@@ -79,9 +79,9 @@ def one_method(monkeypatch):
     monkeypatch.setattr(
         c2_1, "_methods", lambda folds: {"the most": (PEERS["majority"], as_seen("majority"), None)}
     )
-    c2_1._inferred.cache_clear()
+    c2_1.inferred.cache_clear()
     yield
-    c2_1._inferred.cache_clear()
+    c2_1.inferred.cache_clear()
 
 
 # --- A and B given ----------------------------------------------------------------------------------------

@@ -110,9 +110,6 @@ class TestEveryClaim:
         asked = {c.measure for c in claim_of(claim_id).predicate.conditions}
         assert asked <= set(quick[0](claim_id)["measured"])
 
-    def test_measures_are_those_that_something_reads(self, claim_id, quick):
-        assert set(quick[0](claim_id)["measured"]) == claim_of(claim_id).read_measures()
-
 
 @pytest.mark.parametrize("claim_id", [pytest.param(i, marks=pytest.mark.xdist_group(i)) for i in FAMILIES])
 def test_result_does_not_depend_on_threads_and_does_on_the_seed(claim_id, quick, tmp_path):
@@ -120,7 +117,7 @@ def test_result_does_not_depend_on_threads_and_does_on_the_seed(claim_id, quick,
     threads = reproduce([claim_id], "quick", jobs=3, out=tmp_path)[0]
     assert {key for key in RESULT_KEYS if threads[key] != alone[key]} <= {"seconds"}
     other = reproduce([claim_id], "quick", jobs=3, out=tmp_path, seed=1)[0]
-    assert other["measured"] != alone["measured"]
+    assert (other["measured"], other["rows"]) != (alone["measured"], alone["rows"])
 
 
 def reachable_verdicts(predicate):

@@ -30,6 +30,7 @@ def test_committed_results_are_full_and_their_verdict_follows_from_their_numbers
     assert result["verdict"] == claim.predicate.verdict(result["measured"])
     assert result["why"] == claim.predicate.why(result["measured"], claim.causes)
     assert result["thesis"] == claim.thesis
+    assert set(result["measured"]) == claim.read_measures()
     assert (RESULTS / claim.id / "result.json").stat().st_size <= MAX_BYTES
     assert (RESULTS / claim.id / "figure.png").is_file()
 

@@ -7,9 +7,12 @@ import pytest
 from lifelore.experiments.engine import source_key as module
 from lifelore.experiments.engine.source_key import PACKAGE, source_key
 
+LATTICE = "lifelore.experiments.chapter3.c3_02_lattice_prior.run"
+SUBSTRUCTURE = "lifelore.experiments.chapter2.c2_09_substructure.run"
+
 
 def test_closure_reaches_through_imports_and_leaves_figures_out():
-    found = module._closure("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
+    found = module._closure(LATTICE)
     assert {
         "lifelore.core.learning.q_learning",
         "lifelore.core.compiled.random_state",
@@ -17,7 +20,7 @@ def test_closure_reaches_through_imports_and_leaves_figures_out():
     } <= found
     assert "lifelore.experiments.chapter3.lattice_learning" in found
     assert not any(name.startswith("lifelore.figures") for name in found)
-    assert "lifelore.experiments.chapter3.c3_02_lattice_prior.run" not in found
+    assert "lifelore.experiments.chapter3.c3_02_lattice_prior.measure" not in found
 
 
 @pytest.fixture
@@ -30,25 +33,25 @@ def copy(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("changed", "matters"),
     [
-        ("core/random_state.py", True),
-        ("domains/grid_world.py", True),
+        ("core/compiled/random_state.py", True),
+        ("domains/grids/grid_world.py", True),
         ("figures/style.py", False),
         ("core/errors.py", True),
     ],
 )
 def test_the_key_changes_with_the_code_it_rests_on(copy, changed, matters):
     fresh = source_key.__wrapped__
-    before = fresh("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
-    assert before == source_key("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid")
+    before = fresh(LATTICE)
+    assert before == source_key(LATTICE)
     with (copy / changed).open("a", encoding="utf-8") as file:
         file.write("# changed\n")
-    assert (fresh("lifelore.experiments.chapter3.c3_02_lattice_prior.lattice_grid") != before) is matters
+    assert (fresh(LATTICE) != before) is matters
 
 
-@pytest.mark.parametrize(("name", "matters"), [("lattice_grid", False), ("skeleton_pairs", True)])
+@pytest.mark.parametrize(("name", "matters"), [(LATTICE, False), (SUBSTRUCTURE, True)])
 def test_the_key_changes_with_the_trained_model_it_rests_on(copy, name, matters):
     fresh = source_key.__wrapped__
-    before = fresh(f"lifelore.experiments.{name}")
-    with (copy / "perception" / "models" / "tabletop.npz").open("ab") as file:
+    before = fresh(name)
+    with (copy / "perception" / "relations" / "models" / "tabletop.npz").open("ab") as file:
         file.write(b"more")
-    assert (fresh(f"lifelore.experiments.{name}") != before) is matters
+    assert (fresh(name) != before) is matters
