@@ -9,14 +9,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from lifelore.interaction.beliefs import belief, compiler_start
-from lifelore.interaction.beliefs.belief import bayes_rule, update
+from lifelore.core.compiled import compiler_start
+from lifelore.interaction.beliefs import belief
+from lifelore.interaction.beliefs.bayes_rule import bayes_rule
+from lifelore.interaction.beliefs.belief import update
 from lifelore.interaction.beliefs.belief_kernels import bayes_row
 from lifelore.interaction.selection import InformationDirected, information_kernels, mixtures, support_kernels
-from lifelore.interaction.selection.choice import choose
-from lifelore.interaction.selection.rule import shares_of_tied, tied_shares
+from lifelore.interaction.selection.choice import choose, tied_shares
 from lifelore.interaction.selection.support import rising_least
 from lifelore.interaction.selection.tie_kernels import choose_row, tied_rows
+from lifelore.interaction.selection.ties import shares_of_tied
 
 seeds = st.integers(0, 2**32 - 1)
 logs = st.one_of(st.floats(-800, 300), st.just(-np.inf), st.sampled_from([0.0, -0.0, -1e308, 1e308]))
@@ -105,8 +107,8 @@ def test_near_ties_share_and_choose_alike():
 
 def test_large_work_starts_the_compiler(monkeypatch):
     monkeypatch.setattr(compiler_start, "sys", type("Sys", (), {"modules": {}}))
-    assert not compiler_start.kernel_pays(compiler_start.WORTH_STARTING)
-    assert compiler_start.kernel_pays(compiler_start.WORTH_STARTING + 1)
+    assert not compiler_start.kernel_pays(compiler_start.NUMBERS_WORTH_A_START)
+    assert compiler_start.kernel_pays(compiler_start.NUMBERS_WORTH_A_START + 1)
 
 
 WITHOUT = """

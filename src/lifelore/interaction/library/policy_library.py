@@ -11,7 +11,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.errors import InputError
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
@@ -287,17 +288,55 @@ class PolicyLibrary:
         )
 
     def save(self, path: str | Path) -> None:
-        """Write the library as one npz file; see `library_file`."""
-        from lifelore.interaction.library.library_file import save_library
+        """Write the library as one npz file; see `library_file`.
 
-        save_library(self, path)
+        Raises
+        ------
+        InputError
+            The performance model is not one of this package.
+        StoreError
+            The disk refuses.
+        """
+        content = self.to_bytes()
+        try:
+            with whole_file(path) as file:
+                file.write(content)
+        except OSError as error:
+            raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None
 
     @classmethod
-    def load(cls, path: str | Path, signal: SignalModel | None = None) -> "PolicyLibrary":
-        """The library that `save` wrote, bit for bit; `signal` where its signal model was the caller's own."""
-        from lifelore.interaction.library.library_file import load_library
+    def load(cls, path: str | Path, signal: SignalModel | None = None) -> Self:
+        """The library that `save` wrote, bit for bit.
 
-        return load_library(path, signal)
+        Parameters
+        ----------
+        signal : SignalModel, optional
+            Replaces the file's signal model; required where that was the caller's own.
+
+        Raises
+        ------
+        InputError
+            The file does not exist, is of another kind, newer or damaged.
+        """
+        try:
+            content = Path(path).read_bytes()
+        except OSError as error:
+            raise InputError(f"the library {path} cannot be read: {error.strerror}") from None
+        return cls.from_bytes(content, str(path), signal)
+
+    def to_bytes(self) -> bytes:
+        """The library as the bytes of an npz file; equal libraries give equal bytes."""
+        # Imported here: most uses of a library need no file.
+        from lifelore.interaction.library.library_file import packed_library
+
+        return packed_library(self)
+
+    @classmethod
+    def from_bytes(cls, content: bytes, where: str = "the library", signal: SignalModel | None = None) -> Self:
+        """The library of `to_bytes`; `where` names the source in error messages, `signal` is as in `load`."""
+        from lifelore.interaction.library.library_file import unpacked_library
+
+        return unpacked_library(content, where, signal, cls)
 
     def _signal_for(self, performance: OutcomeModel, signal: SignalModel | None) -> SignalModel:
         if signal is not None:

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
     check_outcome,
@@ -88,6 +89,10 @@ class CountedOutcomes:
         found = self.counts[policies, :, inside] / (self.totals[policies] * self._sizes()[inside][:, None])
         found[cells < 0] = 0.0
         return np.log(found, out=np.full_like(found, -np.inf), where=found > 0)
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """Log densities of finite outcomes."""
+        return CalledLikelihood(self.log_densities, finite_signals)
 
     def density(self, value: ArrayLike) -> Array:
         """Density (probability, where outcomes are discrete) of `value` for every pair, (..., T, P)."""

@@ -8,6 +8,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, NormalLikelihood, Normals
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.outcome_moments import known_moments
@@ -74,6 +75,12 @@ class GaussianOutcomes(MomentOutcomes):
         z *= -0.5
         z += self._log_height[policies]
         return z
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """The normals themselves; a subclass with densities of its own gives those."""
+        if type(self) is not GaussianOutcomes:
+            return super().batch_likelihood()
+        return NormalLikelihood(Normals(self._centre, self._precision, self._log_height))
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""

@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
 
@@ -70,6 +71,14 @@ class MomentOutcomes:
     @property
     def n_policies(self) -> int:
         return self.mean.shape[1]
+
+    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
+        """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
+        raise NotImplementedError
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """Log densities of finite outcomes."""
+        return CalledLikelihood(self.log_densities, finite_signals)
 
     def bounds(self) -> tuple[float, float]:
         """(U^min, U^max): four deviations around the means."""

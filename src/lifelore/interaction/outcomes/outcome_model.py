@@ -57,6 +57,10 @@ class OutcomeModel(Protocol):
         """`log_density` of many outcomes at once, (n,) and (n,) to (n, T); checks nothing."""
         ...
 
+    def batch_likelihood(self) -> Any:
+        """The outcome's likelihood as policy reuse takes it for many users, see `batch_likelihood`."""
+        ...
+
     def density(self, value: ArrayLike) -> Array:
         """Density of `value`, a number or a batch (...,), for every pair: (..., T, P)."""
         ...

@@ -19,9 +19,9 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.evidence import Evidence
+from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
 from lifelore.interaction.selection import RULES, rule_named
 
@@ -91,7 +91,7 @@ def session_from_bytes(
     """The agent of `session_bytes`; `where` is named when it cannot be read."""
     header, arrays = FORMAT.unpack(content, where)
     try:
-        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
+        library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
         rule = rule_named(header["rule"], **header["settings"])
         generator = generator_from_state(header["generator"])
@@ -107,7 +107,7 @@ def session_from_bytes(
 def _arrays(agent: BayesianPolicyReuse) -> Arrays:
     kept = list(agent._evidence)
     arrays: Arrays = {
-        "library": np.frombuffer(library_bytes(agent.library), np.uint8),
+        "library": np.frombuffer(agent.library.to_bytes(), np.uint8),
         "log_belief": agent.log_belief,
         "evidence_policy": np.array([one.policy for one in kept], np.int64),
         "log_evidence": np.array([one.log_evidence for one in kept], np.float64),

@@ -16,7 +16,7 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 
@@ -32,7 +32,7 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
         "generator": generator_state(users.generator),
     }
     arrays: Arrays = {
-        "library": np.frombuffer(library_bytes(users.library), np.uint8),
+        "library": np.frombuffer(users.library.to_bytes(), np.uint8),
         "log_belief": users.log_belief,
         "log_prior": users.log_prior,
     }
@@ -58,7 +58,7 @@ def load_users(path: str | Path, signal: SignalModel | None = None) -> UserBelie
     with Path(path).open("rb") as file:
         header, arrays = FORMAT.unpack(file, str(path))
     try:
-        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
+        library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
         users = UserBeliefs(
             library,

@@ -1,20 +1,16 @@
 """Rules for selecting a policy under a belief over types, by name."""
 
-from typing import TYPE_CHECKING, Any
-
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
+from lifelore.interaction.selection.choice import choose, tied_shares
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
 from lifelore.interaction.selection.greedy import Greedy
 from lifelore.interaction.selection.information_directed import InformationDirected
 from lifelore.interaction.selection.knowledge_gradient import KnowledgeGradient
 from lifelore.interaction.selection.probability_of_improvement import ProbabilityOfImprovement
-from lifelore.interaction.selection.rule import SelectionRule, tied_shares
-
-if TYPE_CHECKING:
-    from lifelore.interaction.selection.choice import choose as choose
+from lifelore.interaction.selection.rule import SelectionRule
 
 RULES: dict[str, type] = {
     rule.name: rule
@@ -49,12 +45,3 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
-
-
-def __getattr__(name: str) -> Any:
-    # `choose` is compiled; the rules and their probabilities do without the compiler.
-    if name == "choose":
-        from lifelore.interaction.selection.choice import choose
-
-        return choose
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -6,7 +6,8 @@ from typing import Any, ClassVar
 import numpy as np
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, check_generator, tied_shares
+from lifelore.interaction.selection.choice import tied_shares
+from lifelore.interaction.selection.rule import Array, check_generator
 
 
 @dataclass(frozen=True)

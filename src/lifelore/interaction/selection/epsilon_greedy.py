@@ -8,7 +8,8 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, check_generator, tied_shares
+from lifelore.interaction.selection.choice import tied_shares
+from lifelore.interaction.selection.rule import Array, check_generator
 
 
 @dataclass(frozen=True)

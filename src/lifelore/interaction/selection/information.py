@@ -8,8 +8,8 @@ S logarithms. Thesis: §4.5.2.2, whose own expression is another (see the errata
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.interaction.beliefs.belief import Array, entropy
-from lifelore.interaction.beliefs.compiler_start import kernel_pays
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.selection.mixtures import class_mixtures, mixtures
 from lifelore.interaction.selection.rule import in_blocks

@@ -7,8 +7,8 @@ these alone lose 40 % of their worth. Later a few types hold nearly all.
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.compiler_start import kernel_pays
 
 Array = NDArray[np.float64]
 

@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, TableLikelihood
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
 from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
@@ -122,6 +123,10 @@ class CategorySignal:
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
         """Those of many category numbers at once, (n,) and (n,) to (n, n_types); checks nothing."""
         return self._log[policies, np.asarray(signals, np.int64)]
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """The table of log probabilities; signals of a batch are category numbers, named categories or not."""
+        return TableLikelihood(self._log)
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """All categories where they are at most `n_bins`; otherwise neighbours joined, as for outcomes."""

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel
 
 Array = NDArray[np.float64]
@@ -52,6 +53,12 @@ class ReturnSignal:
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
         """Those of many returns at once, (n,) and (n,) to (n, n_types); checks nothing."""
         return self.outcomes.log_densities(policies, signals)
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """That of the outcomes; a subclass with log likelihoods of its own gives those."""
+        if type(self).log_likelihood is not ReturnSignal.log_likelihood:
+            return CalledLikelihood(self.log_likelihoods, finite_signals)
+        return self.outcomes.batch_likelihood()
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The return in bins."""
