@@ -10,7 +10,7 @@ from lifelore.interaction.beliefs.bayes_rule import LOWEST
 
 @inlined
 def _joint(log_belief, log_likelihood, best):
-    """Belief and likelihood together, minus infinity for impossible types whatever their likelihood."""
+    """Sum of log belief and log likelihood; minus infinity for impossible types, whatever their likelihood."""
     if log_belief == -np.inf:
         return -np.inf
     return float(log_belief) + (float(log_likelihood) - best)
@@ -18,7 +18,7 @@ def _joint(log_belief, log_likelihood, best):
 
 @kernel
 def bayes_row(log_belief, log_likelihood):
-    """Update one belief (n_types,) in place; returns the log evidence.
+    """Update a belief (n_types,) in place; returns the log evidence.
 
     Minus infinity: no type explains the signal, and the belief stays. NaN: a likelihood is NaN or infinite, and
     the belief stays.

@@ -215,7 +215,7 @@ class ReuseAlgorithm:
             here = len(own)
             self._likelihood.write(policies[at], signals[at], work[:here])
             if linear is None:
-                _belief_kernels().bayes_users(log_beliefs, own, work[:here], log_evidence[at])
+                (_loaded or _load()).bayes_users(log_beliefs, own, work[:here], log_evidence[at])
             else:
                 _user_kernels().bayes_users_f4(log_beliefs, own, work[:here], linear[:here], log_evidence[at])
             if self._changing:
@@ -253,11 +253,11 @@ class ReuseAlgorithm:
         compiled = self._compiled or self._starts_compiler()
         if compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
             log_likelihood = np.empty(len(log_belief))
-            log_evidence = _belief_kernels().normal_row(log_belief, policy, signal, *normals, log_likelihood)
+            log_evidence = (_loaded or _load()).normal_row(log_belief, policy, signal, *normals, log_likelihood)
         else:
             log_likelihood = self._log_likelihood(policy, signal)
             if compiled:
-                log_evidence = _belief_kernels().bayes_row(log_belief, log_likelihood)
+                log_evidence = (_loaded or _load()).bayes_row(log_belief, log_likelihood)
             else:
                 log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
         if log_evidence != log_evidence:
@@ -340,10 +340,15 @@ def blocks(users: Numbers) -> Iterator[tuple[slice, Numbers]]:
 # Modules of kernels are imported at their first use: the import starts Numba.
 
 
-@cache
-def _belief_kernels() -> ModuleType:
+_loaded: Any = None
+
+
+def _load() -> Any:
+    """The module of belief kernels, stored for later updates: a single update takes a microsecond."""
+    global _loaded
     from lifelore.interaction.beliefs import belief_kernels
 
+    _loaded = belief_kernels
     return belief_kernels
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from lifelore.core.compiled.jit import inlined, kernel
 
 LEAST_LOG = -87.0
-"""Logs of float32 beliefs below this count as 0 when beliefs are read; the logs themselves are kept."""
+"""Logs of float32 beliefs below this count as 0 when beliefs are read; the stored logs stay."""
 
 AHEAD, LINE = 32, 16
 """Number of rows loaded ahead, and float32 numbers in a line of the cache."""

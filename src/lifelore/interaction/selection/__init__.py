@@ -1,4 +1,9 @@
-"""Rules for selecting a policy under a belief over types, by name."""
+"""Selection rules: which policy to run next under a belief over types (thesis §4.5).
+
+Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
+the rules that look ahead share: `support`, `type_classes`, `information`. `belief_program` computes the exact
+optimum.
+"""
 
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
@@ -35,7 +40,7 @@ __all__ = [
 
 
 def rule_named(name: str, **settings) -> SelectionRule:
-    """The rule of that name, with settings if any; NotFoundError where there is none.
+    """The rule of that name with these settings; NotFoundError where there is no such rule.
 
     Examples
     --------

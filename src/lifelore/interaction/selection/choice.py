@@ -1,7 +1,5 @@
 """The policy of the largest score, equals at random; and how likely that choice is to take each policy."""
 
-from functools import cache
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -40,7 +38,7 @@ def choose(scores: ArrayLike, generator: np.random.Generator, tolerance: float =
     >>> choose([1.0, 3.0, 2.0], np.random.default_rng(0))
     1
     """
-    scores, kernels = np.asarray(scores, np.float64), _kernels()
+    scores, kernels = np.asarray(scores, np.float64), _loaded or _load()
     if scores.ndim == 1:
         chosen = kernels.choose_row(scores, -1.0, tolerance)
         if chosen < -1:
@@ -64,7 +62,7 @@ def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     if kernel_pays(scores.size):
         rows = np.ascontiguousarray(scores.reshape(-1, scores.shape[-1]))
         shares = np.empty_like(rows)
-        _kernels().tied_rows(rows, tolerance, shares)
+        (_loaded or _load()).tied_rows(rows, tolerance, shares)
     else:
         shares = shares_of_tied(scores, tolerance)
     if np.isnan(shares).any():
@@ -72,9 +70,13 @@ def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
     return shares.reshape(scores.shape)
 
 
-@cache
-def _kernels() -> ModuleType:
-    # Imported at the first use: the import starts Numba.
+_loaded: Any = None
+
+
+def _load() -> Any:
+    """The module of kernels, imported at its first use, because the import starts Numba."""
+    global _loaded
     from lifelore.interaction.selection import tie_kernels
 
+    _loaded = tie_kernels
     return tie_kernels

@@ -49,7 +49,7 @@ class SelectionRule(Protocol):
         ...
 
     def probabilities(self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
-        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
         ...
 
 
@@ -57,7 +57,7 @@ class Deterministic:
     """Base of rules whose scores draw no random numbers: the best policies are equally likely."""
 
     def probabilities(self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
-        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
         return tied_shares(self.scores(library, belief, episodes_left=episodes_left))  # pyright: ignore
 
 
