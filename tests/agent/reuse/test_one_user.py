@@ -10,13 +10,12 @@ import numpy as np
 import pytest
 
 from lifelore.agent.reuse.fit import FitSettings, fit
-from lifelore.agent.reuse.history import histories, log_belief, open_history, user_key
+from lifelore.agent.reuse.history import histories, open_history, replayed, user_key
 from lifelore.agent.reuse.log import read_log
 from lifelore.agent.reuse.one_user import add, choose, forget, retire, update
 from lifelore.agent.reuse.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
-from lifelore.interaction.library.library_file import library_bytes
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import RULES, rule_named
@@ -39,7 +38,7 @@ def memory(tmp_path):
 
 
 def belief_of(memory, study, user):
-    return log_belief(study, open_history(memory, study, user_key(study.name, user)))[0]
+    return replayed(study, open_history(memory, study, user_key(study.name, user))).log_belief
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
@@ -287,7 +286,7 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         for one in history.decisions:
             if one.outcome is not None:
                 agent.update(one.policy, one.outcome)
-        assert np.array_equal(log_belief(study, history)[0], agent.log_belief)
+        assert np.array_equal(replayed(study, history).log_belief, agent.log_belief)
         assert memory.check() == []
         assert choose(memory, study, "ann")["number"] == len(history.decisions)
 
@@ -298,7 +297,7 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
     kept = study_of(control=0.25, explore=0.1, change=0.05, contexts={"web": np.array([0.1, 0.9])})
     kept.keep(memory)
     found = open_study(memory, "s")
-    assert library_bytes(found.library) == library_bytes(kept.library)
+    assert found.library.to_bytes() == kept.library.to_bytes()
     assert found.contexts["web"].tolist() == [0.1, 0.9]
     for name in ("states", "control", "incumbent", "rule", "explore", "change"):
         assert getattr(found, name) == getattr(kept, name)

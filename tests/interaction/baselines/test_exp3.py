@@ -77,7 +77,7 @@ def test_a_change_of_the_best_policy_is_followed():
 
 @pytest.mark.parametrize("given_", [{}, {"gamma": 0.1, "horizon": 5}])
 def test_one_of_gamma_and_horizon(given_):
-    with pytest.raises(InputError, match="give gamma or horizon, one of the two"):
+    with pytest.raises(InputError, match="give either gamma or horizon"):
         EXP3(2, **given_)
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.library.library_file import SIGNALS
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.outcome_kinds import KINDS
@@ -16,7 +16,6 @@ from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
-from lifelore.interaction.signals.signal_kinds import KINDS as SIGNALS
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
@@ -63,14 +62,14 @@ def test_every_performance_model_comes_back(model, tmp_path):
     for made in (library, again):
         made.observe(1, 0, 1.0)
     same(library, again, 2.0)
-    assert library_bytes(library) == library_bytes(again)
+    assert library.to_bytes() == again.to_bytes()
 
 
 @pytest.mark.parametrize("kind", sorted(SIGNALS))
 def test_every_signal_model_comes_back(kind):
     model, signal = signals()[kind]
     library = PolicyLibrary.from_samples(SAMPLES, signal=model)
-    again = library_from_bytes(library_bytes(library))
+    again = PolicyLibrary.from_bytes(library.to_bytes())
     assert type(again.signal) is type(model)
     same(library, again, signal)
 
@@ -78,7 +77,7 @@ def test_every_signal_model_comes_back(kind):
 def test_rows_that_sum_to_a_rounding_above_one_come_back():
     steps = TransitionSignal([[[[1.0 + 5e-7, 0.0]], [[0.0, 1.0]]]] * 2)
     library = PolicyLibrary.from_samples(SAMPLES, signal=steps)
-    again = library_from_bytes(library_bytes(library)).signal
+    again = PolicyLibrary.from_bytes(library.to_bytes()).signal
     assert np.array_equal(again.log_likelihood(0, [(0, 0)]), steps.log_likelihood(0, [(0, 0)]))
 
 
@@ -86,7 +85,7 @@ def test_an_own_signal_model_is_given_again(tmp_path):
     own = LikelihoodSignal(lambda policy, signal: [signal, 0.0], 2)
     path = tmp_path / "library.npz"
     PolicyLibrary.from_samples(SAMPLES, signal=own).save(path)
-    with pytest.raises(InputError, match=r"owner's \(LikelihoodSignal\); give it as signal="):
+    with pytest.raises(InputError, match=r"its owner \(LikelihoodSignal\); give the model as signal="):
         PolicyLibrary.load(path)
     assert PolicyLibrary.load(path, signal=own).signal is own
 
@@ -97,15 +96,15 @@ def test_files_that_are_none_are_refused(tmp_path):
     library = PolicyLibrary.from_samples(SAMPLES)
     with pytest.raises(StoreError, match="cannot be written"):
         library.save(tmp_path / "no" / "such" / "folder.npz")
-    good = library_bytes(library)
+    good = library.to_bytes()
     for content in (b"", b"no zip", good[:200], good[: len(good) // 2]):
         with pytest.raises(InputError, match="no policy library that can be read"):
-            library_from_bytes(content)
+            PolicyLibrary.from_bytes(content)
 
 
 def changed(library, **arrays):
     """The file with some arrays replaced, or left out where None."""
-    with np.load(io.BytesIO(library_bytes(library))) as packed:
+    with np.load(io.BytesIO(library.to_bytes())) as packed:
         held = {name: packed[name] for name in packed.files} | arrays
     stream = io.BytesIO()
     np.savez(stream, **{name: value for name, value in held.items() if value is not None})
@@ -113,7 +112,7 @@ def changed(library, **arrays):
 
 
 def header(library, **changes):
-    with np.load(io.BytesIO(library_bytes(library))) as packed:
+    with np.load(io.BytesIO(library.to_bytes())) as packed:
         text = json.dumps(json.loads(packed["about"].tobytes()) | changes)
     return np.frombuffer(text.encode(), np.uint8)
 
@@ -140,9 +139,9 @@ def test_damage_is_told():
         {"prior": np.array([{}], object)},
     ]:
         with pytest.raises(InputError, match="no policy library that can be read"):
-            library_from_bytes(changed(library, **arrays))
+            PolicyLibrary.from_bytes(changed(library, **arrays))
     with pytest.raises(InputError, match="has version 99, this Lifelore reads 1"):
-        library_from_bytes(changed(library, about=header(library, version=99)))
+        PolicyLibrary.from_bytes(changed(library, about=header(library, version=99)))
 
 
 def test_a_model_of_the_callers_cannot_be_written():
@@ -153,4 +152,4 @@ def test_a_model_of_the_callers_cannot_be_written():
 
     library.performance = Own()
     with pytest.raises(InputError, match="performance must be one of"):
-        library_bytes(library)
+        library.to_bytes()

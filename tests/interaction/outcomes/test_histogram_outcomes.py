@@ -80,7 +80,7 @@ def test_other_bad_input_is_refused():
         HistogramOutcomes.from_samples([[[0.5]]], edges=[0.0, 1.0], pseudo_count=0.0).take(types=[0]).of(
             np.array([0.0, 1.0]), np.zeros((1, 1, 1)), 0.0
         )
-    with pytest.raises(InputError, match="known exactly"):
+    with pytest.raises(InputError, match="exact probabilities cannot learn"):
         by_hand().observe(0, 0, 0.5)
     learning = HistogramOutcomes([0.0, 1.0, 3.0], [[[0.75, 0.25]]], count=4)
     learning.observe(0, 0, 2.0)

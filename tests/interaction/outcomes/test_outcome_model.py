@@ -216,7 +216,7 @@ def test_some_types_and_policies(name):
     np.testing.assert_array_equal(some.mean, model.mean[[2, 0]][:, [1]])
     np.testing.assert_array_equal(some.log_density(0, 3.0), model.log_density(1, 3.0)[[2, 0]])
     for bad in ([], [3], [-1], [[0]]):
-        with pytest.raises(InputError, match="what to take"):
+        with pytest.raises(InputError, match="the chosen numbers must be"):
             model.take(types=bad)
 
 

@@ -11,7 +11,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.evidence import KEPT, MOST_SURPRISE
+from lifelore.interaction.reuse.explanation import MAX_EVIDENCE, MAX_SURPRISE
 from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -66,7 +66,7 @@ def test_what_it_says_for_itself():
     assert told.to_dict()["surprise"] == agent.surprise
     for _ in range(50):
         agent.update(0, 0)
-    assert len(agent.explain().policies) == KEPT
+    assert len(agent.explain().policies) == MAX_EVIDENCE
 
 
 def test_a_single_policy_has_no_runner_up():
@@ -82,7 +82,7 @@ def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     before, surprise = agent.log_belief, agent.surprise
     agent.update(0, 2)
     assert np.array_equal(agent.log_belief, before)
-    assert agent.surprise == surprise + MOST_SURPRISE
+    assert agent.surprise == surprise + MAX_SURPRISE
     assert agent.unexplained == 1
     assert agent.explain().evidence == {"type 0": [0.0, 0.0], "type 1": [pytest.approx(-math.log(2)), 0.0]}
     agent.update(0, 1)

@@ -81,7 +81,7 @@ def test_an_own_signal_model_is_given_again(tmp_path):
     agent = BayesianPolicyReuse(library(signal=signal), Greedy())
     agent.update(0, 3.0)
     save_session(agent, tmp_path / "agent.npz")
-    with pytest.raises(InputError, match="give it as signal="):
+    with pytest.raises(InputError, match="give the model as signal="):
         load_session(tmp_path / "agent.npz")
     loaded = load_session(tmp_path / "agent.npz", signal)
     loaded.update(1, 0.5)

@@ -13,9 +13,10 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.user_beliefs import BLOCK, UserBeliefs
+from lifelore.interaction.reuse.reuse_algorithm import BLOCK
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.reuse.user_file import load_users, save_users
-from lifelore.interaction.reuse.user_kernels import LEAST_LOG, absorb_f4, read_f4
+from lifelore.interaction.reuse.user_kernels import LEAST_LOG, bayes_users_f4, read_f4
 from lifelore.interaction.selection import RULES, BeliefSampling, ExpectedImprovement, Greedy, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
@@ -348,7 +349,7 @@ def test_nothing_to_do_is_nothing_done():
 def test_the_kernel_reports_what_no_type_explains():
     logs = np.log(np.array([[0.5, 0.5]], np.float32))
     said, linear, evidence = np.full((1, 2), -np.inf), np.empty((1, 2), np.float32), np.empty(1)
-    absorb_f4(logs, np.array([0]), said, linear, evidence)
+    bayes_users_f4(logs, np.array([0]), said, linear, evidence)
     assert evidence.tolist() == [-np.inf]
     assert linear == pytest.approx(np.array([[0.5, 0.5]]))
 

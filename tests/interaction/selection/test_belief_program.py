@@ -48,7 +48,7 @@ def test_looking_once_is_worth_it_by_hand():
     three = best_plan(library, 3)
     assert (three.value, three.first) == (pytest.approx(17), 2)
     # Guessing first and looking then leaves one episode to know: 5 - 3 + 10; less than guessing three times.
-    assert three.worth == pytest.approx([15, 15, 17])
+    assert three.values == pytest.approx([15, 15, 17])
     assert value_of_rule(library, Greedy(), 3) == pytest.approx(15)
     # With two episodes left the gradient weighs what is learnt, 5, twice: -3 + 10 beats 5.
     assert value_of_rule(library, KnowledgeGradient(), 3) == pytest.approx(17)
@@ -62,7 +62,7 @@ def test_agrees_with_plain_recursion_and_no_rule_is_better(seed, horizon):
     mean, laws = library.performance.mean.tolist(), library.table().probs.tolist()
     plan = best_plan(library, horizon)
     assert plan.value == pytest.approx(naive_value(library.prior.tolist(), mean, laws, horizon), rel=1e-9)
-    assert plan.worth[plan.first] == plan.value
+    assert plan.values[plan.first] == plan.value
     for name in RULES:
         assert value_of_rule(library, rule_named(name), horizon) <= plan.value + 1e-9, name
 

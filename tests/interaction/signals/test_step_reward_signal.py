@@ -20,8 +20,8 @@ def test_fitted_by_hand():
 def test_bad_input_is_refused():
     signal = StepRewardSignal.from_sequences(EPISODES, [0.0, 5.0], 2, 2)
     for bad, message in [
-        ([(0, 0, 3.0)], "reward 3.0 is none of"),
-        ([(0, 0, np.nan)], "reward nan is none of"),
+        ([(0, 0, 3.0)], "reward 3.0 is not among"),
+        ([(0, 0, np.nan)], "reward nan is not among"),
         ([(5, 0, 0.0)], "each step must be below"),
         ([(0, 0.0)], "rows of"),
         (7, "rows of"),

@@ -10,13 +10,11 @@ import re
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.agent.reuse.study import Study
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
-from lifelore.interaction.beliefs.belief import log_prior, update
-from lifelore.interaction.reuse.evidence import surprise_of
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_user", 1
@@ -129,21 +127,19 @@ def histories(memory: Memory, study: Study) -> list[History]:
     return sorted((open_history(memory, study, key) for key in keys), key=lambda one: one.user)
 
 
-def log_belief(study: Study, history: History) -> tuple[NDArray[np.float64], float]:
-    """The user's belief before the next decision, (n_types,) logs, and its surprise, see `evidence`.
+def replayed(study: Study, history: History) -> BayesianPolicyReuse:
+    """The agent for a user before the next decision: all decisions so far, taken in again in their order.
 
-    A decision without an outcome, or with a policy the library does not know, says nothing; types may change
-    after it all the same.
+    A decision without an outcome, or with a policy that the library does not know, gives no evidence. The user's
+    type may change after it all the same.
     """
-    belief, surprise = log_prior(study.prior_of(history.context)), 0.0
-    index = {policy: number for number, policy in enumerate(study.library.policies)}
+    agent = BayesianPolicyReuse(study.library, study.selection, study.prior_of(history.context), study.dynamics)
     for decision in history.decisions:
-        if decision.outcome is not None and decision.policy in index:
-            likelihood = study.library.signal.log_likelihood(index[decision.policy], decision.outcome)
-            belief, evidence = update(belief, likelihood)
-            surprise += surprise_of(float(evidence))
-        belief = study.dynamics.step(belief)
-    return belief, surprise
+        if decision.outcome is not None and decision.policy in study.library.policies:
+            agent.update(decision.policy, decision.outcome)
+        else:
+            agent.skip()
+    return agent
 
 
 def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Decision:

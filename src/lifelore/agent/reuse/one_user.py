@@ -14,9 +14,9 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.history import (
     Decision,
     History,
-    log_belief,
     open_history,
     parse_identifier,
+    replayed,
     robot_of,
     user_key,
 )
@@ -84,8 +84,8 @@ def choose(
 
 
 def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[Decision, dict[str, Any]]:
-    logs, surprise = log_belief(study, history)
-    belief = np.exp(logs)
+    agent = replayed(study, history)
+    belief = agent.belief
     control = study.holds_out(history.user)
     odds = _control_odds(study) if control else _odds(study, belief)
     number = history.decisions[-1].number + 1 if history.decisions else 0
@@ -103,7 +103,7 @@ def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[D
         "context": history.context if history.context in study.contexts else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
-        "surprise": surprise,
+        "surprise": agent.surprise,
     }
     return decision, said
 
@@ -152,7 +152,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         raise InputError(
             f"decision {decision} ended with {kept.outcome:g} already, got {outcome:g}; nothing changed"
         )
-    belief = np.exp(log_belief(study, history)[0])
+    belief = replayed(study, history).belief
     return {
         "decision": decision,
         "user": history.user,

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.reuse.history import Decision, History, histories, log_belief
+from lifelore.agent.reuse.history import Decision, History, histories, replayed
 from lifelore.agent.reuse.study import Study
 from lifelore.core.atomic_write import whole_file
 from lifelore.core.errors import StoreError
@@ -138,8 +138,7 @@ def _policies(study: Study, control: list[History]) -> list[dict[str, Any]]:
 
 def _regret(study: Study, history: History, control: bool) -> float:
     """Mean over decisions of what the best policy under the last belief is expected to bring more."""
-    belief = np.exp(log_belief(study, history)[0])
-    expected = dict(zip(study.library.policies, belief @ study.library.performance.mean, strict=True))
+    expected = dict(zip(study.library.policies, replayed(study, history).expected_utility(), strict=True))
     best = max(expected[policy] for policy in study.active)
     lost = [best - expected[one.policy] for one in _ended(history, control) if one.policy in expected]
     return float(np.mean(lost)) if lost else 0.0

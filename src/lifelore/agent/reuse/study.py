@@ -19,7 +19,6 @@ from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import SelectionRule, rule_named
 from lifelore.memory import Memory
@@ -134,7 +133,7 @@ class Study:
 
     def to_record(self) -> Record:
         """What memory keeps."""
-        packed = library_bytes(self.library)
+        packed = self.library.to_bytes()
         values = np.frombuffer(packed + bytes(-len(packed) % 8), "<i8").astype(np.int64)
         table = self._stored_table()
         about = {
@@ -188,7 +187,7 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     length = -(-about["bytes"] // 8)
     packed = record.values[:length].astype("<i8").tobytes()[: about["bytes"]]
     try:
-        library = library_from_bytes(packed, f"study '{name}'")
+        library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
         tables = _tables(record.values[length:], about.get("table"))
     except InputError as error:
         raise StoreError(f"{error}; fit the study anew") from None

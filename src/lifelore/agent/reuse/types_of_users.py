@@ -6,9 +6,9 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.library_from_log import TypedRows, library_of, model_of
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.belief import log_prior, update
 from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.outcome_families import UserRows
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
 CERTAIN = 0.9
 """Belief from which a user's type, which the log does not name, is taken to be known."""
@@ -49,14 +49,13 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     rows, types = named.rows.tolist(), named.types.tolist()
     if waiting:
         library, _ = library_of(log, named, model)
-        index = {policy: number for number, policy in enumerate(library.policies)}
         for own in waiting.values():
-            belief = log_prior(library.prior)
+            agent = BayesianPolicyReuse(library)
             for row in own:
-                if log.policies[row] in index:
-                    said = library.performance.log_density(index[log.policies[row]], log.outcomes[row])
-                    belief, _ = update(belief, said)
-            if np.exp(belief.max()) >= CERTAIN:
+                if log.policies[row] in library.policies:
+                    agent.update(log.policies[row], float(log.outcomes[row]))
+            belief = agent.belief
+            if belief.max() >= CERTAIN:
                 rows += own
                 types += [int(belief.argmax())] * len(own)
     return named._replace(

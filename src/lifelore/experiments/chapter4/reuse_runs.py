@@ -14,9 +14,10 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.baselines import Baseline
-from lifelore.interaction.beliefs.belief import entropy, log_prior, update
+from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection import SelectionRule, choose
+from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
+from lifelore.interaction.selection import SelectionRule
 
 Array = NDArray[np.float64]
 Signals = Callable[[int, NDArray[np.int64]], NDArray]
@@ -26,8 +27,6 @@ SETTLED = 1e-9
 """Regret below this is none."""
 STUCK = 5.0
 """Mean regret over the last episodes above which a task counts as stuck."""
-LEAST = 1e-250
-"""Beliefs below this are scored as 0: subnormal numbers slow arithmetic down and have no finite inverse."""
 LAST = 10
 """How many episodes are the last."""
 
@@ -54,21 +53,22 @@ def play_rule(
 ) -> Played:
     """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once.
 
-    `generator` serves the rule and its ties; `first`, if given, is played in the first episode whatever the rule
-    says.
+    `generator` serves the rule and the choice among equals. `first`, if given, is the policy of the first episode,
+    in place of the rule's choice.
     """
-    log_belief = np.tile(log_prior(library.prior), (n_tasks, 1))
+    reuse = ReuseAlgorithm(library, least=LEAST_SCORED)
+    log_belief, every = np.tile(reuse.start(), (n_tasks, 1)), np.arange(n_tasks)
     policies = np.empty((n_tasks, n_episodes), np.int64)
     entropies = np.empty((n_tasks, n_episodes + 1))
     for t in range(n_episodes):
-        belief = np.exp(log_belief)
-        belief[belief < LEAST] = 0.0
+        belief = reuse.belief(log_belief)
         entropies[:, t] = entropy(belief)
-        scores = rule.scores(library, belief, episodes_left=n_episodes - 1 - t, generator=generator)
-        chosen = np.full(n_tasks, first) if t == 0 and first is not None else np.asarray(choose(scores, generator))
+        if t == 0 and first is not None:
+            chosen = np.full(n_tasks, first)
+        else:
+            chosen, _ = reuse.select(belief, rule, generator, n_episodes - 1 - t)
         policies[:, t] = chosen
-        likelihood = library.signal.log_likelihoods(chosen, signals(t, chosen))  # pyright: ignore
-        log_belief = update(log_belief, likelihood).log_belief
+        reuse.update(log_belief, every, chosen, signals(t, chosen))
     entropies[:, -1] = entropy(np.exp(log_belief))
     return Played(policies, entropies)
 

@@ -1,12 +1,12 @@
 """BEAT: an interface that adapts its action set to the type of its user, step by step (Algorithm 9).
 
-At every step the user's move (s, a, s') is taken in and an action set chosen anew: with probability 1 - ε the one
-of the largest expected value under the belief (Eq. 4.9), else any. It is Bayesian policy reuse whose
+At every step BEAT learns from the user's move (s, a, s') and chooses an action set: with probability 1 - ε the
+action set of the largest expected value under the belief (Eq. 4.9), else any. This is Bayesian policy reuse whose
 policies are action sets, whose signals are single transitions and whose rule is ε-greedy. Thesis: §4.8.4.
 
-What is printed never normalises the belief and so falls below every number within an episode; here it is kept in
-logs. The printed ε falls from 0.5 by 0.1 an episode. Since every action set tells of the type, nothing is gained
-by trying others, and the default is 0.
+The printed algorithm never normalises the belief, which underflows within an episode; here beliefs are logarithms.
+The printed ε falls from 0.5 by 0.1 an episode. Every action set gives evidence about the type, so exploration
+gains no information, and the default is 0.
 """
 
 from collections.abc import Callable
@@ -28,13 +28,13 @@ from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 Array = NDArray[np.float64]
 
 Exploration = float | str | Callable[[int, int], float]
-"""ε: a number, a name of `EPSILONS`, or a function of the step and the episode, both counted from 0."""
+"""Type of ε: a number, a name of `EPSILONS`, or a function of the step and the episode, both counted from 0."""
 
 EPSILONS: dict[str, Callable[[int, int], float]] = {
     "1/n": lambda step, episode: 1.0 / (step + 1),
     "by episode": lambda step, episode: max(0.5 - 0.1 * episode, 0.0),
 }
-"""The thesis's: 1/n as §4.8.4.2 says, 0.5 and 0.1 less each episode as its experiments did (§4.8.5.1)."""
+"""The thesis's schedules: 1/n as in §4.8.4.2; 0.5 less 0.1 an episode as in its experiments (§4.8.5.1)."""
 
 
 def epsilon_of(exploration: Exploration) -> Callable[[int, int], float]:
@@ -56,7 +56,7 @@ def epsilon_of(exploration: Exploration) -> Callable[[int, int], float]:
 
 
 class Beat:
-    """The learner that adapts the interface to one user.
+    """The learner that adapts the interface to a single user.
 
     Parameters
     ----------
@@ -65,27 +65,27 @@ class Beat:
     epsilon : float, str or callable
         See `Exploration`.
     prior : (n_types,) float, optional
-        β⁰; the library's unless given.
+        β⁰; the library's by default.
     actions : SignalModel, optional
-        How each type acts under each action set: a second factor of the likelihood, which the thesis
-        leaves out. Its signals come as ``update(..., action=...)``.
+        How each type acts under each action set: a second factor of the likelihood, which the thesis leaves out.
+        Its signals are the ``action=`` of `update`.
     lag : int
-        Steps that a user needs to adapt to a new action set: until then her actions are judged by the old one.
-        The thesis's users adapt at once.
+        Steps that a user needs to adapt to a new action set. Until then her actions are judged by the old action
+        set. The thesis's users adapt at once.
     seed : int or numpy generator
 
     Attributes
     ----------
     log_belief : (n_types,) float64
     step, episode : int
-        Moves taken in, and episodes finished.
+        Number of moves so far, and of finished episodes.
     surprises : int
-        Moves that no type explains; they leave the belief as it is.
+        Number of moves that no type explains; they leave the belief as it is.
 
     Raises
     ------
     InputError
-        ε or the prior is none, the lag negative, or `actions` is over other types or action sets.
+        ε or the prior breaks its rule, the lag is negative, or `actions` is for other types or action sets.
     """
 
     def __init__(
@@ -117,12 +117,12 @@ class Beat:
         return np.exp(self.log_belief)
 
     def select(self) -> int:
-        """The action set for the next step; before the first, that of Eq. 4.8."""
+        """The action set for the next step; before the first step that of Eq. 4.8."""
         rule = EpsilonGreedy(self._epsilon(self.step, self.episode))
         return int(choose(rule.scores(self.library, self.belief, generator=self._generator), self._generator))
 
     def update(self, policy: str | int, signal: Any, action: Any = None) -> None:
-        """Take in one move.
+        """Learn from a move.
 
         Parameters
         ----------
@@ -136,45 +136,45 @@ class Beat:
         Raises
         ------
         NotFoundError
-            No such action set.
+            There is no such action set.
         InputError
-            An action without a model of actions, or a signal that its model refuses. Nothing has changed then.
+            An action without a model of actions, or a signal that its model cannot have made. The state stays.
         """
         policy = self.library.index_of_policy(policy)
         adaptation = copy(self.adaptation)
         adapted = adaptation.after_step(policy)
-        likelihood = self._said(self.library.signal, policy, signal)
+        likelihood = self._log_likelihood(self.library.signal, policy, signal)
         if action is not None:
             if self.actions is None:
                 raise InputError("action was given, but no model of actions; give Beat(..., actions=...)")
-            likelihood = likelihood + self._said(self.actions, adapted, action)
+            likelihood = likelihood + self._log_likelihood(self.actions, adapted, action)
         self.log_belief, evidence = update(self.log_belief, likelihood)
         self.adaptation = adaptation
         self.surprises += bool(np.isneginf(evidence))
         self.step += 1
 
-    def _said(self, model: SignalModel, policy: int, signal: Any) -> Array:
-        said = np.asarray(model.log_likelihood(policy, signal), np.float64)
-        if said.shape != self.log_belief.shape:
+    def _log_likelihood(self, model: SignalModel, policy: int, signal: Any) -> Array:
+        found = np.asarray(model.log_likelihood(policy, signal), np.float64)
+        if found.shape != self.log_belief.shape:
             raise InputError(
                 f"signal model {type(model).__name__} must give {self.log_belief.shape} log likelihoods, gave "
-                f"{said.shape}"
+                f"{found.shape}"
             )
-        return said
+        return found
 
     def end_episode(self) -> None:
-        """The user has reached the end; she plays on, and what is believed of her stays."""
+        """Count a finished episode; the belief about the user stays."""
         self.episode += 1
 
 
 class Adaptation:
-    """Which action set a user reckons with: a new one only after she has had it for `lag` steps."""
+    """The action set that a user has adapted to: a new action set only after `lag` steps under it."""
 
     def __init__(self, lag: int) -> None:
         self.lag, self.held, self.held_for, self.adapted = lag, -1, 0, -1
 
     def after_step(self, policy: int) -> int:
-        """The action set reckoned with in a step for which `policy` was in force."""
+        """The action set that the user has adapted to in a step under `policy`."""
         if policy != self.held:
             first = self.held < 0
             self.held, self.held_for = policy, self.lag if first else 0

@@ -1,4 +1,4 @@
-"""BEAT for many users at once: one row of log beliefs a user, tables instead of models. See `beat`."""
+"""BEAT for many users at once: a row of log beliefs for each user, and tables in place of models. See `beat`."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,7 +21,7 @@ class BeatUsers:
         Log likelihood of each signal under each action set.
     n_users : int
     prior : (n_types,) or (n_users, n_types) float, optional
-        Uniform unless given.
+        Uniform by default.
     seed : int or numpy generator
 
     Attributes
@@ -32,7 +32,8 @@ class BeatUsers:
     Raises
     ------
     InputError
-        The table does not fit the values or holds NaN or infinity, a value is not finite, or the prior is none.
+        The table does not fit the values or holds NaN or infinity, a value is not finite, or the prior is no
+        distribution.
 
     Thesis: §4.8.4, Alg. 9.
     """
@@ -64,7 +65,7 @@ class BeatUsers:
         self._generator = np.random.default_rng(seed)
 
     def select(self, users: NDArray[np.int64], epsilon: ArrayLike = 0.0) -> NDArray[np.int64]:
-        """The action set for the next step of `users` (n,): of equals the first, by chance with `epsilon` (n,)."""
+        """The next action set of `users` (n,): with probability `epsilon` any, else the first of the best."""
         chosen = (np.exp(self.log_belief[users]) @ self.value).argmax(axis=1)
         epsilon = np.broadcast_to(np.asarray(epsilon, np.float64), chosen.shape)
         if not epsilon.any():
@@ -79,7 +80,7 @@ class BeatUsers:
         signals: NDArray[np.int64],
         extra: Array | None = None,
     ) -> None:
-        """Take in one signal of each of `users`, seen under `policies`.
+        """Learn from a signal of each of `users` under `policies`.
 
         Parameters
         ----------
@@ -95,7 +96,7 @@ class BeatUsers:
             A user comes twice, or `extra` holds NaN or infinity; no belief has changed then.
         """
         if len(np.unique(users)) < len(users):
-            raise InputError("users must be distinct; update one who comes twice in turn")
+            raise InputError("users must be distinct; update a user that comes twice in two calls")
         likelihood = self.log_table[policies, signals]
         if extra is not None:
             likelihood = likelihood + extra

@@ -1,6 +1,6 @@
-"""What policy reuse is compared with: methods that see the payoffs of the policies they play, and no types.
+"""Baselines of policy reuse: methods that learn from the payoffs of the policies they play and know no types.
 
-All have the same two verbs, ``select()`` and ``update(policy, reward)``; see `Baseline`.
+All have the methods ``select()`` and ``update(policy, reward)``; see `Baseline`.
 """
 
 from lifelore.interaction.baselines.baseline import Baseline

@@ -1,4 +1,4 @@
-"""What was seen of each policy: how often it was played, what it paid on average, and how that varied."""
+"""Statistics of each policy: number of plays, mean payoff and variance."""
 
 from dataclasses import dataclass
 

@@ -1,12 +1,13 @@
-"""What every baseline shares: the two verbs, one task or many side by side, ties among equals, bad input.
+"""Base class of all baselines: selection and update for a single task or many tasks, ties, checks of input.
 
-A baseline sees the payoff of the policy it played and nothing else. `n_tasks` plays that many independent tasks
-at once, row by row, with one call for all: policies and payoffs are then arrays, and the work is done on
-``(n_tasks, n_policies)`` arrays. Without it the same code plays one task with plain numbers.
+A baseline sees only the payoff of the policy it played. `n_tasks` plays that many independent tasks at once:
+policies and payoffs are then arrays, and the state is ``(n_tasks, n_policies)`` arrays. Without it the same code
+plays a single task with plain numbers. `library_moments` is the knowledge that a baseline without types can take
+from a library.
 """
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,14 +29,14 @@ class Baseline(ABC):
     n_policies : int
         At least 1.
     n_tasks : int, optional
-        Play so many tasks at once, all with the same settings; default one task, with plain numbers.
+        Number of tasks played at once, all with the same settings; by default a single task with plain numbers.
     seed : int or numpy generator
-        For ties and draws.
+        Serves ties and draws.
 
     Attributes
     ----------
     episode : int
-        Updates so far.
+        Number of updates so far.
     """
 
     name: ClassVar[str]
@@ -52,15 +53,15 @@ class Baseline(ABC):
 
     @classmethod
     def from_library(cls, library: "PolicyLibrary", **settings: Any) -> Self:
-        """A baseline over the policies of `library`, given what of it the method can use.
+        """A baseline over the policies of `library` with the knowledge that the method can use.
 
-        `settings` are the constructor's and override what the library says.
+        `settings` are the constructor's and override the library.
         """
         return cls(library.n_policies, **settings)
 
     @property
     def rows(self) -> int:
-        """Tasks played: 1 where `n_tasks` was left out."""
+        """Number of tasks: 1 without `n_tasks`."""
         return self.n_tasks or 1
 
     def select(self) -> Any:
@@ -69,7 +70,7 @@ class Baseline(ABC):
         return int(chosen[0]) if self.n_tasks is None else chosen
 
     def update(self, policy: ArrayLike, reward: ArrayLike) -> None:
-        """Take in what `policy` paid; late and out-of-order payoffs are as good as fresh ones.
+        """Learn the payoff of `policy`; payoffs may come late and in any order.
 
         Parameters
         ----------
@@ -80,9 +81,9 @@ class Baseline(ABC):
         Raises
         ------
         NotFoundError
-            A policy that is not 0 … n_policies - 1.
+            A policy is outside 0 … n_policies - 1.
         InputError
-            A payoff that is not finite, or not one for each task; nothing is learnt from any then.
+            A payoff is not finite, or there is not a payoff for each task; the state stays.
         """
         policies, rewards = self._checked_policies(policy), self._checked_rewards(reward)
         self._learn(policies, rewards)
@@ -114,15 +115,15 @@ class Baseline(ABC):
 
     @abstractmethod
     def _scores(self) -> NDArray[np.float64]:
-        """What each policy is worth playing, (rows, n_policies); infinity is allowed, NaN is not."""
+        """The score of each policy, (rows, n_policies); infinity is allowed, NaN is not."""
 
     @abstractmethod
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        """Take in one payoff a row."""
+        """Learn a payoff for each row."""
 
 
 def row_of(name: str, values: ArrayLike, n_policies: int, least: float = -np.inf) -> NDArray[np.float64]:
-    """`values` as (n_policies,) finite floats above `least`; one number stands for all policies."""
+    """`values` as (n_policies,) finite floats above `least`; a single number is for all policies."""
     try:
         row = np.broadcast_to(np.asarray(values, np.float64), (n_policies,))
     except ValueError:
@@ -133,3 +134,28 @@ def row_of(name: str, values: ArrayLike, n_policies: int, least: float = -np.inf
         above = "" if least == -np.inf else f" and above {least:g}"
         raise InputError(f"{name} must be finite{above}, got {values!r}")
     return row.copy()
+
+
+class Moments(NamedTuple):
+    """First two moments of each policy's payoff when the type is drawn from the library's prior.
+
+    mean : (n_policies,) float
+        E[U].
+    spread : (n_policies,) float
+        Deviation of the mean payoff from type to type.
+    noise : (n_policies,) float
+        Deviation of a payoff about its type's mean, root mean square over types.
+    """
+
+    mean: NDArray[np.float64]
+    spread: NDArray[np.float64]
+    noise: NDArray[np.float64]
+
+
+def library_moments(library: "PolicyLibrary") -> Moments:
+    """Moments under the library's prior G₀ over types."""
+    prior, means = np.asarray(library.prior), np.asarray(library.performance.mean)
+    mean = prior @ means
+    spread = np.sqrt(prior @ (means - mean) ** 2)
+    noise = np.sqrt(prior @ np.asarray(library.performance.deviation) ** 2)
+    return Moments(mean, spread, noise)

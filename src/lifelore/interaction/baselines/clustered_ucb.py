@@ -1,4 +1,4 @@
-"""Two-level UCB1: first a cluster of like policies, then a policy of it (Pandey et al., 2007)."""
+"""Two-level UCB1: select a cluster of similar policies, then a policy of the cluster (Pandey et al., 2007)."""
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments
 from lifelore.interaction.baselines.ucb1 import checked_exploration, checked_scale, to_unit, upper_bounds
 from lifelore.interaction.selection.choice import choose
 
@@ -19,21 +18,21 @@ REPRESENTATIVES = ("mean", "max")
 
 
 class ClusteredUCB(Baseline):
-    """UCB1 over clusters, each standing for its policies as one arm, then UCB1 within the cluster chosen.
+    """UCB1 over clusters, each a single arm, then UCB1 within the selected cluster.
 
     Parameters
     ----------
     clusters : (n_policies,) int
         The cluster of each policy, numbered from 0 without gaps.
     representative : {"mean", "max"}
-        A cluster's payoff: the mean of all its plays, or the mean of its best policy played. Its pulls are the
-        sum of its policies'.
+        A cluster's payoff: the mean of all its plays, or the mean of its best played policy. Its pulls are the sum
+        over its policies.
     exploration, scale, prior_means, prior_pulls
         As in `UCB1`, on both levels.
     n_policies, n_tasks, seed
         As in `Baseline`.
 
-    `from_library` puts policies together that do alike over the library's types, see `clusters_of_policies`.
+    `from_library` clusters policies with similar payoffs over the library's types, see `clusters_of_policies`.
     Thesis: §4.7.2.
 
     Examples
@@ -87,7 +86,7 @@ class ClusteredUCB(Baseline):
         return choose(np.where(members, bounds, -np.inf), self._generator)
 
     def _scores(self) -> NDArray[np.float64]:
-        raise NotImplementedError("two levels have no one score a policy")
+        raise NotImplementedError("two levels have no single score for a policy")
 
     def _representatives(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Pulls and mean of each cluster, (rows, n_clusters)."""
@@ -104,7 +103,7 @@ class ClusteredUCB(Baseline):
 
 
 def clusters_of_policies(mean: ArrayLike, n_clusters: int | None = None) -> NDArray[np.int64]:
-    """Policies that do alike over the types, (n_policies,) int from 0, by Ward's hierarchy on their columns.
+    """Clusters of policies with similar payoffs over the types, (n_policies,) int from 0, by Ward's hierarchy.
 
     Parameters
     ----------

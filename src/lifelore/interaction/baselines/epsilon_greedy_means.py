@@ -1,4 +1,4 @@
-"""ε-greedy on mean payoffs: the best policy so far, and now and then any."""
+"""ε-greedy on mean payoffs: the best policy so far, or any policy with probability ε."""
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -7,22 +7,21 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments
 
 if TYPE_CHECKING:
     from lifelore.interaction.library.policy_library import PolicyLibrary
 
 
 class EpsilonGreedyMeans(Baseline):
-    """The policy of the largest mean with probability 1 - ε, else one of all at random.
+    """The policy of the largest mean with probability 1 - ε, else a random policy.
 
     Parameters
     ----------
     epsilon : float
         In [0, 1].
     prior_means : (n_policies,) float, optional
-        Expected payoffs, worth `prior_pulls` plays. Without them every policy is played once first.
+        Expected payoffs that count as `prior_pulls` plays. Without them every policy is played once first.
     prior_pulls : float or (n_policies,) float
         Above 0.
     n_policies, n_tasks, seed

@@ -16,8 +16,8 @@ if TYPE_CHECKING:
 class EXP3(Baseline):
     """p = (1 - γ) w / Σw + γ / P; the policy played gets w ← w·exp(γ x / (p P)), x the payoff in [0, 1].
 
-    One `select` and one `update` stand for one pull, however long it lasts: k steps of an episode, as the thesis
-    prints it (whose payoff is then 0 until the goal is reached), or a whole episode.
+    A `select` and an `update` are a pull of any length: k steps of an episode, as the thesis prints it (the payoff
+    is then 0 until the goal is reached), or a whole episode.
 
     Parameters
     ----------
@@ -25,14 +25,14 @@ class EXP3(Baseline):
         Share of uniform play, in (0, 1].
     horizon : int, optional
         Number of pulls to come: γ = min(1, √(P ln P / ((e - 1) horizon))), which minimises the bound on regret.
-        One of the two has to be given.
+        Give either gamma or horizon.
     scale : (float, float), optional
-        Payoffs that become 0 and 1; default (0, 1). What lies outside is clipped: weights need [0, 1].
+        Payoffs that are mapped to 0 and 1; default (0, 1). Payoffs outside are clipped: weights need [0, 1].
     n_policies, n_tasks, seed
         As in `Baseline`.
 
-    A payoff is weighed by the probability its policy has when it comes in, so a late one is weighed by
-    today's.
+    A payoff is weighted by the probability of its policy at the time of the update, also if it comes late.
+
     Thesis: §4.8.5.
 
     Examples
@@ -66,7 +66,7 @@ class EXP3(Baseline):
 
     @property
     def probabilities(self) -> NDArray[np.float64]:
-        """Chance of each policy to be played next, (n_policies,) or (n_tasks, n_policies)."""
+        """Probability that each policy is played next, (n_policies,) or (n_tasks, n_policies)."""
         probs = self._scores()
         return probs[0] if self.n_tasks is None else probs
 
@@ -90,7 +90,7 @@ class EXP3(Baseline):
 
 def _gamma(gamma: float | None, horizon: int | None, n_policies: int) -> float:
     if (gamma is None) == (horizon is None):
-        raise InputError("give gamma or horizon, one of the two")
+        raise InputError("give either gamma or horizon")
     if horizon is not None:
         if horizon < 1:
             raise InputError(f"horizon must be at least 1, got {horizon}")

@@ -1,9 +1,8 @@
 """GP-UCB: upper confidence bounds from a Gaussian process over policies (Srinivas et al., 2010).
 
-The process lives on finitely many policies, so its posterior is exact linear algebra. With L the Cholesky factor
-of the covariance of all payoffs so far and V = L⁻¹ K(seen, all), the posterior mean is m + Vᵀ z with
-z = L⁻¹ (y - m) and its variance diag K - Σ V². One more payoff appends one row to L, V and z: that row of L *is*
-a column of V.
+The process is over finitely many policies, so its posterior is exact linear algebra. With L the Cholesky factor of
+the covariance of all payoffs so far and V = L⁻¹ K(seen, all), the posterior mean is m + Vᵀ z with z = L⁻¹ (y - m)
+and the variance is diag K - Σ V². Each payoff appends a row to L, V and z; this row of L is a column of V.
 """
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
@@ -12,8 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.interaction.baselines.baseline import Baseline, row_of
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
 from lifelore.interaction.baselines.policy_kernels import performance_kernel, prior_covariance
 
 if TYPE_CHECKING:
@@ -21,7 +19,7 @@ if TYPE_CHECKING:
 
 KERNELS = ("performance", "covariance")
 MOST_ROWS = 4
-"""Rows of V, in multiples of n_policies, after which the posterior becomes the prior and V starts anew."""
+"""Largest number of rows of V, in multiples of n_policies; the posterior then becomes the prior and V is empty."""
 
 
 class GPUCB(Baseline):
@@ -98,7 +96,7 @@ class GPUCB(Baseline):
         return mean + np.sqrt(self._beta()) * deviation
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:
-        """Append a row to V; what z would say is already in the mean."""
+        """Append a row to V; the mean already contains z."""
         every = np.arange(self.rows)
         known = self._rows[:, : self._seen]
         # The new row of L: L⁻¹ K(seen, policy), which is the policy's column of V.
@@ -122,7 +120,7 @@ class GPUCB(Baseline):
             self._fold()
 
     def _fold(self) -> None:
-        """The posterior becomes the prior: exact, and it keeps long runs from slowing down."""
+        """Make the posterior the prior: exact, and it bounds the time of a step."""
         known = self._rows[:, : self._seen]
         self._covariance = self._covariance - np.einsum("rsp,rsq->rpq", known, known, optimize=True)
         self._rows, self._seen = np.empty((self.rows, 8, self.n_policies)), 0

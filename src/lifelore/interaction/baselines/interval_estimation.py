@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments
 
 if TYPE_CHECKING:
     from lifelore.interaction.library.policy_library import PolicyLibrary

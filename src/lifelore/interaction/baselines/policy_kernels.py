@@ -1,6 +1,6 @@
-"""Covariances between policies, for Gaussian processes over a finite set of them.
+"""Covariances between policies, for Gaussian processes over a finite set of policies.
 
-Three sources of "near": doing alike in training, a true metric that the caller knows, and the covariance of
+Three sources of similarity: performance in training, a true metric that the caller knows, and the covariance of
 payoffs over a library's types. Thesis: §4.6.4 (the metric is not known and "is approximated from performance in
 the training tasks").
 """
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 FORMS = ("gaussian", "exponential")
 JITTER = 1e-10
-"""Share of the mean variance added to the diagonal, so that a factorisation in floats exists."""
+"""Share of the mean variance added to the diagonal, so that a factorisation exists."""
 
 
 def performance_distances(mean: ArrayLike) -> NDArray[np.float64]:
@@ -47,10 +47,10 @@ def metric_kernel(
     length : float
         ℓ > 0, in units of the distances.
     deviation : float
-        Of a policy's mean payoff before anything was seen, > 0.
+        Prior deviation of a policy's mean payoff, > 0.
     form : {"gaussian", "exponential"}
         The Gaussian form of a metric that is not Euclidean (grid steps, largest coordinate) need not be a
-        covariance: negative eigenvalues are then set to 0 and the diagonal is put back.
+        covariance: negative eigenvalues are then set to 0 and the diagonal is restored.
     """
     gaps = np.asarray(distances, np.float64)
     _check_distances(gaps)
@@ -65,9 +65,9 @@ def metric_kernel(
 def performance_kernel(
     mean: ArrayLike, *, length: float | None = None, deviation: float | None = None
 ) -> NDArray[np.float64]:
-    """`metric_kernel` on the policies' training performance, as the thesis's GP-UCB has it.
+    """`metric_kernel` on the policies' training performance, as in the thesis's GP-UCB.
 
-    `length` by default is the one under which the types' own payoffs are likeliest, see `likeliest_length`;
+    `length` by default is the most likely length given the types' payoffs, see `likeliest_length`;
     `deviation` is the root mean square deviation of payoffs about each policy's mean over types.
     """
     table = np.asarray(mean, np.float64)
@@ -83,7 +83,7 @@ def performance_kernel(
 def prior_covariance(library: "PolicyLibrary") -> NDArray[np.float64]:
     """Covariance of the policies' mean payoffs when the type is drawn from G₀, (n_policies, n_policies).
 
-    The best second-moment summary a Gaussian process can have of the library.
+    It is the best second-moment summary of the library for a Gaussian process.
     """
     prior, means = np.asarray(library.prior), np.asarray(library.performance.mean)
     centred = means - prior @ means
@@ -98,7 +98,7 @@ def likeliest_length(
     lengths: Sequence[float] | None = None,
     noise: float | None = None,
 ) -> float:
-    """Of `lengths` the one that makes `centred`, rows as draws of the process, likeliest.
+    """The most likely of `lengths` if the rows of `centred` are draws of the process.
 
     Parameters
     ----------
@@ -106,9 +106,9 @@ def likeliest_length(
     centred : (n_types, n_policies) float
         Payoffs less each policy's mean.
     deviation : float
-        Of the kernel, > 0.
+        Deviation of the kernel, > 0.
     lengths : sequence of float, optional
-        Default: 24 from a tenth of the least distance that is not 0 to the largest distance, evenly in logarithm.
+        By default 24 values, evenly in logarithm, from a tenth of the least positive distance to the largest.
     noise : float, optional
         Deviation of the draws about the process; default a hundredth of `deviation`.
     """
@@ -124,7 +124,7 @@ def likeliest_length(
 
 
 def _log_density(covariance: NDArray[np.float64], rows: NDArray[np.float64]) -> float:
-    """Log density of all rows, up to the constant they share."""
+    """Log density of all rows, up to a constant."""
     from scipy.linalg import cho_factor, cho_solve
 
     factor = cho_factor(covariance, lower=True)
@@ -141,10 +141,10 @@ def _check_distances(gaps: NDArray[np.float64]) -> None:
 
 
 def _semidefinite(like: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The correlation matrix with its negative eigenvalues, if any, set to 0 and its diagonal back at 1."""
+    """The correlation matrix with negative eigenvalues set to 0 and the diagonal at 1."""
     values, vectors = np.linalg.eigh(like)
     if values[0] >= -JITTER * len(like):
         return like
-    kept = (vectors * np.maximum(values, 0.0)) @ vectors.T
-    scale = np.sqrt(np.diag(kept))
-    return kept / np.outer(scale, scale)
+    positive = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    scale = np.sqrt(np.diag(positive))
+    return positive / np.outer(scale, scale)

@@ -1,12 +1,12 @@
-"""Probabilistic policy reuse (PRQ): Q-learning whose exploration follows policies of a library now and then.
+"""Probabilistic policy reuse (PRQ): Q-learning whose exploration follows policies of a library.
 
 Before each episode a policy k is drawn with probability ∝ exp(τ W_k), where W_k is its mean return so far (0
-before its first episode) and τ rises by Δτ an episode. The last one is the new policy itself, followed greedily. A
-past one is followed with probability ψ at a step, else the new one ε-greedily; ψ starts each episode anew and
-decays by ν a step. The new policy is learnt from every step of every episode.
+before its first episode) and τ rises by Δτ an episode. The last policy is the new policy, followed greedily. A
+past policy is followed with probability ψ at a step, else the new policy ε-greedily. ψ has its initial value at
+the start of each episode and decays by ν a step. The new policy is learnt from every step of every episode.
 
-It knows no world: it runs on tables, and sees the rows of Q that it is given (`Rows.q_row`), so that it can learn
-where the state is hidden. Fernandez and Veloso (2006); thesis: §4.6.3, Figure 4.8.
+PRQ runs on tables and reads the rows of Q that it is given (`Rows.q_row`), so it can learn where the state is
+hidden. Fernandez and Veloso (2006); thesis: §4.6.3, Figure 4.8.
 """
 
 from dataclasses import dataclass
@@ -24,10 +24,10 @@ from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 
 class Reuser(NamedTuple):
-    """Everything carried from one episode to the next; changed in place.
+    """The state between episodes; changed in place.
 
     q : (n_q_rows, n_actions) float64
-    gain, uses : (n_policies + 1,) float64, mean return W by policy, the new one last, and episodes behind it
+    gain, uses : (n_policies + 1,) float64, mean return W by policy, the new policy last, and number of episodes
     temperature : (1,) float64, τ
     world_random, own_random : (2,) uint64
     """
@@ -41,7 +41,7 @@ class Reuser(NamedTuple):
 
 
 class ReuseRule(NamedTuple):
-    """Δτ, ψ at the start of an episode, ν, and what W is divided by before τ multiplies it."""
+    """Δτ, ψ at the start of an episode, ν, and the divisor of W before τ multiplies it."""
 
     temperature_step: float
     reuse: float
@@ -58,9 +58,9 @@ class ProbabilisticPolicyReuse:
     temperature, temperature_step : float
         τ of the first episode and Δτ; at least 0. Thesis and paper: 0 and 0.05.
     reuse, reuse_decay : float
-        ψ of an episode's first step, and ν, both in [0, 1]. The thesis is silent; paper: 1 and 0.95.
+        ψ of an episode's first step, and ν, both in [0, 1]. The thesis gives no values; paper: 1 and 0.95.
     gain_unit : float
-        What returns are divided by in the softmax; positive. τ is in units of 1/return: the paper's returns lie in
+        Divisor of returns in the softmax; positive. τ is in units of 1/return: the paper's returns lie in
         [0, 1], and returns of 100 make its temperatures a hundred times as greedy.
 
     Examples
@@ -101,7 +101,7 @@ class ProbabilisticPolicyReuse:
         """A learner before its first episode: Q = 0, W = 0."""
         n_policies, n_rows, n_actions = np.shape(library)
         if n_rows != n_q_rows:
-            raise InputError(f"library must have {n_q_rows} rows a policy, one a row of Q, got {n_rows}")
+            raise InputError(f"library must have {n_q_rows} rows a policy, one for each row of Q, got {n_rows}")
         if np.min(library, initial=0.0) < 0 or not np.allclose(np.sum(library, axis=2), 1, atol=1e-9):
             raise InputError("library must hold probabilities: non-negative rows that sum to 1")
         return Reuser(
@@ -116,7 +116,7 @@ class ProbabilisticPolicyReuse:
     def learn(
         self, tables: Tables, rows: Rows, library: NDArray[np.float64], schedule: Schedule, reuser: Reuser
     ) -> tuple[Curve, NDArray[np.int64]]:
-        """Run the episodes of `schedule`; a later call with the same `reuser` goes on.
+        """Run the episodes of `schedule`; a later call with the same `reuser` continues.
 
         Parameters
         ----------
@@ -135,7 +135,7 @@ class ProbabilisticPolicyReuse:
         curve : Curve
             Its `returns`, discounted by γ, are what W averages.
         chosen : (n_episodes,) int64
-            The policy followed; n_policies for the new one.
+            The followed policy; n_policies for the new policy.
         """
         library_cum = np.cumsum(library, axis=2, dtype=np.float64)
         library_cum[..., -1] = 1.0
@@ -198,7 +198,7 @@ def _learn(tables, rows, library_cum, schedule, rule, reuser, curve):
 @kernel
 def _draw_policy(gain, temperature, random):
     """A policy with probability ∝ exp(τ W)."""
-    # The greatest exponent is 0: nothing overflows however hot τ W grows.
+    # The greatest exponent is 0, so no weight overflows.
     weight = np.exp(temperature * (gain - gain.max()))
     left = next_uniform(random) * weight.sum()
     for k in range(gain.size - 1):

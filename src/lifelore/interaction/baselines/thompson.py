@@ -1,4 +1,4 @@
-"""Thompson sampling: draw each policy's mean payoff from what is believed of it, play the largest."""
+"""Thompson sampling: draw each policy's mean payoff from its posterior, play the largest."""
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -6,14 +6,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline, row_of
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments, row_of
 
 if TYPE_CHECKING:
     from lifelore.interaction.library.policy_library import PolicyLibrary
 
 LEAST = 1e-9
-"""Deviation that stands for 0, where a library is certain."""
+"""Deviation in place of 0 where a library is certain."""
 
 
 class GaussianThompson(Baseline):
@@ -25,7 +24,7 @@ class GaussianThompson(Baseline):
     Parameters
     ----------
     prior_means, prior_deviations : float or (n_policies,) float
-        m₀ and s₀ > 0 of the belief about each mean.
+        m₀ and s₀ > 0 of the prior of each mean.
     noise : float or (n_policies,) float
         σ > 0 of a payoff.
     n_policies, n_tasks, seed
@@ -63,7 +62,7 @@ class GaussianThompson(Baseline):
         return cls(library.n_policies, **(known | settings))
 
     def beliefs(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Mean and deviation believed of each policy's mean payoff, (rows, n_policies) each."""
+        """Posterior mean and deviation of each policy's mean payoff, (rows, n_policies) each."""
         seen = self.arms.pulls * self._noise_precision
         precision = self._start_precision + seen
         mean = (self._start_precision * self._start + seen * self.arms.mean) / precision

@@ -1,4 +1,4 @@
-"""Try every policy, then play the best: what a library of policies without models would do."""
+"""Try every policy, then play the best: the use of a library of policies without models."""
 
 from typing import Any, ClassVar
 
@@ -11,7 +11,7 @@ from lifelore.interaction.baselines.baseline import Baseline
 
 
 class TryAll(Baseline):
-    """Each policy `rounds` times in an order drawn anew for each task, then the one of the best mean for ever.
+    """Each policy `rounds` times in a random order for each task, then the policy of the best mean for ever.
 
     Parameters
     ----------
@@ -44,9 +44,9 @@ class TryAll(Baseline):
 
     def _scores(self) -> NDArray[np.float64]:
         waiting = self.arms.pulls < self.rounds
-        # Whoever was played less comes first; among those, the order drawn at the start.
+        # Policies with fewer plays come first; equals in the order drawn at the start.
         first = self.rounds - self.arms.pulls + self._turn
-        # A task that has tried everything plays by means; one that has not, in its order.
+        # A task that has tried all policies plays by means; other tasks continue in their order.
         return np.where(waiting.any(axis=1, keepdims=True), np.where(waiting, first, -np.inf), self.arms.mean)
 
     def _learn(self, policies: NDArray[np.int64], rewards: NDArray[np.float64]) -> None:

@@ -7,8 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.baselines.arm_statistics import ArmStatistics
-from lifelore.interaction.baselines.baseline import Baseline
-from lifelore.interaction.baselines.library_moments import library_moments
+from lifelore.interaction.baselines.baseline import Baseline, library_moments
 
 if TYPE_CHECKING:
     from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -22,11 +21,11 @@ class UCB1(Baseline):
     exploration : float
         c ≥ 0; 1 is the printed algorithm. On few and noisy plays much smaller values do better.
     scale : (float, float), optional
-        Payoffs that become 0 and 1; default they are in [0, 1] as they are. Nothing is clipped.
+        Payoffs that are mapped to 0 and 1, by default (0, 1). Payoffs are not clipped.
     prior_means : (n_policies,) float, optional
-        Expected payoffs, in payoffs' own units: no policy has to be tried before the choice begins.
+        Expected payoffs in units of payoffs; no policy then has to be tried first.
     prior_pulls : float or (n_policies,) float
-        How many plays those are worth; n and t count them.
+        Number of plays that the prior means count as, in n and in t.
     n_policies, n_tasks, seed
         As in `Baseline`.
 

@@ -1,28 +1,26 @@
-"""Beliefs over types, in log space: exact where likelihoods are zero, and for as many users at once as you like.
+"""Beliefs over types in log space: the prior, Bayes' rule for any number of users, entropy, expected utility.
 
     β'(τ) = F(σ | τ, π) β(τ) / Σ F(σ | τ', π) β(τ')                                            Eq. 4.1, 4.2
 
-A belief that reached 10⁻⁴⁰⁰ is still a number here and may rise again; a belief of 0 stays 0. A signal that no
-type explains leaves the belief as it is and says so by an evidence of minus infinity. Thesis: §4.4.3.
+A belief of 10⁻⁴⁰⁰ is still a number in log space and may rise again. A belief of 0 stays 0. A signal that no type
+explains leaves the belief as it is; its log evidence is minus infinity. Thesis: §4.4.3.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.compiler_start import kernel_pays
+from lifelore.interaction.beliefs.bayes_rule import bayes_rule
 
 Array = NDArray[np.float64]
 
-LOWEST = -1.7e308
-"""Stands for a log evidence below the range of numbers, which is not the evidence of what is impossible."""
 ROW_COST = 10
-"""Time of `bayes_rule` for each type, in units of `kernel_pays`."""
+"""Time of `bayes_rule` for each type, in the numbers that `kernel_pays` counts."""
 SUM_TOLERANCE = 1e-9
-"""How far from 1 a belief given by a caller may sum."""
+"""Largest distance from 1 of the sum of a caller's belief."""
 
 
 class Updated(NamedTuple):
@@ -37,7 +35,7 @@ class Updated(NamedTuple):
 
 
 def log_prior(prior: ArrayLike) -> Array:
-    """Logs of a belief that starts an agent, normalised to the last bit of rounding.
+    """Logarithms of an initial belief, normalised.
 
     Parameters
     ----------
@@ -47,7 +45,7 @@ def log_prior(prior: ArrayLike) -> Array:
     Raises
     ------
     InputError
-        An entry is negative or no number, or a row sums to something else.
+        An entry is negative or NaN, or a row does not sum to 1.
 
     Examples
     --------
@@ -106,27 +104,6 @@ def update(log_belief: ArrayLike, log_likelihood: ArrayLike) -> Updated:
             "log_likelihood must be numbers below infinity (minus infinity is allowed), got NaN or infinity"
         )
     return Updated(result.reshape(shape), evidence.reshape(shape[:-1]))
-
-
-def bayes_rule(log_belief: Array, log_likelihood: Array) -> tuple[Array, float]:
-    """One belief (n_types,) after a signal, and the log evidence: the NumPy twin of `belief_kernels.bayes_row`."""
-    if not (log_likelihood < np.inf).all():
-        return log_belief, np.nan
-    possible = log_belief > -np.inf
-    best = max(log_likelihood[possible].tolist(), default=-np.inf)
-    if best == -np.inf:
-        return log_belief, -np.inf
-    joint = np.full(log_belief.shape, -np.inf)
-    with np.errstate(over="ignore"):
-        joint[possible] = log_belief[possible] + (log_likelihood[possible] - best)
-    top = max(joint.tolist())
-    # The kernel's own functions and order of sums: NumPy's exponential and its sum may differ in the last bit.
-    total = 0.0
-    for value in (joint - top).tolist():
-        total += math.exp(value)
-    shift = math.log(total)
-    after = (joint - top) - shift
-    return np.where(after > 0, 0.0, after), max(top + shift + best, LOWEST)
 
 
 def entropy(belief: ArrayLike) -> Array:

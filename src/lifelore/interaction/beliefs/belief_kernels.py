@@ -1,16 +1,16 @@
-"""Bayes' rule row by row, compiled: one pass for the largest, one for the sum, one to normalise."""
+"""Compiled kernels: Bayes' rule for rows of log beliefs, in three passes: the largest, the sum, normalisation."""
 
 import math
 
 import numpy as np
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.interaction.beliefs.belief import LOWEST
+from lifelore.interaction.beliefs.bayes_rule import LOWEST
 
 
 @inlined
 def _joint(log_belief, log_likelihood, best):
-    """Belief and likelihood together, minus infinity for impossible types whatever their likelihood."""
+    """Sum of log belief and log likelihood; minus infinity for impossible types, whatever their likelihood."""
     if log_belief == -np.inf:
         return -np.inf
     return float(log_belief) + (float(log_likelihood) - best)
@@ -18,7 +18,7 @@ def _joint(log_belief, log_likelihood, best):
 
 @kernel
 def bayes_row(log_belief, log_likelihood):
-    """Update one belief (n_types,) in place; returns the log evidence.
+    """Update a belief (n_types,) in place; returns the log evidence.
 
     Minus infinity: no type explains the signal, and the belief stays. NaN: a likelihood is NaN or infinite, and
     the belief stays.
@@ -49,16 +49,16 @@ def bayes_row(log_belief, log_likelihood):
 
 
 @kernel
-def gaussian_row(log_belief, policy, value, mean, precision, height, said):
-    """`bayes_row` for a return under normals: one call where two would take twice as long.
+def normal_row(log_belief, policy, value, mean, precision, log_height, log_likelihood):
+    """`bayes_row` for a number under normals: one call, because two would take twice as long.
 
-    mean, precision, height : (n_policies, n_types), 1 / deviation and the log density at the mean
-    said : (n_types,) float64, the log likelihoods, written
+    mean, precision, log_height : (n_policies, n_types), see `Normals`
+    log_likelihood : (n_types,) float64, written
     """
-    for i in range(said.shape[0]):
+    for i in range(log_likelihood.shape[0]):
         z = (value - mean[policy, i]) * precision[policy, i]
-        said[i] = z * z * -0.5 + height[policy, i]
-    return bayes_row(log_belief, said)
+        log_likelihood[i] = z * z * -0.5 + log_height[policy, i]
+    return bayes_row(log_belief, log_likelihood)
 
 
 @kernel
@@ -66,3 +66,10 @@ def bayes_rows(log_beliefs, log_likelihoods, log_evidence):
     """`bayes_row` for rows (n, n_types), evidence into (n,)."""
     for k in range(log_beliefs.shape[0]):
         log_evidence[k] = bayes_row(log_beliefs[k], log_likelihoods[k])
+
+
+@kernel
+def bayes_users(log_beliefs, users, log_likelihoods, log_evidence):
+    """`bayes_row` for the rows of `users` (k,) among (n_users, n_types), in order: a user may come twice."""
+    for k in range(users.shape[0]):
+        log_evidence[k] = bayes_row(log_beliefs[users[k]], log_likelihoods[k])

@@ -1,8 +1,8 @@
-"""How types change between episodes: not at all, by a hazard, or by a matrix of transitions.
+"""How types change between episodes: static, by a hazard rate, or by a matrix of transitions.
 
-A hazard h says that with probability h the task at hand has been replaced by one drawn from the prior:
-β ← (1 - h) β + h G₀. Any h from 0.002 to 0.1 cuts the mean regret of types that switch once in 50 episodes by
-a factor of four. The thesis takes types to be static, which is h = 0.
+With a hazard h, a new type is drawn from the prior with probability h before each episode:
+β ← (1 - h) β + h G₀. Any h from 0.002 to 0.1 divides the mean regret of types that switch once in 50 episodes by
+four. The thesis assumes static types, h = 0.
 """
 
 from dataclasses import dataclass
@@ -16,12 +16,12 @@ from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
 
 Array = NDArray[np.float64]
 ROWS_AT_ONCE = 1 << 20
-"""Numbers of one temporary array when many beliefs take a step of a transition matrix."""
+"""Size of the largest temporary array when many beliefs take a step of a matrix; more is no faster."""
 
 
 @dataclass(frozen=True, eq=False)
 class TypeDynamics:
-    """What happens to a belief between two episodes; made by `static`, `hazard` or `transitions`.
+    """The step of a belief between two episodes; made by `static`, `hazard` or `transitions`.
 
     Parameters
     ----------
@@ -35,7 +35,7 @@ class TypeDynamics:
     Raises
     ------
     InputError
-        There is no such kind, or rate and law are not what it needs.
+        There is no such kind, or rate and law do not fit it.
     """
 
     kind: Literal["static", "hazard", "transitions"] = "static"
@@ -62,7 +62,7 @@ class TypeDynamics:
         Raises
         ------
         InputError
-            `rate` lies outside [0, 1], or the prior is none.
+            `rate` lies outside [0, 1], or the prior is no distribution.
 
         Examples
         --------
@@ -88,13 +88,13 @@ class TypeDynamics:
             raise InputError(f"matrix must be (n_types, n_types), got shape {matrix.shape}")
         if not ((matrix >= 0).all() and (np.abs(matrix.sum(axis=1) - 1) <= SUM_TOLERANCE).all()):
             raise InputError(
-                "matrix must have rows of probabilities that sum to 1; rows are the types one comes from"
+                "matrix must have rows of probabilities that sum to 1; a row is the type before the step"
             )
         return cls("transitions", 0.0, matrix / matrix.sum(axis=1, keepdims=True))
 
     @property
     def n_types(self) -> int | None:
-        """How many types the dynamics are made for; None where any number will do."""
+        """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
 
     def step(self, log_belief: Array) -> Array:
@@ -102,7 +102,7 @@ class TypeDynamics:
         if self.kind == "static":
             return log_belief
         stepped = self._hazarded(log_belief) if self.kind == "hazard" else self._moved(log_belief)
-        # Rounding may leave a certain type a last bit above 1, which is no probability.
+        # Rounding may leave the belief of a certain type a last bit above 1.
         return np.minimum(stepped, 0.0)
 
     def _hazarded(self, log_belief: Array) -> Array:

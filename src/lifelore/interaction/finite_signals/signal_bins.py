@@ -1,8 +1,8 @@
-"""Outcomes cut into a few bins that tell the types apart.
+"""Bins of real-valued outcomes, chosen so that they tell the types apart.
 
-A policy's outcomes often look alike on most types and differ on a few; bins of equal mass would be spent on the
-noise of the many. So the outcome is cut finely first, and then the two neighbouring bins whose union loses least
-information about the type (all types equally likely) become one, until few enough are left.
+A policy's outcomes are often alike on most types and differ on a few. Bins of equal mass would resolve the noise
+of the many. The outcome is therefore cut finely first. Then the two neighbouring bins whose union loses least
+information about the type (all types equally likely) are joined, until few enough bins are left.
 """
 
 from typing import Any, Protocol
@@ -16,9 +16,9 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 Array = NDArray[np.float64]
 
 FINE = 48
-"""Cuts of equal width, and as many at equal shares of where the types' outcomes lie, before bins are joined."""
+"""Number of cuts of equal width, and of cuts at equal shares of the types' outcomes, before bins are joined."""
 MOST_TYPES = 128
-"""Types on which cuts are chosen, at most."""
+"""Largest number of types that cuts are chosen on; more costs time and changes little."""
 _STEPS = np.array([-2.0, -1.25, -0.65, -0.2, 0.2, 0.65, 1.25, 2.0])
 
 
@@ -51,8 +51,8 @@ def informative_table(outcomes: _Outcomes, n_bins: int) -> SignalTable:
 
 
 def informative_cuts(outcomes: _Outcomes, policy: int, n_bins: int) -> Array:
-    """Where one policy's outcomes are cut into at most `n_bins` bins, rising."""
-    # Cuts are chosen on types spread evenly over the range of means: a thousand say no more than these.
+    """The cuts of a policy's outcomes into at most `n_bins` bins, rising."""
+    # Types spread evenly over the range of means suffice: a thousand give the same cuts.
     some = np.argsort(outcomes.mean[:, policy])
     some = some[np.unique(np.linspace(0, len(some) - 1, MOST_TYPES).round().astype(np.int64))]
     cuts = _fine_cuts(outcomes.mean[some, policy], outcomes.deviation[some, policy])
@@ -62,7 +62,7 @@ def informative_cuts(outcomes: _Outcomes, policy: int, n_bins: int) -> Array:
 
 
 def check_bins(n_bins: int) -> None:
-    """Refuse fewer than two bins."""
+    """Raise InputError for fewer than two bins."""
     if n_bins < 2:
         raise InputError(f"n_bins must be at least 2, got {n_bins}")
 
@@ -77,9 +77,9 @@ def _ends(fine: Array, n_bins: int) -> NDArray[np.int64]:
     """One past the last column of each joined bin."""
     if fine.shape[1] <= n_bins:
         return np.arange(1, fine.shape[1] + 1)
-    from lifelore.interaction.finite_signals.bin_kernels import joined_ends
+    from lifelore.interaction.finite_signals.bin_joining_kernels import joined_ends
 
-    # One row a bin, for the kernel reads whole bins; a copy, for it writes them.
+    # A row for each bin, because the kernel reads whole bins; a copy, because it writes them.
     return joined_ends(np.array(fine.T, order="C"), n_bins)
 
 

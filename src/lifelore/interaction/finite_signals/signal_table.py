@@ -1,7 +1,7 @@
-"""Signals from a finite alphabet as one table: P(signal | type, policy), and how uncertain each leaves one.
+"""Table of P(signal | type, policy) for signals from a finite alphabet, and their conditional entropies.
 
-The rules that look ahead (belief entropy, knowledge gradient, information-directed) sum over signals, and need
-nothing else. Thesis: §4.4.1, Def. 4.4.2.
+The rules that look ahead (belief entropy, knowledge gradient, information-directed) sum over signals and need
+no other model of them. Thesis: §4.4.1, Def. 4.4.2.
 """
 
 from typing import Any, Self
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 
 LEAST = 1e-9
-"""Probabilities below become 0: they change no choice, and their products are subnormal, 9 to 24 times as slow."""
+"""Probabilities below this become 0: they change no choice, and subnormal products take 9 to 24 times as long."""
 
 
 class SignalTable:
@@ -24,7 +24,7 @@ class SignalTable:
         At least 0; each row over signals sums to 1 to 1e-6. Policy first, so that one policy's rows lie together.
         float32 stays float32; all else becomes float64.
     copy : bool
-        False cleans the caller's own array in place, to spare memory.
+        False cleans the caller's own array in place, which saves memory.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class SignalTable:
     Raises
     ------
     InputError
-        The shape is another, or a row is no distribution.
+        The shape differs, or a row is no distribution.
 
     Examples
     --------
@@ -61,7 +61,7 @@ class SignalTable:
 
     @classmethod
     def restored(cls, probs: NDArray[Any]) -> Self:
-        """The table whose `probs` these are, bit for bit; they are kept and not copied.
+        """The table that `probs` were read from, bit for bit; they are not copied.
 
         Raises
         ------
@@ -91,7 +91,7 @@ class SignalTable:
 
 
 def _clean(rows: NDArray[Any], policy: int) -> None:
-    """Refuse what is no distribution; then zero what is too small and renormalise, in place."""
+    """Raise InputError where a row is no distribution; set small entries to 0 and renormalise, in place."""
     sums = rows.sum(axis=1, keepdims=True)
     if not ((rows >= 0).all() and (np.abs(sums - 1) <= 1e-6 * max(1.0, rows.shape[1] ** 0.5)).all()):
         raise InputError(f"probs must be at least 0 and each row over signals sum to 1, policy {policy}'s do not")

@@ -1,70 +1,53 @@
-"""A `PolicyLibrary` as one npz file: arrays and a JSON text; no pickle; equal libraries give equal bytes.
+"""The file format of a policy library: arrays and a JSON text in one npz file; equal libraries give equal bytes.
 
-    about            uint8, UTF-8 JSON: format, version, names of types and policies, what the models are
+    about            uint8, UTF-8 JSON: format, version, names of types and policies, kinds of the models
     prior            (n_types,) float64
     performance.*    the performance model's arrays
     signal.*         the signal model's arrays; its parts under signal.0.*, signal.1.*, …
 
-Reading gives back the same bits. A signal model that is the caller's own function cannot be written: the file
-says so, and `load_library` takes the model again.
+Reading restores every bit. A signal model that is the caller's own class cannot be written. The file records its
+name, and the reader takes the model from the caller.
 """
 
-from pathlib import Path
-from typing import Any
+from collections.abc import Callable
+from typing import Any, Protocol, TypeVar
 
-from lifelore.core.atomic_write import whole_file
-from lifelore.core.errors import InputError, StoreError
+from lifelore.core.errors import InputError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_kinds import KINDS as OUTCOMES
-from lifelore.interaction.signals.signal_kinds import KINDS as SIGNALS
+from lifelore.interaction.signals.category_signal import CategorySignal
+from lifelore.interaction.signals.joint_signal import JointSignal
+from lifelore.interaction.signals.return_signal import ReturnSignal
+from lifelore.interaction.signals.reward_signal import RewardSignal
+from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
+from lifelore.interaction.signals.transition_signal import TransitionSignal
 
 FORMAT = PackedFormat("lifelore policy library", 1, "policy library", "save")
+SIGNALS: dict[str, Any] = {
+    kind.kind: kind
+    for kind in (ReturnSignal, CategorySignal, RewardSignal, TransitionSignal, StepRewardSignal, JointSignal)
+}
+"""The signal models that a file can hold, by name."""
 DEEPEST = 8
-"""Signals within signals that a file may hold."""
+"""Largest depth of signals within signals in a file."""
 
 
-def save_library(library: PolicyLibrary, path: str | Path) -> None:
-    """Write a library.
+class Library(Protocol):
+    """The attributes of a `PolicyLibrary` that a file holds."""
 
-    Raises
-    ------
-    InputError
-        The performance model is not one of this package.
-    StoreError
-        The disk refuses.
-    """
-    content = library_bytes(library)
-    try:
-        with whole_file(path) as file:
-            file.write(content)
-    except OSError as error:
-        raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None
+    performance: Any
+    signal: SignalModel
+    types: tuple[str, ...]
+    policies: tuple[str, ...]
+    prior: Any
 
 
-def load_library(path: str | Path, signal: SignalModel | None = None) -> PolicyLibrary:
-    """The library that `save_library` wrote, bit for bit.
-
-    Parameters
-    ----------
-    signal : SignalModel, optional
-        Takes the place of the file's; needed where that was the caller's own.
-
-    Raises
-    ------
-    InputError
-        There is no such file, or it is none of ours, newer, or damaged.
-    """
-    try:
-        content = Path(path).read_bytes()
-    except OSError as error:
-        raise InputError(f"the library {path} cannot be read: {error.strerror}") from None
-    return library_from_bytes(content, str(path), signal)
+L = TypeVar("L", bound=Library)
 
 
-def library_bytes(library: PolicyLibrary) -> bytes:
-    """The library as the bytes of an npz file."""
+def packed_library(library: Library) -> bytes:
+    """The library as the bytes of an npz file; InputError where the performance model is the caller's own."""
     kind = getattr(library.performance, "kind", None)
     if kind not in OUTCOMES:
         raise InputError(f"performance must be one of {', '.join(OUTCOMES)} to be saved, got {kind!r}")
@@ -79,25 +62,37 @@ def library_bytes(library: PolicyLibrary) -> bytes:
     return FORMAT.pack(header, arrays)
 
 
-def library_from_bytes(
-    content: bytes, where: str = "the library", signal: SignalModel | None = None
-) -> PolicyLibrary:
-    """The library of `library_bytes`; `where` is named when it cannot be read."""
+def unpacked_library(content: bytes, where: str, signal: SignalModel | None, make: Callable[..., L]) -> L:
+    """The library that `packed_library` wrote.
+
+    Parameters
+    ----------
+    content : bytes
+    where : str
+        Name of the source in error messages.
+    signal : SignalModel, optional
+        Replaces the file's signal model; required where that was the caller's own.
+    make : callable
+        Called as ``make(performance, signal, types, policies, prior)``.
+
+    Raises
+    ------
+    InputError
+        The content is of another kind, newer or damaged.
+    """
     header, arrays = FORMAT.unpack(content, where)
     try:
         performance = OUTCOMES[header["performance"]].from_arrays(_under("performance", arrays))
         model: SignalModel = signal or _unpacked(header["signal"], "signal", performance, arrays, where)
-        return PolicyLibrary(
-            performance, model, tuple(header["types"]), tuple(header["policies"]), arrays["prior"]
-        )
+        return make(performance, model, tuple(header["types"]), tuple(header["policies"]), arrays["prior"])
     except (KeyError, ValueError, TypeError, AttributeError, IndexError, OverflowError) as error:
         if isinstance(error, InputError) and str(error).startswith(where):
             raise
         raise FORMAT.damaged(where, error) from None
 
 
-def _packed(part: Any, name: str, library: PolicyLibrary, arrays: Arrays) -> dict[str, Any]:
-    """What the model is, as JSON; its arrays go into `arrays` under `name`."""
+def _packed(part: Any, name: str, library: Library, arrays: Arrays) -> dict[str, Any]:
+    """The description of a model as JSON; its arrays go into `arrays` under `name`."""
     if part is library.performance:
         return {"kind": "performance"}
     kind = getattr(part, "kind", None)
@@ -119,7 +114,7 @@ def _unpacked(
         return performance
     if kind == "own":
         raise InputError(
-            f"{where} was saved with a signal model of its owner's ({node.get('class')}); give it as signal="
+            f"{where} was saved with a signal model of its owner ({node.get('class')}); give the model as signal="
         )
     if depth > DEEPEST:
         raise ValueError("signals within signals go too deep")

@@ -1,6 +1,6 @@
-"""The offline procedure that fills a library: announce a type, run every policy on all its instances.
+"""The offline procedure that fills a library: run every policy on all instances of every type.
 
-Thesis: §4.4.1. Step 4, fitting, is the models': ``PolicyLibrary.from_samples(runs.outcomes)``,
+Thesis: §4.4.1. The models do step 4, fitting: ``PolicyLibrary.from_samples(runs.outcomes)``,
 ``RewardSignal.from_sequences(runs.sequences(), …)``.
 """
 
@@ -17,12 +17,12 @@ from lifelore.core.streams import stream
 
 @dataclass(frozen=True)
 class OfflineRuns:
-    """What the runs of every policy on every type gave.
+    """Outcomes and signals of every policy on every type.
 
     outcomes : (n_types, n_policies, n) float64
         Utility of each run; NaN fills up types with fewer instances.
     signals : list by type, policy and run
-        None where runs give no signal beyond the utility.
+        None where runs give only the utility.
     """
 
     outcomes: NDArray[np.float64]
@@ -49,20 +49,20 @@ def run_offline(
     Parameters
     ----------
     types, policies : sequence
-        Whatever `instances` and `run` understand.
+        Any values that `instances` and `run` accept.
     instances : callable
         ``instances(type, generator)`` gives tasks of the type, at least one.
     run : callable
         ``run(policy, task, generator)`` gives the utility, or the utility and the signal.
     seed : int
-        Every type, policy, instance and repetition has a stream of its own: adding one moves no other.
+        Every type, policy, instance and repetition has its own stream, so that additions change no other stream.
     repeats : int
         Runs of each policy on each instance.
 
     Raises
     ------
     InputError
-        There are no types, policies or instances, or a utility is no finite number.
+        There are no types, policies or instances, or a utility is not finite.
 
     Examples
     --------
@@ -95,7 +95,7 @@ def _runs(
     place: tuple[int, int, int],
     repeats: int,
 ) -> list[tuple[float, Any]]:
-    """(utility, signal) of one policy's runs on one type's tasks; `place` is (seed, type, policy)."""
+    """(utility, signal) of a policy's runs on a type's tasks; `place` is (seed, type, policy)."""
     seed, of_type, of_policy = place
     found = []
     for number, task in enumerate(tasks):

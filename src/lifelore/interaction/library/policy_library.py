@@ -1,4 +1,4 @@
-"""The policy library: types × policies, what each achieves on each, what it signals, and the prior over types.
+"""The policy library: types and policies with their performance model, signal model and prior over types.
 
 Thesis: §4.2 (Alg. 7's requirements), §4.3.4, §4.4.1.
 """
@@ -11,7 +11,8 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.errors import InputError
+from lifelore.core.atomic_write import whole_file
+from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
@@ -26,18 +27,18 @@ Array = NDArray[np.float64]
 
 @dataclass(eq=False)
 class PolicyLibrary:
-    """What policy reuse knows before it meets a task.
+    """The knowledge of policy reuse before it meets a task.
 
     Parameters
     ----------
     performance : OutcomeModel
         P(U | type, policy).
     signal : SignalModel, optional
-        P(signal | type, policy); the return itself unless given.
+        P(signal | type, policy); by default the return is the signal.
     types, policies : sequence of str, optional
-        Distinct names; "type 0", "policy 0", … unless given.
+        Distinct names; by default "type 0", "policy 0", ….
     prior : (n_types,) float, optional
-        G0, the probability of meeting each type; at least 0, sums to 1 to 1e-9. Uniform unless given.
+        G0, the probability of meeting each type; at least 0, sums to 1 to 1e-9. Uniform by default.
 
     Raises
     ------
@@ -80,7 +81,7 @@ class PolicyLibrary:
         prior: ArrayLike | None = None,
         **options: Any,
     ) -> Self:
-        """Fitted to outcomes `samples` (n_types, n_policies, n), NaN where missing.
+        """A library fitted to outcomes `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
@@ -109,7 +110,7 @@ class PolicyLibrary:
         prior: ArrayLike | None = None,
         **options: Any,
     ) -> Self:
-        """Fitted to outcomes one a row; see `from_samples`."""
+        """A library fitted to rows of outcomes; see `from_samples`."""
         performance = outcome_kind(model).from_rows(rows, **options)
         return cls(performance, signal, tuple(types or ()), tuple(policies or ()), prior)  # pyright: ignore
 
@@ -125,7 +126,7 @@ class PolicyLibrary:
         signal: SignalModel | None = None,
         prior: ArrayLike | None = None,
     ) -> Self:
-        """Gaussian outcomes with means (n_types, n_policies) and deviations; see `GaussianOutcomes`."""
+        """A library of Gaussian outcomes, means (n_types, n_policies) and deviations; see `GaussianOutcomes`."""
         performance = GaussianOutcomes(mean, deviation, count)
         return cls(performance, signal, tuple(types or ()), tuple(policies or ()), prior)  # pyright: ignore
 
@@ -139,13 +140,13 @@ class PolicyLibrary:
         model: str = "gaussian",
         **options: Any,
     ) -> Self:
-        """Fitted to a table with one row an episode: a DataFrame, or a mapping of columns.
+        """A library fitted to a table with a row for each episode: a DataFrame, or a mapping of columns.
 
         Parameters
         ----------
         frame : mapping of str to sequences of one length
         type, policy, outcome : str
-            The columns; types and policies are named in the order in which they first come.
+            Names of the columns; types and policies are in the order of their first rows.
         model, **options
             As for `from_samples`; also `signal` and `prior`.
 
@@ -168,38 +169,38 @@ class PolicyLibrary:
         return self.performance.n_policies
 
     def index_of_policy(self, policy: str | int) -> int:
-        """The number of a policy, by name or number; NotFoundError where there is none such."""
+        """The number of a policy, by name or number; NotFoundError where there is no such policy."""
         return index_of(policy, self.policies, "policy")
 
     def index_of_type(self, type_: str | int) -> int:
-        """The number of a type, by name or number; NotFoundError where there is none such."""
+        """The number of a type, by name or number; NotFoundError where there is no such type."""
         return index_of(type_, self.types, "type")
 
     def table(self, n_bins: int = 8) -> SignalTable:
-        """The signal over a finite alphabet; made once for each `n_bins`, see `forget_tables`.
+        """The table of signals from a finite alphabet, computed once for each `n_bins`; see `forget_tables`.
 
         Raises
         ------
         InputError
-            The signal model has none; belief entropy, knowledge gradient and information-directed need it.
+            The signal model has no table, which belief entropy, knowledge gradient and information-directed need.
         """
         if n_bins not in self._tables:
             make = getattr(self.signal, "table", None)
             if make is None:
                 raise InputError(
                     f"{type(self.signal).__name__} has no finite alphabet of signals; choose a rule that needs "
-                    "none (expected improvement, belief sampling), or a signal with a table"
+                    "no table (expected improvement, belief sampling), or a signal with a table"
                 )
             self._tables[n_bins] = make(n_bins)
         return self._tables[n_bins]
 
     def keep_table(self, n_bins: int, table: SignalTable) -> None:
-        """Take a table that `table(n_bins)` of this library made earlier, so that it is not made again.
+        """Store a table that `table(n_bins)` of this library computed earlier, so that it is not computed again.
 
         Raises
         ------
         InputError
-            The table is of another number of types or policies.
+            The table has another number of types or policies.
         """
         if (table.n_policies, table.n_types) != (self.n_policies, self.n_types):
             raise InputError(
@@ -209,12 +210,12 @@ class PolicyLibrary:
         self._tables[n_bins] = table
 
     def observe(self, type_: str | int, policy: str | int, value: float) -> None:
-        """Learn from one more outcome of a known type, in place; tables are made anew when next asked for."""
+        """Learn from another outcome of a known type, in place; tables are computed again when needed."""
         self.performance.observe(self.index_of_type(type_), self.index_of_policy(policy), value)
         self.forget_tables()
 
     def forget_tables(self) -> None:
-        """To be called after the signal model has changed in place."""
+        """Drop all tables; call it after the signal model has changed in place."""
         self._tables.clear()
 
     def with_type(
@@ -225,7 +226,7 @@ class PolicyLibrary:
         signal: SignalModel | None = None,
         mass: float | None = None,
     ) -> Self:
-        """A library with one type more.
+        """A library with an additional type.
 
         Parameters
         ----------
@@ -233,9 +234,10 @@ class PolicyLibrary:
             Outcomes of every policy on the new type, NaN where missing.
         name : str, optional
         signal : SignalModel, optional
-            For the new library; needed where signals are not returns.
+            Of the new library; required where signals are not returns.
         mass : float, optional
-            The new type's prior, in [0, 1); 1 / (n_types + 1) unless given. The others share the rest as before.
+            The new type's prior, in [0, 1); 1 / (n_types + 1) by default. The other types share the rest as
+            before.
         """
         mass = 1 / (self.n_types + 1) if mass is None else float(mass)
         if not 0 <= mass < 1:
@@ -248,13 +250,13 @@ class PolicyLibrary:
     def with_policy(
         self, samples: ArrayLike, name: str | None = None, *, signal: SignalModel | None = None
     ) -> Self:
-        """A library with one policy more, from its outcomes on every type, `samples` (n_types, n)."""
+        """A library with an additional policy, from its outcomes on every type, `samples` (n_types, n)."""
         performance = self.performance.with_policy(samples)
         names = (*self.policies, new_name(name, self.policies, "policy"))
         return type(self)(performance, self._signal_for(performance, signal), self.types, names, self.prior)
 
     def without_policy(self, policy: str | int) -> Self:
-        """A library without one of its policies."""
+        """The library without a policy."""
         gone = self.index_of_policy(policy)
         return self.take(policies=[index for index in range(self.n_policies) if index != gone])
 
@@ -264,42 +266,82 @@ class PolicyLibrary:
         policies: Sequence[int] | None = None,
         prior: ArrayLike | None = None,
     ) -> Self:
-        """A library of some types and policies; the prior is renormalised unless given.
+        """A library of some types and policies; by default the prior is renormalised.
 
         Raises
         ------
         InputError
-            Nothing is left, the prior of what is left is 0, or the signal model cannot be cut down.
+            No type or policy is left, their prior is 0, or the signal model cannot be restricted.
         """
         performance = self.performance.take(types, policies)
         if isinstance(self.signal, ReturnSignal) and self.signal.outcomes is self.performance:
             signal: Any = ReturnSignal(performance)
         elif (cut := getattr(self.signal, "take", None)) is None:
-            raise InputError(f"{type(self.signal).__name__} cannot be cut down; build the library anew")
+            raise InputError(
+                f"{type(self.signal).__name__} cannot be restricted to some types or policies; build a new library"
+            )
         else:
             signal = cut(types, policies)
-        kept = range(self.n_types) if types is None else types
-        left = self.prior[list(kept)]
+        chosen = range(self.n_types) if types is None else types
+        left = self.prior[list(chosen)]
         if prior is None and not left.sum() > 0:
             raise InputError("the types taken have no prior mass; give prior=")
-        names = tuple(self.types[i] for i in kept)
+        names = tuple(self.types[i] for i in chosen)
         policy_names = tuple(self.policies[i] for i in (range(self.n_policies) if policies is None else policies))
         return type(self)(
             performance, signal, names, policy_names, left / left.sum() if prior is None else np.asarray(prior)
         )
 
     def save(self, path: str | Path) -> None:
-        """Write the library as one npz file; see `library_file`."""
-        from lifelore.interaction.library.library_file import save_library
+        """Write the library as one npz file; see `library_file`.
 
-        save_library(self, path)
+        Raises
+        ------
+        InputError
+            The performance model is not one of this package.
+        StoreError
+            The disk refuses.
+        """
+        content = self.to_bytes()
+        try:
+            with whole_file(path) as file:
+                file.write(content)
+        except OSError as error:
+            raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None
 
     @classmethod
-    def load(cls, path: str | Path, signal: SignalModel | None = None) -> "PolicyLibrary":
-        """The library that `save` wrote, bit for bit; `signal` where its signal model was the caller's own."""
-        from lifelore.interaction.library.library_file import load_library
+    def load(cls, path: str | Path, signal: SignalModel | None = None) -> Self:
+        """The library that `save` wrote, bit for bit.
 
-        return load_library(path, signal)
+        Parameters
+        ----------
+        signal : SignalModel, optional
+            Replaces the file's signal model; required where that was the caller's own.
+
+        Raises
+        ------
+        InputError
+            The file does not exist, is of another kind, newer or damaged.
+        """
+        try:
+            content = Path(path).read_bytes()
+        except OSError as error:
+            raise InputError(f"the library {path} cannot be read: {error.strerror}") from None
+        return cls.from_bytes(content, str(path), signal)
+
+    def to_bytes(self) -> bytes:
+        """The library as the bytes of an npz file; equal libraries give equal bytes."""
+        # Imported here: most uses of a library need no file.
+        from lifelore.interaction.library.library_file import packed_library
+
+        return packed_library(self)
+
+    @classmethod
+    def from_bytes(cls, content: bytes, where: str = "the library", signal: SignalModel | None = None) -> Self:
+        """The library of `to_bytes`; `where` names the source in error messages, `signal` is as in `load`."""
+        from lifelore.interaction.library.library_file import unpacked_library
+
+        return unpacked_library(content, where, signal, cls)
 
     def _signal_for(self, performance: OutcomeModel, signal: SignalModel | None) -> SignalModel:
         if signal is not None:

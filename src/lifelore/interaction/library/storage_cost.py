@@ -1,10 +1,10 @@
-"""What each observation model costs to store, by the formulas of §4.7.6, as printed and right.
+"""Storage cost of each observation model by the formulas of §4.7.6, as printed and corrected.
 
-In print the formulas of (s, a, s') and of rewards have changed places: the distribution over next states of every
-state and action has |S|² |A| entries, that over rewards |S| |A| |R|. With them the printed order, performance <
-reward < state-action-state for |R| > |S|, becomes performance < state-action-state < reward; the printed order
-holds where |R| < |S|. And one number a level of reward for the performance holds a return only as finely as one
-reward: sums of rewards take more values (`n_returns`). Thesis: §4.7.6.
+The thesis swaps the formulas of (s, a, s') and of rewards: the distribution over next states of every state and
+action has |S|² |A| entries, the distribution over rewards |S| |A| |R|. With the right formulas the printed order,
+performance < reward < state-action-state for |R| > |S|, becomes performance < state-action-state < reward. The
+printed order holds where |R| < |S|. The printed performance model has a number for each level of reward, but sums
+of rewards take more values (`n_returns`). Thesis: §4.7.6.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class StorageSizes:
     discount : float
         In [0, 1].
     bits : int
-        Of one probability, at least 1.
+        Bits of a probability, at least 1.
 
     Raises
     ------
@@ -45,7 +45,7 @@ class StorageSizes:
         for name, value in list(vars(self).items()):
             if name != "discount":
                 _check_whole(name, value)
-                # Products of NumPy's whole numbers would wrap around.
+                # Products of NumPy integers would overflow.
                 object.__setattr__(self, name, int(value))
         if not 0 <= self.discount <= 1:
             raise InputError(f"discount must lie in [0, 1], got {self.discount}")
@@ -71,7 +71,7 @@ class StorageCost:
 
 
 def storage_cost(sizes: StorageSizes, variant: Literal["standard", "thesis"] = "standard") -> StorageCost:
-    """Bits that each observation model takes.
+    """Bits of each observation model.
 
     Parameters
     ----------
@@ -100,15 +100,15 @@ def storage_cost(sizes: StorageSizes, variant: Literal["standard", "thesis"] = "
 
 
 def effective_horizon(horizon: int, discount: float) -> float:
-    """(1 - γ^T) / (1 - γ): how many undiscounted rewards an episode's discounted ones sum to; T where γ is 1."""
+    """(1 - γ^T) / (1 - γ): number of undiscounted rewards that equal the discounted sum; T if γ is 1."""
     return float(horizon) if discount == 1 else (1 - discount**horizon) / (1 - discount)
 
 
 def n_returns(n_rewards: int, horizon: int, discounted: bool) -> float:
-    """The most values that the return of `horizon` rewards can take, each one of `n_rewards`.
+    """The largest number of values of a return of `horizon` rewards out of `n_rewards`.
 
-    Undiscounted, only how often each reward came counts; discounted, the order too. Infinite where no float is
-    as large.
+    Undiscounted returns depend on the number of times of each reward, discounted returns also on their order.
+    Infinite where the number exceeds all floats.
 
     Raises
     ------

@@ -1,11 +1,12 @@
-"""Types: sets of tasks on which every policy achieves nearly the same, and the landmark that stands for each.
+"""Types of tasks: sets of tasks on which every policy achieves nearly the same, and a landmark task for each.
 
-Two tasks are ε-equivalent when no policy's utility differs by more than ε (Def. 4.3.3). That is no equivalence: it
-is not transitive, so it does not part tasks by itself. Here tasks are covered greedily, each task is given to one
-type (`labels`), and `membership` says to which others it could belong as well.
+Two tasks are ε-equivalent when no policy's utility differs by more than ε (Def. 4.3.3). The relation is not
+transitive, so it does not partition tasks. Here types cover tasks greedily, each task has a single type
+(`labels`), and `membership` holds the other types that fit it.
 
 Playing the landmark's best policy on another member of its type costs up to 2 ε, not ε as printed: the utility of
-the policy played may be ε lower than on the landmark, and that of the member's own best ε higher. Thesis: §4.3.3.
+this policy may be ε lower than on the landmark, and the utility of the member's own best policy ε higher.
+Thesis: §4.3.3.
 """
 
 from dataclasses import dataclass
@@ -32,9 +33,9 @@ class TaskTypes:
     labels : (n_tasks,) int64
         Each task's type.
     landmarks : (n_types,) int64
-        The task that stands for each type.
+        The landmark task of each type.
     membership : (n_types, n_tasks) bool
-        Whether a task would be in the type with those that are: types may overlap. Holds wherever `labels` does.
+        Whether a task fits the members of the type: types may overlap. True wherever `labels` names the type.
     """
 
     epsilon: float
@@ -47,7 +48,7 @@ class TaskTypes:
         return len(self.landmarks)
 
     def type_prior(self, task_prior: ArrayLike | None = None) -> Array:
-        """Each type's prior, (n_types,): that of its tasks together, tasks equally likely unless given.
+        """Each type's prior, (n_types,): the sum over its tasks, which are equally likely by default.
 
         Raises
         ------
@@ -64,11 +65,11 @@ def epsilon_types(utilities: ArrayLike, epsilon: float, form: Form = "pairwise")
     Parameters
     ----------
     utilities : (n_tasks, n_policies) float
-        What each policy achieves on each task; finite.
+        Utility of each policy on each task; finite.
     epsilon : float
-        At least 0; 0 joins only tasks that are alike in every policy.
+        At least 0; 0 joins only tasks with equal utilities of every policy.
     form : {"pairwise", "ball"}
-        ``pairwise``: any two tasks of a type are within ε, as Def. 4.3.3 says. ``ball``: every task is within ε of
+        ``pairwise``: any two tasks of a type are within ε, as in Def. 4.3.3. ``ball``: every task is within ε of
         its landmark, which needs fewer types; the bound of 2 ε on the landmark's regret is the same.
 
     Raises
@@ -99,25 +100,25 @@ def epsilon_types(utilities: ArrayLike, epsilon: float, form: Form = "pairwise")
 
 
 def every_task(utilities: ArrayLike) -> TaskTypes:
-    """The full task space as types: every task is its own landmark (§4.3.3, last paragraph)."""
+    """Types that are single tasks: every task is its own landmark (§4.3.3, last paragraph)."""
     every = np.arange(len(_checked(utilities)))
     return TaskTypes(0.0, every, every, np.eye(len(every), dtype=bool))
 
 
 def landmark_regret_bound(epsilon: float) -> float:
-    """The most that the landmark's best policy can cost on a task of its type: 2 ε, and no less."""
+    """The largest regret of the landmark's best policy on a task of its type: 2 ε, a tight bound."""
     return 2 * epsilon
 
 
 def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
-    """Regret of playing, on each task, the policy that is best on its type's landmark, (n_tasks,).
+    """Regret on each task of the policy that is best on its type's landmark, (n_tasks,).
 
-    Where several policies are equally good on the landmark, the one that costs most counts.
+    Among policies that are equally good on the landmark, the policy with the largest regret counts.
 
     Raises
     ------
     InputError
-        Utilities are not finite, or of another number of tasks than the types.
+        Utilities are not finite, or are for another number of tasks.
     """
     utilities = _checked(utilities, types)
     of_landmark = utilities[types.landmarks[types.labels]]
@@ -126,7 +127,7 @@ def landmark_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
 
 
 def member_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
-    """As `landmark_regret`, with whichever member of the type as its landmark costs the task most, (n_tasks,)."""
+    """The largest `landmark_regret` of each task over all choices of the landmark in its type, (n_tasks,)."""
     utilities = _checked(utilities, types)
     regret = np.zeros(len(utilities))
     for type_ in range(types.n_types):
@@ -139,7 +140,7 @@ def member_regret(utilities: ArrayLike, types: TaskTypes) -> Array:
 
 
 def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
-    """The library whose types are the landmarks of `library`'s, each with the prior of all that it stands for.
+    """The library of the landmarks of `library`'s types, each with the prior of all types that it represents.
 
     Raises
     ------
@@ -152,24 +153,24 @@ def landmark_library(library: PolicyLibrary, types: TaskTypes) -> PolicyLibrary:
 
 
 def pooled_samples(samples: ArrayLike, types: TaskTypes, overlapping: bool = False) -> Array:
-    """Outcomes of all tasks of a type together (Def. 4.3.4).
+    """Pooled outcomes of all tasks of a type (Def. 4.3.4).
 
     Parameters
     ----------
     samples : (n_tasks, n_policies, n) float
         NaN where missing.
     overlapping : bool
-        Whether a task counts in every type that it could belong to (`membership`), or in its own alone (`labels`).
+        Whether a task counts in every type that fits it (`membership`), or only in its own (`labels`).
 
     Returns
     -------
     (n_types, n_policies, m) float
-        m is n times the tasks of the largest type; NaN fills up the others.
+        m is n times the number of tasks of the largest type; NaN fills the other types.
 
     Raises
     ------
     InputError
-        Samples are of another number of tasks than the types.
+        Samples are for another number of tasks.
     """
     samples = np.asarray(samples, np.float64)
     if samples.ndim != 3 or len(samples) != len(types.labels):
@@ -192,7 +193,7 @@ def _checked(utilities: ArrayLike, types: TaskTypes | None = None) -> Array:
 
 
 def _balls(near: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Labels and landmarks of balls, the one that covers most of what is left first."""
+    """Labels and landmarks of balls; the ball that covers most of the remaining tasks is first."""
     labels, landmarks = np.full(len(near), -1), []
     while (left := labels < 0).any():
         covers = np.where(left, near[:, left].sum(axis=1), 0)
@@ -202,7 +203,7 @@ def _balls(near: NDArray[np.bool_]) -> tuple[NDArray[np.int64], NDArray[np.int64
 
 
 def _cliques(utilities: Array, near: NDArray[np.bool_], epsilon: float) -> NDArray[np.int64]:
-    """Labels of sets any two of whose tasks are near, grown from their seed outwards."""
+    """Labels of sets of tasks that are near in pairs, grown outwards from a seed."""
     labels, found = np.full(len(near), -1), 0
     for seed in np.argsort(-near.sum(axis=1), kind="stable"):
         if labels[seed] >= 0:
@@ -219,6 +220,6 @@ def _cliques(utilities: Array, near: NDArray[np.bool_], epsilon: float) -> NDArr
 
 
 def _centre(utilities: Array, members: NDArray[np.int64]) -> int:
-    """The member whose farthest fellow is nearest."""
+    """The member with the smallest largest distance to the other members."""
     farthest = cdist(utilities[members], utilities[members], "chebyshev").max(axis=1)
     return int(members[farthest.argmin()])

@@ -1,15 +1,14 @@
-"""Types of users found from what they achieved: a mixture of outcome models, its size by the Bayesian criterion.
+"""Types of users found by their outcomes: a mixture of outcome models whose size minimises the Bayesian criterion.
 
-Each user has one hidden type; given it, outcomes are independent, with one distribution for each pair of type and
-policy. That is the model policy reuse itself believes in, so users need not have met every policy, and a user with
-many outcomes counts for more than one with few. It is fitted by expectation–maximisation from the seeds of
-k-means++ and from random starts; the number of types is the one of the least
-−2 log L + n_parameters · log n_outcomes.
+Each user has a hidden type. Given the type, outcomes are independent, with a distribution for each pair of type
+and policy. Policy reuse has the same model, so users need not have met every policy, and users with many outcomes
+have more weight. The mixture is fitted by expectation–maximisation from the seeds of k-means++ and from random
+starts. The number of types minimises −2 log L + n_parameters · log n_outcomes.
 
-Two families: ``gaussian``, one deviation a policy shared by all types, and ``categorical`` for a few values; see
+The families are ``gaussian``, with a deviation for each policy shared by all types, and ``categorical``; see
 `outcome_families`.
 
-Thesis: §4.3.3 assumes that the clustering is given; §4.7.2 names it as one way to choose types.
+Thesis: §4.3.3 assumes a given clustering; §4.7.2 names clustering as a way to choose types.
 """
 
 from collections.abc import Iterator
@@ -26,16 +25,16 @@ from lifelore.interaction.outcomes.outcome_families import FAMILIES, OutcomeFami
 Array = NDArray[np.float64]
 
 STARTS = 6
-"""Starts for each number of types, half of them k-means++."""
+"""Number of starts for each number of types, half of them k-means++; more cost time and may fit better."""
 STEPS, ENOUGH = 300, 1e-7
-"""Most steps of a start; and the gain in log likelihood, a share of it, below which it ends."""
+"""Largest number of steps of a start, and the relative gain in log likelihood below which it ends."""
 PATIENCE = 2
-"""Numbers of types tried beyond the best so far."""
+"""Number of sizes tried beyond the best so far."""
 
 
 @dataclass(frozen=True, eq=False)
 class UserTypes:
-    """Types found among users, the most common one first.
+    """Types found among users, the most common type first.
 
     Parameters
     ----------
@@ -44,7 +43,7 @@ class UserTypes:
     weights : (n_types,) float64
         Share of users, descending.
     criteria : tuple of float
-        The Bayesian criterion (smaller is better) for each number of types tried, from 1 or for the one asked for.
+        The Bayesian criterion (smaller is better) for each number of types from 1, or for the requested number.
     """
 
     probs: Array
@@ -70,7 +69,7 @@ def user_types(
     n_types: int | None = None,
     most: int = 12,
 ) -> UserTypes:
-    """Group users by what they achieved.
+    """Group users by their outcomes.
 
     Parameters
     ----------
@@ -80,13 +79,13 @@ def user_types(
         For the starts.
     family : {"gaussian", "categorical"}
     n_types : int, optional
-        At most so many types (one that is nobody's most probable is left out); default the number of the least
-        criterion, at most `most`.
+        Largest number of types; a type that is no user's most probable type is left out. By default the number
+        with the least criterion, at most `most`.
 
     Raises
     ------
     InputError
-        A user or policy has no row, there are more types than users, or no such family.
+        A user or policy has no row, there are more types than users, or there is no such family.
     """
     if family not in FAMILIES:
         raise InputError(f"family must be one of {', '.join(FAMILIES)}, got {family!r}")
@@ -126,12 +125,12 @@ def _starts(rows: UserRows, size: int, generator: np.random.Generator) -> Iterat
     for start in range(STARTS):
         drawn = generator.integers(size, size=n_users)
         near = _near_seeds(profiles, size, generator) if start % 2 == 0 else drawn
-        # Nobody is certain at the start, so that no type starts empty.
+        # No user is certain at the start, so that no type starts empty.
         yield 0.9 * np.eye(size)[near] + 0.1 / size
 
 
 def _profiles(rows: UserRows) -> Array:
-    """Mean outcome of each user with each policy in deviations of that policy, 0 where there is none."""
+    """Mean outcome of each user with each policy in deviations of that policy, 0 without outcomes."""
     number, total = rows.sums(), rows.sums(rows.values)
     mean = np.where(number > 0, total / np.maximum(number, 1), np.nan)
     away = mean - np.nanmean(mean, axis=0)
@@ -140,16 +139,16 @@ def _profiles(rows: UserRows) -> Array:
 
 
 def _near_seeds(profiles: Array, size: int, generator: np.random.Generator) -> NDArray[np.int64]:
-    """The nearest of `size` users that lie far apart, as k-means++ picks them."""
+    """The nearest of `size` distant users that k-means++ picks, for each user."""
     from sklearn.cluster import kmeans_plusplus
 
     chosen = np.asarray(kmeans_plusplus(profiles, size, random_state=int(generator.integers(2**31)))[1])
-    away = [((profiles - profiles[one]) ** 2).sum(axis=1) for one in chosen]
+    away = [((profiles - profiles[user]) ** 2).sum(axis=1) for user in chosen]
     return np.stack(away).argmin(axis=0)
 
 
 def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, float]:
-    """Shares, weights and log likelihood where expectation–maximisation from `shares` ends."""
+    """Shares, weights and log likelihood at the end of expectation–maximisation from `shares`."""
     likelihood, before = -np.inf, -np.inf
     for _ in range(STEPS):
         weights = shares.mean(axis=0)
@@ -164,9 +163,9 @@ def _maximised(family: OutcomeFamily, shares: Array) -> tuple[Array, Array, floa
 
 
 def _named(fit: _Fit, criteria: tuple[float, ...]) -> UserTypes:
-    """The types that are somebody's most probable one, the most common first."""
-    kept = np.unique(fit.probs.argmax(axis=1))
-    probs = fit.probs[:, kept] / fit.probs[:, kept].sum(axis=1, keepdims=True)
+    """The types that are the most probable type of a user, the most common type first."""
+    used = np.unique(fit.probs.argmax(axis=1))
+    probs = fit.probs[:, used] / fit.probs[:, used].sum(axis=1, keepdims=True)
     order = np.argsort(-probs.mean(axis=0), kind="stable")
     return UserTypes(probs[:, order], probs.mean(axis=0)[order], criteria)
 
@@ -176,5 +175,5 @@ def _checked(rows: UserRows) -> UserRows:
         raise InputError("values must be finite, at least one")
     met = rows.sums() > 0
     if not met.any(axis=1).all() or not met.any(axis=0).all():
-        raise InputError("every user and every policy needs a row; leave out those without")
+        raise InputError("every user and every policy needs a row; leave out users and policies without rows")
     return rows

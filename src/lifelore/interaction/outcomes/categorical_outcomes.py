@@ -1,4 +1,4 @@
-"""Outcomes that take a few values only, such as 10 for a call that succeeded and 3 for one that did not.
+"""Categorical outcomes: a few values, such as 10 for a successful call and 3 for a failed call.
 
 Thesis: §4.4.2.3, §4.6.2.
 """
@@ -16,7 +16,7 @@ from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_sam
 Array = NDArray[np.float64]
 
 SAME = 1e-9
-"""Outcomes that differ by less, relative to the larger of 1 and their size, are one value."""
+"""Outcomes that differ by less, relative to the larger of 1 and their size, are the same value."""
 
 
 class CategoricalOutcomes(CountedOutcomes):
@@ -25,11 +25,11 @@ class CategoricalOutcomes(CountedOutcomes):
     Parameters
     ----------
     values : (n_values,) float
-        Distinct and finite, in any order; kept in rising order.
+        Distinct and finite, in any order; stored in rising order.
     probs : (n_types, n_policies, n_values) float
         Rows over values, in the order given, sum to 1.
     count : float, optional
-        Samples that every row stands for, so that `observe` can move it; without it they are exact.
+        Number of samples behind every row, so that `observe` can change it; without it rows are exact.
 
     Raises
     ------
@@ -57,25 +57,25 @@ class CategoricalOutcomes(CountedOutcomes):
 
     @classmethod
     def from_samples(cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
-        """Fitted to `samples` (n_types, n_policies, n), NaN where missing.
+        """The model fitted to `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
         values : (n_values,) float, optional
-            All that can occur; those that do unless given.
+            All possible values; by default the values of the samples.
         pseudo_count : float
             Added to every value of every pair, ≥ 0.
 
         Raises
         ------
         InputError
-            A pair has no sample, or a sample is none of the values.
+            A pair has no sample, or a sample is not among the values.
         """
         return cls.from_rows(rows_of_samples(samples), values, pseudo_count)
 
     @classmethod
     def from_rows(cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
-        """Fitted to outcomes one a row; see `from_samples`."""
+        """The model fitted to rows of outcomes; see `from_samples`."""
         known = _distinct(rows.values) if values is None else np.sort(np.array(values, np.float64))
         return cls._fitted(known, known.size, rows, pseudo_count)
 
@@ -84,7 +84,7 @@ class CategoricalOutcomes(CountedOutcomes):
         return float(self.values[0]), float(self.values[-1])
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         return generator.choice(self.values, size, p=self.counts[policy, type_] / self.totals[policy, type_])
 
     def _place(self, cells: Array, n_cells: int) -> None:

@@ -1,4 +1,4 @@
-"""What outcome models that count share: cells (bins of a histogram, or distinct values) and weights in them."""
+"""Base of outcome models by counts in cells: bins of a histogram, or distinct values."""
 
 from collections.abc import Sequence
 from typing import Any, Self
@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
     check_outcome,
@@ -29,9 +30,9 @@ class CountedOutcomes:
     counts : (n_policies, n_types, n_cells) float
         Weight of every cell, pseudo-counts included; probabilities are shares of the row's sum.
     pseudo_count : float
-        What each cell of a new type or policy starts from.
+        Initial weight of each cell of a new type or policy.
     exact : bool
-        Whether the counts are probabilities known exactly, which learn nothing.
+        Whether the counts are exact probabilities, which cannot learn.
     """
 
     counts: Array
@@ -44,7 +45,7 @@ class CountedOutcomes:
         if not ((counts >= 0).all() and np.isfinite(self.totals).all() and (self.totals > 0).all()):
             raise InputError("counts must be at least 0 and finite, with a positive one for every type and policy")
         self.mean: Array = self._row_by_row(self._means())
-        # Squares around the middle of the cells: those of large numbers would drown what they differ by.
+        # Squares around the middle of the cells: squares of large numbers would lose their differences.
         middle = 0.5 * (self._means()[0] + self._means()[-1])
         square = self._row_by_row(self._variances() + (self._means() - middle) ** 2)
         self.deviation: Array = np.sqrt(np.maximum(square - (self.mean - middle) ** 2, 0.0))
@@ -67,7 +68,7 @@ class CountedOutcomes:
         return (self.counts / self.totals[:, :, None]).transpose(1, 0, 2)
 
     def log_density(self, policy: int, value: float) -> Array:
-        """Log density of `value` per type, (n_types,); -inf where no sample fell and no pseudo-count helps.
+        """Log density of `value` per type, (n_types,); -inf where a cell has no weight.
 
         Raises
         ------
@@ -81,13 +82,17 @@ class CountedOutcomes:
         return self.log_densities(np.array([policy]), np.array([value]))[0]
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        """`log_density` of many outcomes, (n,) and (n,) to (n, n_types); without checks."""
         policies = np.asarray(policies)
         cells = self._cells(np.asarray(values, np.float64))
         inside = np.maximum(cells, 0)
         found = self.counts[policies, :, inside] / (self.totals[policies] * self._sizes()[inside][:, None])
         found[cells < 0] = 0.0
         return np.log(found, out=np.full_like(found, -np.inf), where=found > 0)
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """Log densities of finite outcomes."""
+        return CalledLikelihood(self.log_densities, finite_signals)
 
     def density(self, value: ArrayLike) -> Array:
         """Density (probability, where outcomes are discrete) of `value` for every pair, (..., T, P)."""
@@ -112,7 +117,7 @@ class CountedOutcomes:
         return self.counts[policy, types] @ below.T / self.totals[policy, types][:, None]
 
     def table(self, n_bins: int = 8) -> SignalTable:
-        """The cells as signals; beyond `n_bins` of them, neighbours joined so as to tell the types apart."""
+        """The cells as signals; above `n_bins` cells, neighbours are joined so that they tell the types apart."""
         check_bins(n_bins)
         probs = np.empty((self.n_policies, self.n_types, min(n_bins, self.n_cells)))
         for policy in range(self.n_policies):
@@ -120,35 +125,33 @@ class CountedOutcomes:
         return SignalTable(probs)
 
     def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from one more outcome of a known type, in place.
+        """Learn from another outcome of a known type, in place.
 
         Raises
         ------
         InputError
-            `value` is no finite number or in no cell, or the probabilities are known exactly.
+            `value` is no finite number or in no cell, or the probabilities are exact.
         NotFoundError
             There is no such type or policy.
         """
         check_type(type_, self.n_types)
         check_outcome(policy, value, self.n_policies)
         if self.exact:
-            raise InputError(
-                "probabilities known exactly learn nothing; build the model from samples, or give count="
-            )
+            raise InputError("exact probabilities cannot learn; build the model from samples, or give count=")
         self.counts[policy, type_, self._known_cells(np.array([value]))[0]] += 1
         self.totals[policy, type_] = self.counts[policy, type_].sum()
         self._renew(type_, policy)
 
     def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with one type more, from `samples` (n_policies, n), NaN where missing."""
+        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         return self._with(rows_of_more(samples, self.n_policies, 0), axis=1)
 
     def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with one policy more, from `samples` (n_types, n), NaN where missing."""
+        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
         return self._with(rows_of_more(samples, self.n_types, 1), axis=0)
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
-        """A new model of some types and policies, in the order given; None keeps all."""
+        """A new model of some types and policies, in the order given; None means all."""
         chosen = np.ix_(chosen_of(policies, self.n_policies), chosen_of(types, self.n_types))
         return self._like(self.counts[chosen])
 
@@ -171,7 +174,7 @@ class CountedOutcomes:
 
     @classmethod
     def of(cls, cells: Array, counts: Array, pseudo_count: float, exact: bool = False) -> Self:
-        """The model with these cells and counts, kept and not copied."""
+        """The model with these cells and counts, not copied."""
         model = cls.__new__(cls)
         model._place(cells, counts.shape[2])
         CountedOutcomes.__init__(model, counts, pseudo_count, exact)
@@ -179,7 +182,7 @@ class CountedOutcomes:
 
     @classmethod
     def _fitted(cls, cells: Array, n_cells: int, rows: OutcomeRows, pseudo_count: float) -> Self:
-        """Fitted to outcomes one a row."""
+        """The model fitted to rows of outcomes."""
         if not (pseudo_count >= 0 and np.isfinite(pseudo_count)):
             raise InputError(f"pseudo_count must be at least 0 and finite, got {pseudo_count}")
         model = cls.__new__(cls)
@@ -187,7 +190,7 @@ class CountedOutcomes:
         return cls.of(cells, model._counted(rows, n_cells) + pseudo_count, pseudo_count)
 
     def _counted(self, rows: OutcomeRows, n_cells: int) -> Array:
-        """How many of the outcomes fall in each cell, (n_policies, n_types, n_cells)."""
+        """Number of outcomes in each cell, (n_policies, n_types, n_cells)."""
         n_types, n_policies = rows.shape
         place = (rows.policies * n_types + rows.types) * n_cells + self._known_cells(rows.values)
         counted = np.bincount(place, minlength=n_policies * n_types * n_cells)
@@ -207,33 +210,33 @@ class CountedOutcomes:
         return self.of(self._where(), counts, self.pseudo_count, self.exact)
 
     def _expectation(self, of_cells: Array) -> Array:
-        """Expectation of a number each cell has, (..., n_cells) to (..., n_types, n_policies)."""
+        """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""
         found = np.tensordot(of_cells, self.counts, axes=([-1], [2])) / self.totals
         return np.ascontiguousarray(np.swapaxes(found, -1, -2))
 
     def _row_by_row(self, of_cells: Array) -> Array:
-        """`_expectation` of (n_cells,), each pair's bits the same whatever other pairs there are."""
+        """`_expectation` of (n_cells,) whose bits for a pair do not depend on the other pairs."""
         sums = np.stack([(rows * of_cells).sum(axis=1) for rows in self.counts])
         return np.ascontiguousarray((sums / self.totals).T)
 
     def _renew(self, type_: int, policy: int) -> None:
-        one = self.take([type_], [policy])
-        self.mean[type_, policy], self.deviation[type_, policy] = one.mean[0, 0], one.deviation[0, 0]
+        pair = self.take([type_], [policy])
+        self.mean[type_, policy], self.deviation[type_, policy] = pair.mean[0, 0], pair.deviation[0, 0]
 
     def bounds(self) -> tuple[float, float]:
         """(U^min, U^max): the support."""
         raise NotImplementedError
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         raise NotImplementedError
 
     def _place(self, cells: Array, n_cells: int) -> None:
-        """Take the cells' places, checked."""
+        """Check and store the places of the cells."""
         raise NotImplementedError
 
     def _where(self) -> Array:
-        """What `_place` took."""
+        """The places of the cells."""
         raise NotImplementedError
 
     def _extent(self) -> str:
@@ -245,7 +248,7 @@ class CountedOutcomes:
         raise NotImplementedError
 
     def _sizes(self) -> Array:
-        """By what a cell's probability is divided to be a density, (n_cells,)."""
+        """Divisors that turn probabilities of cells into densities, (n_cells,)."""
         raise NotImplementedError
 
     def _means(self) -> Array:

@@ -1,4 +1,4 @@
-"""Outcomes of every type and policy as Gaussians: the default performance model.
+"""Gaussian outcomes of every type and policy: the default performance model.
 
 Thesis: §4.3.4, Fig. 4.1; the expected excess is the textbook expected improvement of a Gaussian.
 """
@@ -8,10 +8,10 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, NormalLikelihood, Normals
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes, ndtr
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.outcome_moments import known_moments
-from lifelore.interaction.outcomes.special_functions import ndtr
 
 Array = NDArray[np.float64]
 
@@ -29,7 +29,7 @@ class GaussianOutcomes(MomentOutcomes):
     deviation : float or (n_types, n_policies) float
         Positive.
     count : float or (n_types, n_policies) float, optional
-        Samples that the numbers stand for, so that `observe` can move them; without it they are exact.
+        Number of samples behind the numbers, so that `observe` can change them; without it they are exact.
 
     Raises
     ------
@@ -67,13 +67,19 @@ class GaussianOutcomes(MomentOutcomes):
         return z
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        """`log_density` of many outcomes, (n,) and (n,) to (n, n_types); without checks."""
         z = np.asarray(values, np.float64)[:, None] - self._centre[policies]
         z *= self._precision[policies]
         z *= z
         z *= -0.5
         z += self._log_height[policies]
         return z
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """The normals' arrays; for a subclass, calls of its `log_densities`."""
+        if type(self) is not GaussianOutcomes:
+            return super().batch_likelihood()
+        return NormalLikelihood(Normals(self._centre, self._precision, self._log_height))
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""
@@ -95,7 +101,7 @@ class GaussianOutcomes(MomentOutcomes):
         z *= ndtr(z)
         excess += z
         excess *= self.deviation
-        # Far below the threshold the two terms cancel, and rounding may leave less than nothing.
+        # Far below the threshold the two terms cancel, and rounding may leave a negative number.
         return np.maximum(excess, 0.0, out=excess)
 
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
@@ -104,12 +110,12 @@ class GaussianOutcomes(MomentOutcomes):
         return ndtr(z * self._precision[policy, types][:, None])
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         return generator.normal(self.mean[type_, policy], self.deviation[type_, policy], size)
 
     def _prepare(self) -> None:
         self.deviation = np.sqrt(self.moments.variance)
-        # Policy first: an update reads one policy's row.
+        # Policy first: an update reads the row of a policy.
         self._centre = np.ascontiguousarray(self.mean.T)
         self._precision = np.ascontiguousarray(1 / self.deviation.T)
         self._log_height = np.log(self._precision) - _LOG_ROOT_2_PI

@@ -1,7 +1,7 @@
-"""Outcomes as histograms over shared edges, with pseudo-counts.
+"""Histogram outcomes over shared edges, with pseudo-counts.
 
-Without pseudo-counts one outcome in a bin that a type never filled deletes that type for ever; with ten samples a
-pair that happens in most tasks. Prefer Gaussians below some fifty samples a pair. Thesis: §4.4.1, step 4.
+Without pseudo-counts an outcome in a bin that a type never filled excludes that type for ever; with ten samples a
+pair that happens in most tasks. Prefer Gaussians below about fifty samples a pair. Thesis: §4.4.1, step 4.
 """
 
 from typing import Any, ClassVar, Self
@@ -23,11 +23,11 @@ class HistogramOutcomes(CountedOutcomes):
     Parameters
     ----------
     edges : (n_bins + 1,) float
-        Finite and rising; a bin holds its lower edge, the last one both.
+        Finite and rising; a bin includes its lower edge, the last bin both edges.
     probs : (n_types, n_policies, n_bins) float
         Rows over bins sum to 1.
     count : float, optional
-        Samples that every row stands for, so that `observe` can move it; without it they are exact.
+        Number of samples behind every row, so that `observe` can change it; without it rows are exact.
 
     Raises
     ------
@@ -51,7 +51,7 @@ class HistogramOutcomes(CountedOutcomes):
 
     @classmethod
     def from_samples(cls, samples: ArrayLike, edges: ArrayLike | int = 20, pseudo_count: float = 0.5) -> Self:
-        """Fitted to `samples` (n_types, n_policies, n), NaN where missing.
+        """The model fitted to `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
@@ -69,7 +69,7 @@ class HistogramOutcomes(CountedOutcomes):
 
     @classmethod
     def from_rows(cls, rows: OutcomeRows, edges: ArrayLike | int = 20, pseudo_count: float = 0.5) -> Self:
-        """Fitted to outcomes one a row; see `from_samples`."""
+        """The model fitted to rows of outcomes; see `from_samples`."""
         edges = (
             _edges_over(rows.values, edges) if isinstance(edges, int | np.integer) else np.array(edges, np.float64)
         )
@@ -80,14 +80,14 @@ class HistogramOutcomes(CountedOutcomes):
         return float(self.edges[0]), float(self.edges[-1])
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         share = self.counts[policy, type_] / self.totals[policy, type_]
         bins = generator.choice(self.n_cells, size, p=share)
         return generator.uniform(self.edges[bins], self.edges[bins + 1])
 
     def _place(self, cells: Array, n_cells: int) -> None:
         if cells.shape != (n_cells + 1,) or n_cells < 1 or not np.isfinite(cells).all():
-            raise InputError(f"edges must be {n_cells + 1} finite numbers, one more than bins, got {cells.shape}")
+            raise InputError(f"edges must be {n_cells + 1} finite numbers for {n_cells} bins, got {cells.shape}")
         if not (np.diff(cells) > 0).all():
             raise InputError("edges must rise")
         self.edges = cells

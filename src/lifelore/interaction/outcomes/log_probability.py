@@ -1,4 +1,4 @@
-"""Probability arrays as the signal models take them: checked once, and their logarithms."""
+"""Checks of probability arrays, their logarithms, and probabilities from counts."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -33,18 +33,16 @@ def log_of(probs: Array) -> Array:
 
 
 def checked_weight(count: float | None) -> float:
-    """What a row of probabilities is multiplied by to be counts: 1 where it is exact."""
+    """The factor that turns a row of probabilities into counts: `count`, or 1 where it is exact."""
     if count is None:
         return 1.0
     if not (count > 0 and np.isfinite(count)):
-        raise InputError(
-            f"count must be positive and finite, got {count}; leave it out where the numbers are exact"
-        )
+        raise InputError(f"count must be positive and finite, got {count}; omit it where the numbers are exact")
     return float(count)
 
 
 def with_pseudo_counts(counts: ArrayLike, pseudo_count: float) -> Array:
-    """Distributions along the last axis from counts, `pseudo_count` added to each; uniform where nothing counts.
+    """Distributions along the last axis from counts, `pseudo_count` added to each; uniform where all are 0.
 
     Raises
     ------

@@ -1,6 +1,7 @@
-"""What outcome models that rest on each pair's mean and variance share: data in, pairs added, taken, stored."""
+"""Base of outcome models by mean and variance, and the distribution functions of the normal and of Student's t."""
 
 from collections.abc import Sequence
+from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -9,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
 
@@ -21,7 +23,7 @@ class MomentOutcomes:
     Attributes
     ----------
     moments : OutcomeMoments
-        What is known of each pair; changed by `observe` alone.
+        Mean and variance of each pair; only `observe` changes them.
     mean, deviation : (n_types, n_policies) float
         Of the outcome as the model sees it.
     """
@@ -37,12 +39,12 @@ class MomentOutcomes:
 
     @classmethod
     def from_samples(cls, samples: ArrayLike, shrinkage: float = 5.0) -> Self:
-        """Fitted to `samples` (n_types, n_policies, n), NaN where missing, variances shrunk.
+        """The model fitted to `samples` (n_types, n_policies, n), NaN where missing, with shrunk variances.
 
         Parameters
         ----------
         shrinkage : float
-            Samples that the variance shared by all pairs counts as; > 0.
+            Number of samples that the pooled variance counts as; > 0.
 
         Raises
         ------
@@ -53,12 +55,12 @@ class MomentOutcomes:
 
     @classmethod
     def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0) -> Self:
-        """Fitted to outcomes one a row; see `from_samples`."""
+        """The model fitted to rows of outcomes; see `from_samples`."""
         return cls.of(moments(rows, shrinkage))
 
     @classmethod
     def of(cls, found: OutcomeMoments) -> Self:
-        """The model that rests on these moments, kept and not copied."""
+        """The model with these moments, not copied."""
         model = cls.__new__(cls)
         MomentOutcomes.__init__(model, found)
         return model
@@ -71,6 +73,14 @@ class MomentOutcomes:
     def n_policies(self) -> int:
         return self.mean.shape[1]
 
+    def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
+        """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
+        raise NotImplementedError
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """Log densities of finite outcomes."""
+        return CalledLikelihood(self.log_densities, finite_signals)
+
     def bounds(self) -> tuple[float, float]:
         """(U^min, U^max): four deviations around the means."""
         return float((self.mean - 4 * self.deviation).min()), float((self.mean + 4 * self.deviation).max())
@@ -80,7 +90,7 @@ class MomentOutcomes:
         return informative_table(self, n_bins)
 
     def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from one more outcome of a known type, in place.
+        """Learn from another outcome of a known type, in place.
 
         Raises
         ------
@@ -95,15 +105,15 @@ class MomentOutcomes:
         self._renew(type_, policy)
 
     def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with one type more, from `samples` (n_policies, n), NaN where missing."""
+        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         return self.of(self.moments.more(samples, axis=0))
 
     def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with one policy more, from `samples` (n_types, n), NaN where missing."""
+        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
         return self.of(self.moments.more(samples, axis=1))
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
-        """A new model of some types and policies, in the order given; None keeps all."""
+        """A new model of some types and policies, in the order given; None means all."""
         return self.of(self.moments.take(types, policies))
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
@@ -123,9 +133,34 @@ class MomentOutcomes:
         raise NotImplementedError
 
     def _prepare(self) -> None:
-        """Make all that is derived from the moments."""
+        """Compute all arrays that are derived from the moments."""
         raise NotImplementedError
 
     def _renew(self, type_: int, policy: int) -> None:
-        """Make it anew for one pair."""
+        """Compute the derived arrays again for a pair."""
         raise NotImplementedError
+
+
+# SciPy is imported at the first call: a choice by stored tables needs none of these functions.
+
+
+def ndtr(z: Any) -> Any:
+    """Distribution function of the standard normal."""
+    return _special().ndtr(z)
+
+
+def stdtr(freedom: Any, t: Any) -> Any:
+    """Distribution function of Student's t."""
+    return _special().stdtr(freedom, t)
+
+
+def gammaln(x: Any) -> Any:
+    """Logarithm of the gamma function's absolute value."""
+    return _special().gammaln(x)
+
+
+@cache
+def _special() -> Any:
+    from scipy import special
+
+    return special

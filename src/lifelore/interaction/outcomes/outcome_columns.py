@@ -1,4 +1,4 @@
-"""Outcomes as a table of episodes, read into rows: a DataFrame or any mapping of columns."""
+"""Rows of outcomes from a table of episodes: a DataFrame or any mapping of columns."""
 
 from collections.abc import Mapping
 from typing import Any
@@ -13,7 +13,7 @@ from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 def rows_of_columns(
     frame: Mapping[str, Any], type_: str, policy: str, outcome: str
 ) -> tuple[OutcomeRows, tuple[str, ...], tuple[str, ...]]:
-    """Outcomes one a row, and the names of types and policies in the order in which they first come.
+    """Rows of outcomes, and the names of types and policies in the order of their first rows.
 
     Raises
     ------

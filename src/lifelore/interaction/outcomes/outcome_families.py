@@ -1,7 +1,7 @@
-"""Families of outcomes for finding types of users: what a user's outcomes say of a type, as one matrix product.
+"""Families of outcomes for finding types of users: log likelihoods of users' outcomes as a matrix product.
 
-Means and probabilities start from the policy's own over all users, worth `PSEUDO` outcomes, so that a type whose
-users never met a policy expects of it what everybody gets.
+The policy's mean or probabilities over all users count as `PSEUDO` outcomes of each type. A type whose users never
+met a policy then has the outcomes of all users.
 """
 
 from typing import NamedTuple, Protocol
@@ -12,13 +12,13 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 PSEUDO = 1.0
-"""Outcomes that a policy's distribution over all users counts as in each type's."""
+"""Number of outcomes of each type that a policy's distribution over all users counts as."""
 FLOOR = 1e-3
 """Least deviation of a policy's outcomes within a type, as a share of the deviation of all outcomes."""
 
 
 class UserRows(NamedTuple):
-    """Outcomes one a row.
+    """Rows of outcomes.
 
     users, policies : (n,) int64
     values : (n,) float64, finite
@@ -41,17 +41,17 @@ class OutcomeFamily(Protocol):
     """Log likelihoods (n_users, n_types) as a product: ``stats @ fit(shares).T``.
 
     stats : (n_users, n_stats) float64
-        All that the family needs to know of each user's outcomes.
+        Sufficient statistics of each user's outcomes.
     """
 
     stats: Array
 
     def fit(self, shares: Array) -> Array:
-        """The likeliest types, (n_types, n_stats), when users belong to them by `shares` (n_users, n_types)."""
+        """The most likely types, (n_types, n_stats), given the users' membership `shares` (n_users, n_types)."""
         ...
 
     def n_parameters(self, n_types: int) -> int:
-        """Free numbers of so many types and their weights."""
+        """Number of free parameters of `n_types` types and their weights."""
         ...
 
 
@@ -59,7 +59,7 @@ class GaussianFamily:
     """Stats: number, sum and sum of squares of each user's outcomes with each policy, (n_users, 3 n_policies)."""
 
     def __init__(self, rows: UserRows) -> None:
-        # Centred, or the sums of squares of large outcomes would lose their digits.
+        # Centred, because sums of squares of large outcomes lose digits.
         values = rows.values - rows.values.mean()
         parts = rows.sums(), rows.sums(values), rows.sums(values**2)
         self.stats = np.hstack(parts)
@@ -93,7 +93,7 @@ class CategoricalFamily:
         counts = self._by_value(shares.T @ self.stats) + PSEUDO * self._overall
         with np.errstate(divide="ignore"):
             logs = np.log(counts / counts.sum(axis=1, keepdims=True))
-        # A value that a policy never gave is in nobody's counts: its weight meets only zeros.
+        # A value that a policy never gave has a count of 0 for every user, so its weight is irrelevant.
         return np.where(np.isfinite(logs), logs, 0.0).reshape(len(logs), -1)
 
     def n_parameters(self, n_types: int) -> int:

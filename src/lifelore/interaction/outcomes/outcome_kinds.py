@@ -1,4 +1,4 @@
-"""The outcome models by name."""
+"""Registry of the outcome models by name."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ KINDS: dict[str, Any] = {
 
 
 def outcome_kind(name: str) -> Any:
-    """The class of that name; InputError where there is none."""
+    """The class of that name; InputError where there is no such class."""
     if name not in KINDS:
         raise InputError(f"model must be one of {', '.join(sorted(KINDS))}, got {name!r}")
     return KINDS[name]

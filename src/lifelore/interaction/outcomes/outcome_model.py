@@ -1,9 +1,9 @@
-"""What a policy achieves on a type: the shape every model of P(U | type, policy) has, and how it takes its data.
+"""The interface of outcome models, P(U | type, policy), and the rows of data that they are fitted to.
 
-One outcome (utility, return, performance) is one number, larger is better. A model covers every pair of a type and
-a policy. `GaussianOutcomes` (with shrunk deviations) is the default; `StudentTOutcomes` says more honestly how
-little a few samples tell; `HistogramOutcomes` and `CategoricalOutcomes` are for outcomes of another shape.
-Thesis: §4.3.4, Def. 4.3.4.
+An outcome (utility, return, performance) is a number; larger is better. A model covers every pair of a type and a
+policy. `GaussianOutcomes` (with shrunk deviations) is the default. `StudentTOutcomes` accounts for the uncertainty
+of a few samples. `HistogramOutcomes` and `CategoricalOutcomes` are for other distributions. Thesis: §4.3.4, Def.
+4.3.4.
 """
 
 from collections.abc import Sequence
@@ -18,7 +18,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 Array = NDArray[np.float64]
 
 LARGEST = 1e100
-"""Outcomes and means must be of at most this size, deviations at least `LEAST_DEVIATION`: squares stay finite."""
+"""Largest size of outcomes and means, and with `LEAST_DEVIATION` the limit that keeps squares finite."""
 LEAST_DEVIATION = 1e-50
 
 
@@ -54,7 +54,11 @@ class OutcomeModel(Protocol):
         ...
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes at once, (n,) and (n,) to (n, T); checks nothing."""
+        """`log_density` of many outcomes, (n,) and (n,) to (n, T); without checks."""
+        ...
+
+    def batch_likelihood(self) -> Any:
+        """The outcome's likelihood as policy reuse takes it for many users, see `batch_likelihood`."""
         ...
 
     def density(self, value: ArrayLike) -> Array:
@@ -74,35 +78,35 @@ class OutcomeModel(Protocol):
         ...
 
     def bounds(self) -> tuple[float, float]:
-        """(U^min, U^max) over all pairs: the support, or four deviations around the means where it has no end."""
+        """(U^min, U^max) over all pairs: the support, or four deviations around the means if unbounded."""
         ...
 
     def table(self, n_bins: int = 8) -> SignalTable:
-        """The outcome in at most `n_bins` bins, chosen for each policy so as to tell the types apart."""
+        """The outcome in at most `n_bins` bins, chosen for each policy to tell the types apart."""
         ...
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         ...
 
     def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from one more outcome of a known type, in place."""
+        """Learn from another outcome of a known type, in place."""
         ...
 
     def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with one type more, from `samples` (P, n), NaN where missing."""
+        """A new model with an additional type, from `samples` (P, n), NaN where missing."""
         ...
 
     def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with one policy more, from `samples` (T, n), NaN where missing."""
+        """A new model with an additional policy, from `samples` (T, n), NaN where missing."""
         ...
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
-        """A new model of some types and policies, in the order given; None keeps all."""
+        """A new model of some types and policies, in the order given; None means all."""
         ...
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Everything the model is, as arrays; `from_arrays` gives the same bits back."""
+        """The whole state of the model as arrays; `from_arrays` restores every bit."""
         ...
 
     @classmethod
@@ -110,7 +114,7 @@ class OutcomeModel(Protocol):
 
 
 class OutcomeRows(NamedTuple):
-    """Outcomes one a row: which type, which policy, how much.
+    """Outcomes as rows of type, policy and value.
 
     types, policies : (n,) int64
     values : (n,) float64, finite
@@ -128,7 +132,7 @@ class OutcomeRows(NamedTuple):
         return self.types * self.shape[1] + self.policies
 
     def sums(self, values: Array | None = None) -> Array:
-        """Sum of `values` (n,) over each pair's rows, or their number, (n_types, n_policies)."""
+        """Sum of `values` (n,) over each pair's rows, by default their number, (n_types, n_policies)."""
         size = self.shape[0] * self.shape[1]
         return np.bincount(self.pair, values, minlength=size).astype(np.float64).reshape(self.shape)
 
@@ -139,7 +143,7 @@ def rows_of_samples(samples: ArrayLike) -> OutcomeRows:
     Raises
     ------
     InputError
-        The shape is another, a value is infinite, or a pair of type and policy has no sample.
+        The shape differs, a value is infinite, or a pair of type and policy has no sample.
     """
     try:
         samples = np.asarray(samples, np.float64)
@@ -155,7 +159,7 @@ def rows_of_samples(samples: ArrayLike) -> OutcomeRows:
 
 
 def checked_rows(rows: OutcomeRows) -> OutcomeRows:
-    """The rows, once they are finite and every pair has one (§4.4.1: all policies run on all types)."""
+    """The rows, if all are finite and every pair has a row (§4.4.1: all policies run on all types)."""
     if not (np.abs(rows.values) <= LARGEST).all():
         raise InputError(
             f"samples must be finite (NaN where one is missing) and of at most {LARGEST:g}; leave out what is not"
@@ -170,7 +174,7 @@ def checked_rows(rows: OutcomeRows) -> OutcomeRows:
 
 
 def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
-    """Say what is wrong with an outcome: the policy is unknown, or the value no finite number."""
+    """Raise the error for a wrong outcome: the policy is unknown, or the value is no finite number."""
     check_policy(policy, n_policies)
     raise InputError(
         f"value must be a finite number of at most {LARGEST:g}, got {value!r:.80}; leave out what has no outcome"
@@ -178,19 +182,19 @@ def refuse_outcome(policy: Any, value: Any, n_policies: int) -> NoReturn:
 
 
 def check_policy(policy: Any, n_policies: int) -> None:
-    """Refuse a policy that is none of 0 … n_policies - 1."""
+    """Raise NotFoundError for a policy outside 0 … n_policies - 1."""
     if not isinstance(policy, int | np.integer) or not 0 <= policy < n_policies:
         raise NotFoundError(f"unknown policy {policy!r}; this model knows 0 to {n_policies - 1}")
 
 
 def check_type(type_: Any, n_types: int) -> None:
-    """Refuse a type that is none of 0 … n_types - 1."""
+    """Raise NotFoundError for a type outside 0 … n_types - 1."""
     if not isinstance(type_, int | np.integer) or not 0 <= type_ < n_types:
         raise NotFoundError(f"unknown type {type_!r}; this model knows 0 to {n_types - 1}")
 
 
 def check_outcome(policy: Any, value: Any, n_policies: int) -> None:
-    """Refuse a policy that is none of the model's, and a value that is no finite number."""
+    """Raise an error for an unknown policy, or a value that is no finite number."""
     if not is_outcome(policy, value, n_policies):
         refuse_outcome(policy, value, n_policies)
 
@@ -206,5 +210,5 @@ def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
 
 
 def over_pairs(values: ArrayLike) -> Any:
-    """A number as it is, a batch (...,) as (..., 1, 1), to be set against a (T, P) array."""
+    """A number as it is, a batch (...,) as (..., 1, 1), which broadcasts against a (T, P) array."""
     return values if isinstance(values, float | int) else np.asarray(values, np.float64)[..., None, None]

@@ -1,9 +1,9 @@
-"""Means and variances of outcomes, pair by pair, with variances shrunk towards the one they share.
+"""Means and variances of outcomes for each pair of type and policy, shrunk towards the pooled variance.
 
-A handful of samples says much about a mean and little about a deviation, and a deviation underestimated makes a
-belief sure of the wrong type. So every pair's variance starts from the pooled one, which counts as `shrinkage`
-samples. One more outcome moves the numbers exactly as if it had been there from the start (Welford's update), but
-for the pooled variance, which stays. Thesis: §4.4.1, step 4.
+A few samples estimate a mean well and a deviation badly, and an underestimated deviation makes a belief certain of
+the wrong type. Every pair's variance therefore starts from the pooled variance, which counts as `shrinkage`
+samples. Another outcome changes the numbers exactly as if it had been there from the start (Welford's update),
+except for the pooled variance, which stays. Thesis: §4.4.1, step 4.
 """
 
 from collections.abc import Sequence
@@ -25,18 +25,18 @@ from lifelore.interaction.outcomes.outcome_model import (
 Array = NDArray[np.float64]
 
 FLOOR = 1e-3
-"""Least deviation learnt from samples, as a share of their range: what never varied may still vary a little."""
+"""Least deviation learnt from samples, as a share of their range: equal samples do not prove a deviation of 0."""
 
 
 @dataclass
 class OutcomeMoments:
-    """What is known of each pair's mean and variance; all (n_types, n_policies) float64.
+    """Mean and variance of each pair, and the samples behind them; all (n_types, n_policies) float64.
 
     mean, variance : finite; the variance positive
     count : samples behind the mean; infinite where it is known exactly
     freedom : degrees of freedom behind the variance, shrinkage included
     pooled : variance from which a new pair starts
-    shrinkage : samples that it counts as
+    shrinkage : samples that the pooled variance counts as
     """
 
     mean: Array
@@ -47,12 +47,12 @@ class OutcomeMoments:
     shrinkage: float
 
     def observe(self, type_: int, policy: int, value: float) -> None:
-        """Learn from one more outcome, in place."""
+        """Learn from another outcome, in place."""
         pair = type_, policy
         if np.isinf(self.count[pair]):
             raise InputError(
                 f"type {type_} with policy {policy} is known exactly and learns nothing; build the model with "
-                "count= (how many samples its numbers stand for) to let it learn"
+                "count= (the number of samples behind its numbers) to let it learn"
             )
         self.count[pair] += 1
         self.freedom[pair] += 1
@@ -62,27 +62,27 @@ class OutcomeMoments:
         self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
 
     def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
-        """With the types (axis 0) or policies (axis 1) of `other` after one's own."""
+        """With the types (axis 0) or policies (axis 1) of `other` after these."""
         pairs = zip(self._fields(), other._fields(), strict=True)
         return self._with([np.concatenate(pair, axis=axis) for pair in pairs])
 
     def more(self, samples: ArrayLike, axis: int) -> "OutcomeMoments":
-        """With one type (axis 0) or policy (axis 1) more, from `samples` (number of the others, n)."""
+        """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n)."""
         rows = rows_of_more(samples, self.mean.shape[1 - axis], axis)
         return self.joined(moments(rows, self.shrinkage, self.pooled), axis)
 
     def take(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> "OutcomeMoments":
-        """Those of some types and policies."""
+        """The moments of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.mean.shape[0]), chosen_of(policies, self.mean.shape[1]))
         return self._with([field[chosen] for field in self._fields()])
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """All of it by name."""
+        """All fields by name."""
         return {name: np.array(value) for name, value in vars(self).items()}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
-        """What `to_arrays` gave; refuses arrays that are no moments."""
+        """The moments of `to_arrays`; InputError where the arrays are no moments."""
         fields = [np.array(arrays[name], np.float64) for name in ("mean", "variance", "count", "freedom")]
         mean, variance, count, freedom = fields
         found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]))
@@ -102,7 +102,7 @@ class OutcomeMoments:
 
 
 def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None = None) -> OutcomeMoments:
-    """Means and deviations given, exactly or as if from `count` samples.
+    """Given means and deviations, exact or as if from `count` samples.
 
     Raises
     ------
@@ -129,7 +129,7 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
 
 
 def moments(rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None) -> OutcomeMoments:
-    """Moments of the outcomes, variances shrunk towards `pooled` (theirs together, unless given).
+    """Moments of the outcomes, variances shrunk towards `pooled`, by default the variance within all pairs.
 
     Raises
     ------
@@ -151,7 +151,7 @@ def moments(rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = No
 
 
 def rows_of_more(samples: ArrayLike, n_others: int, axis: int) -> OutcomeRows:
-    """`samples` (n_others, n) of one type (axis 0) or one policy (axis 1) more, as rows."""
+    """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1), as rows."""
     samples = np.asarray(samples, np.float64)
     if samples.ndim != 2 or len(samples) != n_others:
         others = "policies" if axis == 0 else "types"
@@ -160,12 +160,12 @@ def rows_of_more(samples: ArrayLike, n_others: int, axis: int) -> OutcomeRows:
 
 
 def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
-    """Which of n are chosen: all where None; at least one, each of 0 … n - 1."""
+    """The chosen numbers below n, all where None; InputError where none is chosen or a number is not below n."""
     if chosen is None:
         return np.arange(n)
     index = np.asarray(chosen, np.int64)
     if index.ndim != 1 or not index.size or index.min() < 0 or index.max() >= n:
-        raise InputError(f"what to take must be one or more of 0 to {n - 1}, got {chosen}")
+        raise InputError(f"the chosen numbers must be one or more of 0 to {n - 1}, got {chosen}")
     return index
 
 
@@ -177,10 +177,10 @@ def _spread_out(values: ArrayLike | None, mean: Array, name: str) -> Array:
 
 
 def _pooled(squares: Array, count: Array, mean: Array) -> float:
-    """Variance within pairs, taken together; where each ran but once, that of means across types or policies."""
+    """Variance within all pairs; where each pair ran once, the variance of means across types or policies."""
     if (freedom := (count - 1).sum()) > 0:
         return float(squares.sum() / freedom)
-    # Nothing tells noise from difference: all of it counts as noise, so that beliefs move with caution.
+    # Noise and differences cannot be separated: all variance counts as noise, so that beliefs move with caution.
     return float(mean.var(axis=0).mean()) if len(mean) > 1 else float(mean.var())
 
 

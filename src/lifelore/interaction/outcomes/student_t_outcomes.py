@@ -1,8 +1,8 @@
-"""Outcomes as Student's t: the predictive of a Gaussian whose mean and variance few samples leave open.
+"""Student's t outcomes: the predictive distribution of a Gaussian whose mean and variance are uncertain.
 
-With the reference prior on a mean and an inverse χ² on the variance (the pooled one, counting as `shrinkage`
-samples), the next outcome is t with location the sample mean, scale² = variance (1 + 1 / count) and as many
-degrees of freedom as stand behind the variance. Thesis: §4.4.1, step 4.
+The prior on the mean is the reference prior; the prior on the variance is an inverse χ² around the pooled
+variance, which counts as `shrinkage` samples. The next outcome then has a t distribution with the sample mean as
+location, scale² = variance (1 + 1 / count), and the degrees of freedom of the variance. Thesis: §4.4.1, step 4.
 """
 
 from typing import Any, ClassVar
@@ -11,10 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes, gammaln, stdtr
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.outcome_moments import known_moments
-from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 
 Array = NDArray[np.float64]
 
@@ -29,7 +28,7 @@ class StudentTOutcomes(MomentOutcomes):
     deviation : float or (n_types, n_policies) float
         Sample deviations, positive.
     count : float or (n_types, n_policies) float
-        Samples that they stand for, more than 2.
+        Number of samples behind them, more than 2.
 
     Raises
     ------
@@ -67,7 +66,7 @@ class StudentTOutcomes(MomentOutcomes):
         return z
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
-        """`log_density` of many outcomes at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        """`log_density` of many outcomes, (n,) and (n,) to (n, n_types); without checks."""
         z = (np.asarray(values, np.float64)[:, None] - self._centre[policies]) * self._narrow[policies]
         return self._log_height[policies] + self._power[policies] * np.log1p(z * z)
 
@@ -87,7 +86,7 @@ class StudentTOutcomes(MomentOutcomes):
         """
         z = (self.mean - over_pairs(threshold)) / self.scale
         peak = self._unit_density(z) * (self.freedom + z * z) / (self.freedom - 1)
-        # Far below the threshold the two terms cancel, and rounding may leave less than nothing.
+        # Far below the threshold the two terms cancel, and rounding may leave a negative number.
         return np.maximum(self.scale * (peak + z * stdtr(self.freedom, z)), 0.0)
 
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
@@ -96,7 +95,7 @@ class StudentTOutcomes(MomentOutcomes):
         return stdtr(self.freedom[types, policy][:, None], z)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Outcomes drawn for one pair: a number, or an array of shape `size`."""
+        """Random outcomes of a pair: a number, or an array of shape `size`."""
         drawn = generator.standard_t(self.freedom[type_, policy], size)
         return self.mean[type_, policy] + self.scale[type_, policy] * drawn
 
@@ -107,23 +106,23 @@ class StudentTOutcomes(MomentOutcomes):
         if not ((self.freedom > 2) & np.isfinite(self.freedom)).all():
             raise InputError(
                 "every pair needs more than 2 and finitely many degrees of freedom (shrinkage + samples - 1, or "
-                "count); raise shrinkage, or use GaussianOutcomes for what is known exactly"
+                "count); raise shrinkage, or use GaussianOutcomes for exact numbers"
             )
         self.scale: Array = np.sqrt(self.moments.variance * (1 + 1 / self.moments.count))
         self.deviation = self.scale * np.sqrt(self.freedom / (self.freedom - 2))
         half = 0.5 * self.freedom
         self._unit_height = gammaln(half + 0.5) - gammaln(half) - 0.5 * np.log(np.pi * self.freedom)
-        # Policy first: an update reads one policy's row.
+        # Policy first: an update reads the row of a policy.
         self._centre = np.ascontiguousarray(self.mean.T)
         self._narrow = np.ascontiguousarray(1 / (self.scale * np.sqrt(self.freedom)).T)
         self._power = np.ascontiguousarray(-half.T - 0.5)
         self._log_height = np.ascontiguousarray((self._unit_height - np.log(self.scale)).T)
 
     def _renew(self, type_: int, policy: int) -> None:
-        # One pair's worth of `_prepare`, through the same formulas so that the bits agree.
-        one = self.take([type_], [policy])
+        # `_prepare` of a single pair, through the same formulas so that the bits agree.
+        single = self.take([type_], [policy])
         pair, turned = (type_, policy), (policy, type_)
-        self.scale[pair], self.deviation[pair] = one.scale[0, 0], one.deviation[0, 0]
-        self._unit_height[pair] = one._unit_height[0, 0]
-        self._centre[turned], self._narrow[turned] = one._centre[0, 0], one._narrow[0, 0]
-        self._power[turned], self._log_height[turned] = one._power[0, 0], one._log_height[0, 0]
+        self.scale[pair], self.deviation[pair] = single.scale[0, 0], single.deviation[0, 0]
+        self._unit_height[pair] = single._unit_height[0, 0]
+        self._centre[turned], self._narrow[turned] = single._centre[0, 0], single._narrow[0, 0]
+        self._power[turned], self._log_height[turned] = single._power[0, 0], single._log_height[0, 0]

@@ -1,7 +1,7 @@
-"""Regret: what the best policy of the library would have achieved more.
+"""Regret: the utility lost against the best policy of the library.
 
-Thesis: §4.3.2, Defs 4.3.1–2. Given means this is expected regret; given realised utilities, realised regret, which
-also holds the noise of both episodes.
+Means give expected regret. Realised utilities give realised regret, which includes the noise of both episodes.
+Thesis: §4.3.2, Defs 4.3.1–2.
 """
 
 import numpy as np
@@ -18,9 +18,9 @@ def library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
     Parameters
     ----------
     utilities : (..., n_policies) float
-        What each policy achieves on the task; finite.
+        Utility of each policy on the task; finite.
     chosen : int, (..., K) int
-        Policies chosen, one or K for each task.
+        Chosen policies, one or K for each task.
 
     Returns
     -------
@@ -31,7 +31,7 @@ def library_regret(utilities: ArrayLike, chosen: ArrayLike) -> Array:
     InputError
         Utilities are not finite, or shapes do not agree.
     NotFoundError
-        A chosen policy is none of the library's.
+        There is no such policy in the library.
 
     Examples
     --------

@@ -1,11 +1,11 @@
-"""A `BayesianPolicyReuse` agent as one npz file: it goes on as if it had never stopped, to the last bit.
+"""The file format of a `BayesianPolicyReuse` agent, one npz file; a restored agent continues bit for bit.
 
 about            uint8, UTF-8 JSON: format, version, rule, dynamics, horizon, counters, random generator
 library          uint8, the library's own file (`library_file`)
 log_belief       (n_types,) float64
 law              the dynamics' prior or matrix, where they have one
-scores           (n_policies,) float64 of the last selection, where there was one
-log_likelihood   (n, n_types) float64 of the signals kept; evidence_policy and log_evidence (n,) beside it
+scores           (n_policies,) float64 of the last selection, if any
+log_likelihood   (n, n_types) float64 of the last signals; evidence_policy and log_evidence (n,) beside it
 """
 
 from dataclasses import asdict
@@ -19,13 +19,14 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.reuse.evidence import Evidence
-from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
+from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.interaction.selection import RULES, rule_named
 
 FORMAT = PackedFormat("lifelore policy reuse session", 1, "session", "save_session")
+GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
+"""Bit generators of NumPy that a file may name."""
 
 
 def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
@@ -34,7 +35,7 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
     Raises
     ------
     InputError
-        Its rule is none of ours, or a setting is no plain value.
+        The rule is not one of `RULES`, or one of its settings is no plain value.
     StoreError
         The disk refuses.
     """
@@ -47,17 +48,17 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
 
 
 def load_session(path: str | Path, signal: SignalModel | None = None) -> BayesianPolicyReuse:
-    """The agent that `save_session` wrote; it selects and learns as the one saved would have.
+    """The agent that `save_session` wrote; it selects and learns as the saved agent would have.
 
     Parameters
     ----------
     signal : SignalModel, optional
-        Needed where the library's signal model is the caller's own function.
+        Required where the library's signal model is the caller's own.
 
     Raises
     ------
     InputError
-        There is no such file, or it is none of ours, newer, or damaged.
+        The file does not exist, is of another kind, newer or damaged.
     """
     try:
         content = Path(path).read_bytes()
@@ -88,10 +89,10 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
 def session_from_bytes(
     content: bytes, where: str = "the session", signal: SignalModel | None = None
 ) -> BayesianPolicyReuse:
-    """The agent of `session_bytes`; `where` is named when it cannot be read."""
+    """The agent of `session_bytes`; `where` names the source in error messages."""
     header, arrays = FORMAT.unpack(content, where)
     try:
-        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
+        library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
         rule = rule_named(header["rule"], **header["settings"])
         generator = generator_from_state(header["generator"])
@@ -105,13 +106,13 @@ def session_from_bytes(
 
 
 def _arrays(agent: BayesianPolicyReuse) -> Arrays:
-    kept = list(agent._evidence)
+    last = list(agent._evidence)
     arrays: Arrays = {
-        "library": np.frombuffer(library_bytes(agent.library), np.uint8),
+        "library": np.frombuffer(agent.library.to_bytes(), np.uint8),
         "log_belief": agent.log_belief,
-        "evidence_policy": np.array([one.policy for one in kept], np.int64),
-        "log_evidence": np.array([one.log_evidence for one in kept], np.float64),
-        "log_likelihood": np.array([one.log_likelihood for one in kept]).reshape(-1, agent.library.n_types),
+        "evidence_policy": np.array([signal.policy for signal in last], np.int64),
+        "log_evidence": np.array([signal.log_evidence for signal in last], np.float64),
+        "log_likelihood": np.array([signal.log_likelihood for signal in last]).reshape(-1, agent.library.n_types),
     }
     if agent.dynamics.law is not None:
         arrays["law"] = agent.dynamics.law
@@ -129,7 +130,37 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     agent._log_belief = log_belief
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
     agent.surprise = float(header["surprise"])
-    kept = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
-    agent._evidence.extend(Evidence(int(policy), said, float(evidence)) for policy, said, evidence in kept)
+    last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
+    agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:
         agent._selected = int(header["selected"]), arrays["scores"]
+
+
+def generator_state(generator: np.random.Generator) -> dict[str, Any]:
+    """The state of a random generator as plain data: numbers, texts, lists and dictionaries."""
+    return _plain(generator.bit_generator.state)
+
+
+def generator_from_state(state: dict[str, Any]) -> np.random.Generator:
+    """The generator of `generator_state`; ValueError where its kind is unknown."""
+    if state["bit_generator"] not in GENERATORS:
+        raise ValueError(f"unknown random generator {state['bit_generator']!r}")
+    source = getattr(np.random, state["bit_generator"])()
+    source.state = _restored(state)
+    return np.random.Generator(source)
+
+
+def _plain(state: Any) -> Any:
+    if isinstance(state, dict):
+        return {name: _plain(value) for name, value in state.items()}
+    if isinstance(state, np.ndarray):
+        return {"array": state.tolist(), "dtype": state.dtype.str}
+    return int(state) if isinstance(state, np.integer) else state
+
+
+def _restored(state: Any) -> Any:
+    if not isinstance(state, dict):
+        return state
+    if set(state) == {"array", "dtype"}:
+        return np.array(state["array"], state["dtype"])
+    return {name: _restored(value) for name, value in state.items()}

@@ -1,9 +1,9 @@
-"""`UserBeliefs` as one npz file: beliefs, library and random generator, to the bit; a million users take seconds.
+"""The file format of `UserBeliefs`, one npz file: beliefs, library and random generator, bit for bit.
 
 about            uint8, UTF-8 JSON: format, version, dtype, dynamics, random generator
 library          uint8, the library's own file (`library_file`)
 log_belief       (n_users, n_types) float32 or float64
-log_prior        (n_types,) of the same, what a user who is forgotten starts from
+log_prior        (n_types,) of the same, log belief about a new or forgotten user
 law              the dynamics' prior or matrix, where they have one
 """
 
@@ -16,8 +16,8 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.library.library_file import library_bytes, library_from_bytes
-from lifelore.interaction.reuse.generator_state import generator_from_state, generator_state
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.reuse_session import generator_from_state, generator_state
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 
 FORMAT = PackedFormat("lifelore user beliefs", 1, "file of user beliefs", "save_users", 2**40)
@@ -32,7 +32,7 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
         "generator": generator_state(users.generator),
     }
     arrays: Arrays = {
-        "library": np.frombuffer(library_bytes(users.library), np.uint8),
+        "library": np.frombuffer(users.library.to_bytes(), np.uint8),
         "log_belief": users.log_belief,
         "log_prior": users.log_prior,
     }
@@ -46,19 +46,19 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
 
 
 def load_users(path: str | Path, signal: SignalModel | None = None) -> UserBeliefs:
-    """What `save_users` wrote; `signal` is needed where the library's signal model is the caller's own.
+    """The users that `save_users` wrote; `signal` is required where the signal model is the caller's own.
 
     Raises
     ------
     InputError
-        There is no such file, or it is none of ours, newer, or damaged.
+        The file does not exist, is of another kind, newer or damaged.
     """
     if not Path(path).is_file():
         raise InputError(f"the users {path} cannot be read: no such file")
     with Path(path).open("rb") as file:
         header, arrays = FORMAT.unpack(file, str(path))
     try:
-        library = library_from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
+        library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {path}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
         users = UserBeliefs(
             library,

@@ -1,8 +1,8 @@
-"""Beliefs of many users, row by row, compiled: absorb a signal, draw a type, choose a policy.
+"""Compiled kernels for float32 beliefs of many users: Bayes' rule, reading beliefs, drawing types.
 
-Rows are logs of beliefs; each kernel handles the users of one block, whose linear beliefs stay in the cache
-between two kernels. float32 rows take an exponential of their own: without branches, so that it runs sixteen
-types at a time, exact to 2e-7 relative, and 0 below e^-87, so that no subnormal number is ever made.
+Rows are logs of beliefs. Each kernel handles the users of one block, whose linear beliefs stay in the cache
+between two kernels. float32 rows have an exponential of their own. It has no branches, so it handles sixteen
+types at a time. It is exact to 2e-7 relative, and 0 below e^-87, so it makes no subnormal numbers.
 """
 
 import math
@@ -10,13 +10,12 @@ import math
 import numpy as np
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.interaction.beliefs.belief import LOWEST
 
 LEAST_LOG = -87.0
-"""Logs of float32 beliefs below this count as 0 when beliefs are read; the logs themselves are kept."""
+"""Logs of float32 beliefs below this count as 0 when beliefs are read; the stored logs stay."""
 
 AHEAD, LINE = 32, 16
-"""Rows asked for ahead, and float32 numbers in a line of the cache."""
+"""Number of rows loaded ahead, and float32 numbers in a line of the cache."""
 
 _LOG2_E = np.float32(1.4426950408889634)
 # ln 2 in two parts, the first with few digits, so that n ln 2 is exact.
@@ -46,22 +45,13 @@ def _exponentials(logs, linear, bits, powers):
 
 
 @inlined
-def _best(row, new):
-    """The largest of `new` over types whose log belief in `row` is not minus infinity."""
-    best = -np.inf
-    for i in range(row.shape[0]):
-        best = max(best, new[i] if row[i] > -np.inf else -np.inf)
-    return best
-
-
-@inlined
-def _joined(row, new, best):
-    """new = row + (new - best) in place; returns the largest, found four at a time."""
+def _joined(row, new):
+    """new = row + new in place; returns the largest, found four at a time."""
     b0, b1, b2, b3 = -np.inf, -np.inf, -np.inf, -np.inf
     n = row.shape[0]
     fours = n - n % 4
     for i in range(n):
-        new[i] = row[i] + (new[i] - best)
+        new[i] = row[i] + new[i]
     for i in range(0, fours, 4):
         b0 = max(b0, new[i])
         b1 = max(b1, new[i + 1])
@@ -90,7 +80,7 @@ def _total(row):
 
 @inlined
 def _touched(log_beliefs, users, first):
-    """Ask for the rows of the next users all at once: memory then answers many requests in the time of one."""
+    """Load the rows of the next users all at once: memory serves many requests in the time of a single request."""
     total = 0.0
     for k in range(first, min(first + AHEAD, users.shape[0])):
         row = log_beliefs[users[k]]
@@ -100,12 +90,19 @@ def _touched(log_beliefs, users, first):
 
 
 @kernel
-def absorb_f4(log_beliefs, users, said, linear, log_evidence):
-    """`absorb_f8` for float32 beliefs; sums of logs are taken in float64 until the largest is known.
+def bayes_users_f4(log_beliefs, users, log_likelihood, linear, log_evidence):
+    """Bayes' rule for the rows of `users`, in place and in order: a user may come twice.
 
-    Returns a number without meaning, of the rows asked for ahead.
+    log_beliefs : (n_users, n_types) float32, normalised logs, written
+    users : (k,) int64
+    log_likelihood : (k, n_types) float64, below infinity; overwritten
+    linear : (k, n_types) float32, the beliefs afterwards, written
+    log_evidence : (k,) float64, written; -inf where no type explains the signal, whose user's belief stays
+
+    Sums of logs are taken in float64 until the largest is known. Returns a number without meaning, made of the
+    rows that are loaded ahead.
     """
-    n = said.shape[1]
+    n = log_likelihood.shape[1]
     bits = np.empty(n, np.int32)
     powers = bits.view(np.float32)
     near = np.empty(n, np.float32)
@@ -113,9 +110,9 @@ def absorb_f4(log_beliefs, users, said, linear, log_evidence):
     for k in range(users.shape[0]):
         if k % AHEAD == 0:
             ahead += _touched(log_beliefs, users, k)
-        row, new, out = log_beliefs[users[k]], said[k], linear[k]
+        row, new, out = log_beliefs[users[k]], log_likelihood[k], linear[k]
         # A float32 log belief is too small a number to take a likelihood out of the range of float64.
-        top = _joined(row, new, 0.0)
+        top = _joined(row, new)
         if top == -np.inf:
             _exponentials(row, out, bits, powers)
             log_evidence[k] = -np.inf
@@ -133,41 +130,8 @@ def absorb_f4(log_beliefs, users, said, linear, log_evidence):
 
 
 @kernel
-def absorb_f8(log_beliefs, users, said, linear, log_evidence):
-    """Bayes' rule for the rows of `users`, in place and in order, so that a user may come twice.
-
-    log_beliefs : (n_users, n_types), normalised logs, written
-    users : (k,) int64
-    said : (k, n_types) float64, log likelihoods below infinity; used up
-    linear : (k, n_types), the beliefs afterwards, written
-    log_evidence : (k,) float64, written; -inf where no type explains the signal: the belief stays as it is then
-    """
-    n = said.shape[1]
-    for k in range(users.shape[0]):
-        row, new, out = log_beliefs[users[k]], said[k], linear[k]
-        best = _best(row, new)
-        if best == -np.inf:
-            for i in range(n):
-                out[i] = math.exp(row[i])
-            log_evidence[k] = -np.inf
-            continue
-        for i in range(n):
-            if row[i] == -np.inf:
-                new[i] = -np.inf
-        top = _joined(row, new, best)
-        for i in range(n):
-            out[i] = math.exp(new[i] - top)
-        total = _total(out)
-        shift = math.log(total)
-        for i in range(n):
-            row[i] = min((new[i] - top) - shift, 0.0)
-            out[i] /= total
-        log_evidence[k] = max(top + shift + best, LOWEST)
-
-
-@kernel
 def read_f4(log_beliefs, users, linear):
-    """Beliefs of `users` from float32 logs, (k, n_types) float32, rows summing to 1; returns as `absorb_f4`."""
+    """Beliefs of `users` from float32 logs, (k, n_types) float32, rows sum to 1; returns as `bayes_users_f4`."""
     n = log_beliefs.shape[1]
     bits = np.empty(n, np.int32)
     powers = bits.view(np.float32)
@@ -185,7 +149,7 @@ def read_f4(log_beliefs, users, linear):
 
 @kernel
 def draw_types(linear, uniforms, drawn):
-    """A type a row, drawn from beliefs (k, n_types) by `uniforms` (k,) in [0, 1); one of belief 0 never is."""
+    """Draw a type for each row of beliefs (k, n_types) by `uniforms` (k,) in [0, 1); never a type of belief 0."""
     n = linear.shape[1]
     for k in range(linear.shape[0]):
         row = linear[k]
@@ -199,22 +163,3 @@ def draw_types(linear, uniforms, drawn):
                 if left < 0:
                     break
         drawn[k] = last
-
-
-@kernel
-def gaussian_said(policies, values, mean, precision, height, said):
-    """Log densities of `values` (k,) under normals, (k, n_types); model arrays are (n_policies, n_types)."""
-    n = said.shape[1]
-    for k in range(policies.shape[0]):
-        policy, value = policies[k], values[k]
-        centre, tight, top, out = mean[policy], precision[policy], height[policy], said[k]
-        for i in range(n):
-            z = (value - centre[i]) * tight[i]
-            out[i] = top[i] - 0.5 * (z * z)
-
-
-@kernel
-def table_said(policies, signals, logs, said):
-    """Rows of a table of log probabilities (n_policies, n_signals, n_types), (k, n_types)."""
-    for k in range(policies.shape[0]):
-        said[k] = logs[policies[k], signals[k]]

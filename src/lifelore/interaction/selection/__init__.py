@@ -1,20 +1,21 @@
-"""Rules for selecting a policy under a belief over types, by name."""
+"""Selection rules: which policy to run next under a belief over types (thesis §4.5).
 
-from typing import TYPE_CHECKING, Any
+Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
+the rules that look ahead share: `support`, `type_classes`, `information`. `belief_program` computes the exact
+optimum.
+"""
 
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
+from lifelore.interaction.selection.choice import choose, tied_shares
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.interaction.selection.expected_improvement import ExpectedImprovement
 from lifelore.interaction.selection.greedy import Greedy
 from lifelore.interaction.selection.information_directed import InformationDirected
 from lifelore.interaction.selection.knowledge_gradient import KnowledgeGradient
 from lifelore.interaction.selection.probability_of_improvement import ProbabilityOfImprovement
-from lifelore.interaction.selection.rule import SelectionRule, tied_shares
-
-if TYPE_CHECKING:
-    from lifelore.interaction.selection.choice import choose as choose
+from lifelore.interaction.selection.rule import SelectionRule
 
 RULES: dict[str, type] = {
     rule.name: rule
@@ -39,7 +40,7 @@ __all__ = [
 
 
 def rule_named(name: str, **settings) -> SelectionRule:
-    """The rule of that name, with settings if any; NotFoundError where there is none.
+    """The rule of that name with these settings; NotFoundError where there is no such rule.
 
     Examples
     --------
@@ -49,12 +50,3 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
-
-
-def __getattr__(name: str) -> Any:
-    # `choose` is compiled; the rules and their probabilities do without the compiler.
-    if name == "choose":
-        from lifelore.interaction.selection.choice import choose
-
-        return choose
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -1,8 +1,8 @@
-"""Belief entropy: utility, and κ for every nat that a signal is expected to tell. Thesis: §4.5.2.2.
+"""Belief entropy: expected utility plus κ for each nat of expected information. Thesis: §4.5.2.2.
 
-The thesis prints an expected posterior whose entries sum to more than 1 (each type is weighted by its own
-likelihood and not by the predictive one), and takes the entropy of that. `variant="thesis"` is as printed. The
-quantity meant is the expected entropy of the posterior, H(β) − I(π).
+The thesis prints the entropy of an expected posterior whose entries sum to more than 1: each type is weighted by
+its own likelihood in place of the predictive likelihood. `variant="thesis"` is as printed. The intended quantity
+is the expected entropy of the posterior, H(β) − I(π).
 """
 
 from dataclasses import dataclass
@@ -26,12 +26,12 @@ class BeliefEntropy(Deterministic):
     Parameters
     ----------
     kappa : float, optional
-        Utility that a nat is worth, ≥ 0. The range of mean utilities unless given.
+        Utility of a nat of information, ≥ 0. The range of mean utilities by default.
     variant : {"standard", "thesis"}
     mass : float
-        Share of the belief that is looked at, in (0, 1]; the printed form looks at all.
+        Share of the belief that is used, in (0, 1]; the printed form uses the whole belief.
     n_bins : int
-        Bins of signals that are numbers.
+        Number of bins of real-valued signals.
 
     Raises
     ------
@@ -52,13 +52,13 @@ class BeliefEntropy(Deterministic):
             raise InputError(f"kappa must be at least 0, got {self.kappa}")
 
     def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Utilities with the worth of information, (..., n_policies)."""
+        """Expected utilities plus κ times the information, (..., n_policies)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
         kappa = float(np.ptp(mean)) if self.kappa is None else self.kappa
-        worth = expected_utility(belief, mean)
+        utility = expected_utility(belief, mean)
         if self.variant == "thesis":
-            return worth - kappa * _printed_entropy(printed_posterior(belief, table))
-        return worth + kappa * mutual_information(belief, table, self.mass)
+            return utility - kappa * _printed_entropy(printed_posterior(belief, table))
+        return utility + kappa * mutual_information(belief, table, self.mass)
 
 
 def printed_posterior(belief: Array, table: SignalTable) -> Array:

@@ -1,11 +1,11 @@
-"""The exact best way to select over a finite horizon: dynamic programming over beliefs. Thesis: Eq. 4.3, §4.5.
+"""The exact optimal selection over a finite horizon: dynamic programming over beliefs. Thesis: Eq. 4.3, §4.5.
 
     V_k(w) = max_π [ Σ_τ w(τ) E[U | τ, π] + Σ_σ V_{k-1}(w · F(σ | ·, π)) ],   V_0 = 0
 
-The thesis's Q has no horizon and diverges, and takes the expectation under the unknown type; here it is under
-the belief, with a horizon. Beliefs w are not normalised: each carries the probability of the signals that lead
-to it, so nothing is divided. The tree has (n_policies n_signals)^k beliefs: an oracle for small problems
-(golf: 4 clubs, 7 categories, 3 shots), not a rule.
+The thesis's Q has no horizon and diverges, and takes the expectation under the unknown type. Here the expectation
+is under the belief, with a horizon. Beliefs w are not normalised: each carries the probability of the signals that
+lead to it, so no division is needed. The tree has (n_policies n_signals)^k beliefs. It is a reference for small
+problems (golf: 4 clubs, 7 categories, 3 shots), not a rule.
 """
 
 from typing import NamedTuple
@@ -26,23 +26,23 @@ LARGEST = 50_000_000
 
 
 class Plan(NamedTuple):
-    """What the best selection is worth.
+    """The optimal selection and its value.
 
     value : float
         Expected sum of utilities over the horizon.
     first : int
-        The policy that it starts with.
-    worth : (n_policies,) float64
-        Q: the value of starting with each policy and going on at best.
+        Number of the first policy.
+    values : (n_policies,) float64
+        Q: the value of starting with each policy and selecting optimally afterwards.
     """
 
     value: float
     first: int
-    worth: Array
+    values: Array
 
 
 def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None, n_bins: int = 8) -> Plan:
-    """The best value over `horizon` episodes from `belief` (the library's prior unless given), exactly.
+    """The optimal selection over `horizon` episodes from `belief`, by default the library's prior; exact.
 
     Utilities are the performance model's; signals are `library.table(n_bins)`.
 
@@ -53,10 +53,10 @@ def best_plan(library: PolicyLibrary, horizon: int, belief: Array | None = None,
     """
     table, mean = library.table(n_bins), library.performance.mean
     layers = _layers(table, _start(library, belief), horizon)
-    worth = layers[-1] @ mean
+    values = layers[-1] @ mean
     for weights in reversed(layers[:-1]):
-        worth = weights @ mean + _after_signals(worth.max(axis=1), table)
-    return Plan(float(worth[0].max()), int(worth[0].argmax()), worth[0])
+        values = weights @ mean + _after_signals(values.max(axis=1), table)
+    return Plan(float(values[0].max()), int(values[0].argmax()), values[0])
 
 
 def value_of_rule(
@@ -73,10 +73,10 @@ def value_of_rule(
     layers = _layers(table, _start(library, belief), horizon)
     value = np.zeros(0)
     for left, weights in enumerate(reversed(layers)):
-        worth = weights @ mean
+        values = weights @ mean
         if left:
-            worth = worth + _after_signals(value, table)
-        value = (_shares(library, rule, weights, left) * worth).sum(axis=1)
+            values = values + _after_signals(value, table)
+        value = (_shares(library, rule, weights, left) * values).sum(axis=1)
     return float(value[0])
 
 
@@ -106,7 +106,7 @@ def _after_signals(value: Array, table: SignalTable) -> Array:
 
 
 def _shares(library: PolicyLibrary, rule: SelectionRule, weights: Array, left: int) -> Array:
-    """How likely the rule is to select each policy at each belief; those that cannot be reached select any."""
+    """Probability that the rule selects each policy at each belief; uniform beliefs where unreachable."""
     total = weights.sum(axis=1, keepdims=True)
     beliefs = np.divide(weights, total, out=np.full_like(weights, 1 / weights.shape[1]), where=total > 0)
     return rule.probabilities(library, beliefs, episodes_left=left)

@@ -1,4 +1,4 @@
-"""Greedy, but any policy at all with probability ε. Thesis: §4.5."""
+"""ε-greedy selection: with probability ε any policy, else the greedy policy. Thesis: §4.5."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -8,7 +8,8 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.rule import Array, check_generator, tied_shares
+from lifelore.interaction.selection.choice import tied_shares
+from lifelore.interaction.selection.rule import Array, check_generator
 
 
 @dataclass(frozen=True)
@@ -43,13 +44,13 @@ class EpsilonGreedy:
     ) -> Array:
         """Expected utilities, or with probability ε random numbers, (..., n_policies)."""
         generator = check_generator(self.name, generator)
-        worth = expected_utility(belief, library.performance.mean)
-        explores = generator.random(worth.shape[:-1]) < self.epsilon
+        utility = expected_utility(belief, library.performance.mean)
+        explores = generator.random(utility.shape[:-1]) < self.epsilon
         if not np.any(explores):
-            return worth
-        return np.where(np.asarray(explores)[..., None], generator.random(worth.shape), worth)
+            return utility
+        return np.where(np.asarray(explores)[..., None], generator.random(utility.shape), utility)
 
     def probabilities(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
         best = tied_shares(expected_utility(belief, library.performance.mean))
         return self.epsilon / best.shape[-1] + (1 - self.epsilon) * best

@@ -1,8 +1,8 @@
-"""Expected improvement: how much more than the best expected utility a policy may achieve. Thesis: §4.5.2.1.
+"""Expected improvement: expected excess of a policy's utility over the best expected utility. Thesis: §4.5.2.1.
 
-The thesis integrates the density from Uᵗ upwards, which is the *probability* of improvement on Uᵗ; how large
-the improvement is never enters. `variant="thesis"` is as printed; it sticks for ever with a policy of wide
-outcomes on a fifth of the surveillance tasks.
+The thesis integrates the density from Uᵗ upwards. That is the *probability* of improvement on Uᵗ and ignores its
+size. `variant="thesis"` is as printed; on a fifth of the surveillance tasks it selects a policy of wide outcomes
+for ever.
 """
 
 from dataclasses import dataclass

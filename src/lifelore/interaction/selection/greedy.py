@@ -1,4 +1,4 @@
-"""The policy of the largest expected utility under the belief: Ũ(π) = Σ β(τ) E[U | τ, π]. Thesis: Eq. 4.5."""
+"""Greedy selection: the largest expected utility under the belief, Ũ(π) = Σ β(τ) E[U | τ, π]. Thesis: Eq. 4.5."""
 
 from dataclasses import dataclass
 from typing import Any, ClassVar
@@ -10,7 +10,7 @@ from lifelore.interaction.selection.rule import Array, Deterministic
 
 @dataclass(frozen=True)
 class Greedy(Deterministic):
-    """Never explores: nearest to what is believed best now."""
+    """Selects the policy of the largest expected utility; never explores."""
 
     name: ClassVar[str] = "greedy"
 

@@ -1,6 +1,7 @@
-"""Information-directed sampling, in its deterministic form: the least regret squared for a nat of information.
+"""Information-directed selection: the smallest ratio of squared expected regret to information.
 
-No κ and no horizon to choose (Russo and Van Roy, 2014). Not in the thesis; as good as expected improvement there.
+The deterministic form of Russo and Van Roy (2014). It has no κ and no horizon to choose. It is not in the thesis;
+in the thesis's experiments it does as well as expected improvement.
 """
 
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from lifelore.interaction.selection.rule import Array, Deterministic
 from lifelore.interaction.selection.support import MASS, check_mass
 
 LEAST_INFORMATION = 1e-9
-"""Nats below which a signal tells nothing."""
+"""Least information in nats that scores are divided by."""
 
 
 @dataclass(frozen=True)
@@ -25,9 +26,9 @@ class InformationDirected(Deterministic):
     Parameters
     ----------
     mass : float
-        Share of the belief whose information is looked at, in (0, 1].
+        Share of the belief that is used, in (0, 1].
     n_bins : int
-        Bins of signals that are numbers.
+        Number of bins of real-valued signals.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Mixtures of signal distributions, and the best to expect after each signal, compiled."""
+"""Compiled kernels: supports of beliefs, mixtures of signal distributions, the best policy after each signal."""
 
 import numpy as np
 
@@ -6,14 +6,30 @@ from lifelore.core.compiled.jit import inlined, kernel
 
 
 @kernel
-def mixtures(share, kept, probs, mixed):
-    """Σ share F(signal | type, policy) over the types kept.
+def least_kept(belief, mass):
+    """The least belief among the likeliest types that together hold `mass` of `belief` (n_types,)."""
+    rising = np.sort(belief)
+    total = 0.0
+    for i in range(rising.shape[0]):
+        total += rising[i]
+    left_out = 0.0
+    # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.
+    for i in range(rising.shape[0]):
+        left_out += rising[i]
+        if rising[i] > 0 and left_out > (1.0 - mass) * total:
+            return rising[i]
+    return rising[-1]
 
-    share, kept : (k,) float64 and int64
+
+@kernel
+def mixtures(share, support, probs, mixed):
+    """Σ share F(signal | type, policy) over the types of a support.
+
+    share, support : (k,) float64 and int64
     probs : (n_policies, n_types, n_signals)
     mixed : (n_policies, n_signals) float64, written
     """
-    n, n_signals = kept.shape[0], probs.shape[2]
+    n, n_signals = support.shape[0], probs.shape[2]
     fours = n - n % 4
     for policy in range(probs.shape[0]):
         row = mixed[policy]
@@ -21,33 +37,33 @@ def mixtures(share, kept, probs, mixed):
         # Four types at a time: the row of sums is read and written a quarter as often.
         for i in range(0, fours, 4):
             w0, w1, w2, w3 = share[i], share[i + 1], share[i + 2], share[i + 3]
-            law0, law1 = probs[policy, kept[i]], probs[policy, kept[i + 1]]
-            law2, law3 = probs[policy, kept[i + 2]], probs[policy, kept[i + 3]]
+            law0, law1 = probs[policy, support[i]], probs[policy, support[i + 1]]
+            law2, law3 = probs[policy, support[i + 2]], probs[policy, support[i + 3]]
             for signal in range(n_signals):
                 row[signal] += (w0 * law0[signal] + w1 * law1[signal]) + (w2 * law2[signal] + w3 * law3[signal])
         for i in range(fours, n):
-            weight, law = share[i], probs[policy, kept[i]]
+            weight, law = share[i], probs[policy, support[i]]
             for signal in range(n_signals):
                 row[signal] += weight * law[signal]
 
 
 @kernel
-def class_mixtures(share, kept, classes, probs, mixed):
+def class_mixtures(share, support, classes, probs, mixed):
     """`mixtures` with the shares of types of one class (n_policies, n_types) summed first."""
     n_signals = probs.shape[2]
-    weights = np.empty(kept.shape[0], probs.dtype)
-    shown = np.empty(kept.shape[0], np.int64)
+    weights = np.empty(support.shape[0], probs.dtype)
+    shown = np.empty(support.shape[0], np.int64)
     slots = np.empty(probs.shape[1], np.int64)
     for policy in range(probs.shape[0]):
         own = classes[policy]
         slots[:] = -1
         n = 0
-        for i in range(kept.shape[0]):
-            slot = slots[own[kept[i]]]
+        for i in range(support.shape[0]):
+            slot = slots[own[support[i]]]
             if slot < 0:
-                slots[own[kept[i]]] = n
+                slots[own[support[i]]] = n
                 weights[n] = share[i]
-                shown[n] = kept[i]
+                shown[n] = support[i]
                 n += 1
             else:
                 weights[slot] += share[i]
@@ -60,33 +76,33 @@ def class_mixtures(share, kept, classes, probs, mixed):
 
 
 @kernel
-def best_after_signals(worth, kept, classes, number, probs, best):
-    """Σ over signals of the largest of Σ worth F(signal | type, policy) over the types kept.
+def best_after_signals(weighted, support, classes, number, probs, best):
+    """Σ over signals of the largest of Σ weighted F(signal | type, policy) over the types of a support.
 
-    worth : (k, n_candidates), the belief times the mean of each candidate on each type kept
-    kept : (k,) int64
+    weighted : (k, n_candidates), the belief times the mean of each candidate on each type of the support
+    support : (k,) int64
     classes, number : (n_policies, n_types) int32 and (n_policies,) int64, types whose laws are equal, as
         in `TypeClasses`
-    probs : (n_policies, n_types, n_signals), of the dtype of `worth`
+    probs : (n_policies, n_types, n_signals), of the dtype of `weighted`
     best : (n_policies,) float64, written
     """
-    n_types, n_signals, n_candidates = probs.shape[1], probs.shape[2], worth.shape[1]
+    n_types, n_signals, n_candidates = probs.shape[1], probs.shape[2], weighted.shape[1]
     after = np.empty((n_candidates, n_signals), probs.dtype)
-    laws = np.empty((kept.shape[0], n_signals), probs.dtype)
-    sums = np.empty((kept.shape[0], n_candidates), probs.dtype)
+    laws = np.empty((support.shape[0], n_signals), probs.dtype)
+    sums = np.empty((support.shape[0], n_candidates), probs.dtype)
     largest = np.empty(n_signals, probs.dtype)
     slots = np.empty(n_types, np.int64)
-    by_candidate = np.ascontiguousarray(worth.T)
-    everything = kept.shape[0] == n_types
+    by_candidate = np.ascontiguousarray(weighted.T)
+    everything = support.shape[0] == n_types
     for policy in range(probs.shape[0]):
         if number[policy] < n_types:
-            n = _summed_by_class(worth, kept, classes[policy], probs[policy], slots, sums, laws)
+            n = _summed_by_class(weighted, support, classes[policy], probs[policy], slots, sums, laws)
             np.dot(sums[:n].T, laws[:n], after)
         elif everything:
             np.dot(by_candidate, probs[policy], after)
         else:
-            for i in range(kept.shape[0]):
-                _copied(probs[policy, kept[i]], laws[i])
+            for i in range(support.shape[0]):
+                _copied(probs[policy, support[i]], laws[i])
             np.dot(by_candidate, laws, after)
         largest[:] = after[0]
         for q in range(1, n_candidates):
@@ -107,18 +123,18 @@ def _copied(source, target):
 
 
 @inlined
-def _summed_by_class(worth, kept, own, probs, slots, sums, laws):
-    """Rows of `worth` summed by the class of their type, and each class's law; returns the number of classes."""
+def _summed_by_class(weighted, support, own, probs, slots, sums, laws):
+    """Sum rows of `weighted` by the class of their type, copy each class's law; returns the number of classes."""
     slots[:] = -1
     n = 0
-    for i in range(kept.shape[0]):
-        slot = slots[own[kept[i]]]
+    for i in range(support.shape[0]):
+        slot = slots[own[support[i]]]
         if slot < 0:
-            slots[own[kept[i]]] = n
-            _copied(worth[i], sums[n])
-            _copied(probs[kept[i]], laws[n])
+            slots[own[support[i]]] = n
+            _copied(weighted[i], sums[n])
+            _copied(probs[support[i]], laws[n])
             n += 1
         else:
-            for q in range(worth.shape[1]):
-                sums[slot, q] += worth[i, q]
+            for q in range(weighted.shape[1]):
+                sums[slot, q] += weighted[i, q]
     return n

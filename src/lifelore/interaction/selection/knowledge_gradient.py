@@ -1,11 +1,10 @@
-"""Knowledge gradient: utility now, and how much better the best choice is expected to be after the signal.
+"""Knowledge gradient: expected utility now, plus the expected gain of the best choice after the signal.
 
     v(π) = Σ_σ max_q Σ_τ β(τ) F(σ | τ, π) E[U | τ, q] − max_q Ũ(q)
 
-The posterior of each signal need not be normalised, for its weight is the very sum that would be divided by.
-So v is one matrix product and one maximum. The thesis (Eq. 4.6) averages over signals *before* it takes the
-maximum; then the two terms are equal and v is 0 for every policy. `variant="thesis"` is as printed. Thesis:
-§4.5.2.3.
+The posterior of each signal need not be normalised: its weight is the sum that it would be divided by. So v is a
+matrix product and a maximum. The thesis (Eq. 4.6) averages over signals *before* it takes the maximum; then the
+two terms are equal and v is 0 for every policy. `variant="thesis"` is as printed. Thesis: §4.5.2.3.
 """
 
 from dataclasses import dataclass
@@ -33,14 +32,15 @@ class KnowledgeGradient(Deterministic):
     ----------
     variant : {"standard", "thesis"}
     mass : float
-        Share of the belief that is looked at, in (0, 1].
+        Share of the belief that is used, in (0, 1].
     n_bins : int
-        Bins of signals that are numbers.
+        Number of bins of real-valued signals.
     lookahead : float
-        K − t where the agent has no horizon; ≥ 0.
+        Value of K − t where the agent has no horizon; ≥ 0.
     candidates : {"responses", "all"}
-        Which policies are looked at as the next choice: best responses to the types kept and the policy best now,
-        or all. A policy that is best on no type but second best on many is seen by "all" only.
+        Policies considered as the next choice: the best responses to the types of the support and the policy that
+        is best now, or all policies. Only "all" considers a policy that is best on no type but second best on
+        many.
 
     Raises
     ------
@@ -66,7 +66,7 @@ class KnowledgeGradient(Deterministic):
     def scores(
         self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
     ) -> Array:
-        """Utilities with the worth of what is learnt, (..., n_policies)."""
+        """Expected utilities plus the weighted gain of learning, (..., n_policies)."""
         mean, table = library.performance.mean, library.table(self.n_bins)
         if self.variant == "thesis":
             gain = printed_gain(belief, mean, table)
@@ -87,22 +87,27 @@ def knowledge_gain(
     mean : (n_types, n_policies) float
     table : SignalTable
     mass : float
-        Share of the belief that is looked at.
+        Share of the belief that is used.
     candidates : {"responses", "all"}
         As for `KnowledgeGradient`.
     """
 
-    def one(belief: Array) -> Array:
-        kept, share = supported_types(belief, mass)
-        means = mean[kept] if len(kept) < len(belief) else mean
+    def gain_of(belief: Array) -> Array:
+        support, share = supported_types(belief, mass)
+        means = mean[support] if len(support) < len(belief) else mean
         if candidates == "responses":
             means = means[:, responses(means, share)]
-        worth = np.ascontiguousarray(means * share[:, None])
+        weighted_means = np.ascontiguousarray(means * share[:, None])
         best = np.empty(table.n_policies)
         best_after_signals(
-            worth.astype(table.probs.dtype, copy=False), kept, classes.of_type, classes.number, table.probs, best
+            weighted_means.astype(table.probs.dtype, copy=False),
+            support,
+            classes.of_type,
+            classes.number,
+            table.probs,
+            best,
         )
-        return best - worth.sum(axis=0).max()
+        return best - weighted_means.sum(axis=0).max()
 
     # The kernel's products are those of SciPy's BLAS, so there is no NumPy twin with the same bits.
     from lifelore.interaction.selection.information_kernels import best_after_signals
@@ -110,8 +115,8 @@ def knowledge_gain(
     classes = type_classes(table)
     rows = np.asarray(belief, np.float64)
     if rows.ndim == 1:
-        return one(rows)
-    flat = np.array([one(row) for row in rows.reshape(-1, rows.shape[-1])])
+        return gain_of(rows)
+    flat = np.array([gain_of(row) for row in rows.reshape(-1, rows.shape[-1])])
     return flat.reshape(*rows.shape[:-1], table.n_policies)
 
 

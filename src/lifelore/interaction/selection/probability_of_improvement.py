@@ -1,7 +1,7 @@
-"""Probability of improvement: how likely a policy is to achieve more than U⁺. Thesis: §4.5.2.1.
+"""Probability of improvement: the probability that a policy achieves more than U⁺. Thesis: §4.5.2.1.
 
-The thesis prints the *density* at U⁺ instead of the probability above it: then a policy that is far better than U⁺
-counts as little as one far worse. `variant="thesis"` is as printed.
+The thesis prints the *density* at U⁺ in place of the probability above it. A policy far better than U⁺ then scores
+as low as a policy far worse. `variant="thesis"` is as printed.
 """
 
 from dataclasses import dataclass
@@ -15,7 +15,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
 
 MARGIN_SHARE = 0.02
-"""Default margin of the printed form, as a share of the utilities' range; the thesis names none."""
+"""Default margin of the printed form, as a share of the utilities' range; the thesis gives no number."""
 
 
 @dataclass(frozen=True)
@@ -25,12 +25,12 @@ class ProbabilityOfImprovement(Deterministic):
     Parameters
     ----------
     target : float, optional
-        U⁺. Unless given: the best mean of any policy on any type still possible; as printed, "some utility which
+        U⁺. By default the best mean of any policy on any possible type; in the printed form "some utility which
         is larger than the current best estimate", Ũᵗ + `margin`.
     variant : {"standard", "thesis"}
     margin : float, optional
-        How far the printed form's U⁺ lies above the best expected utility; 2 % of the range of mean utilities
-        unless given. > 0.
+        Distance of the printed form's U⁺ above the best expected utility, > 0; by default 2 % of the range of mean
+        utilities.
 
     Raises
     ------

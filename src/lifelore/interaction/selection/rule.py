@@ -1,32 +1,28 @@
-"""What a rule for selecting a policy is, and how likely it is to select each.
+"""The interface of a selection rule, and the functions that several rules share.
 
-A rule gives every policy a score under a belief; the largest is selected, equals at random. Under a flat
-belief many policies are worth exactly the same up to rounding, so all rules share one tolerance. Thesis: §4.5.
+A rule gives every policy a score under a belief. The policy of the largest score is selected, equals at random.
+Under a flat belief many scores are equal up to rounding, so all rules share the tolerance of `ties`. Thesis: §4.5.
 """
 
 from collections.abc import Callable
 from typing import ClassVar, Literal, Protocol
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.beliefs.compiler_start import kernel_pays
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection.choice import tied_shares
 
 Array = NDArray[np.float64]
 Variant = Literal["standard", "thesis"]
 
-TOLERANCE = 1e-9
-"""Scores this close to the best, relative to it, are equal: rounding moves sums of products by less."""
-ROUNDING = 1e-15
-"""Differences below this share of a row's largest score are rounding, however small the best score is."""
 NUMBERS_AT_ONCE = 1 << 22
 """Size of the largest temporary array when many beliefs are scored."""
 
 
 class SelectionRule(Protocol):
-    """A way to select policies; settings alone, nothing is remembered between calls."""
+    """A way to select policies. A rule holds its settings and no state."""
 
     name: ClassVar[str]
 
@@ -38,7 +34,7 @@ class SelectionRule(Protocol):
         episodes_left: float | None = None,
         generator: np.random.Generator | None = None,
     ) -> Array:
-        """What each policy is worth selecting, (..., n_policies); the largest is selected.
+        """The score of each policy, (..., n_policies); the largest is selected.
 
         Parameters
         ----------
@@ -46,52 +42,23 @@ class SelectionRule(Protocol):
         belief : (..., n_types) float64
             Rows sum to 1.
         episodes_left : float, optional
-            Episodes that follow the one now selected for.
+            Number of episodes after this selection.
         generator : numpy generator, optional
-            For rules that draw.
+            Needed by rules that draw.
         """
         ...
 
     def probabilities(self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
-        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
         ...
 
 
 class Deterministic:
-    """A rule whose scores do not draw: the best are selected, each as likely."""
+    """Base of rules whose scores draw no random numbers: the best policies are equally likely."""
 
     def probabilities(self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None) -> Array:
-        """How likely each policy is to be selected, (..., n_policies); rows sum to 1."""
+        """Probability of selecting each policy, (..., n_policies); rows sum to 1."""
         return tied_shares(self.scores(library, belief, episodes_left=episodes_left))  # pyright: ignore
-
-
-def tied_shares(scores: ArrayLike, tolerance: float = TOLERANCE) -> Array:
-    """How likely `choose` is to take each policy, (..., n_policies)."""
-    scores = np.asarray(scores, np.float64)
-    if not scores.shape[-1]:
-        return np.empty_like(scores)
-    if not kernel_pays(scores.size):
-        shares = shares_of_tied(scores, tolerance)
-    else:
-        from lifelore.interaction.selection.tie_kernels import tied_rows
-
-        rows = np.ascontiguousarray(scores.reshape(-1, scores.shape[-1]))
-        shares = np.empty_like(rows)
-        tied_rows(rows, tolerance, shares)
-    if np.isnan(shares).any():
-        raise InputError("scores must be numbers, got NaN")
-    return shares.reshape(scores.shape)
-
-
-def shares_of_tied(scores: Array, tolerance: float) -> Array:
-    """1 / n for each of the n best of a row, NaN where a score is: the NumPy twin of `tie_kernels.tied_rows`."""
-    best = scores.max(axis=-1, keepdims=True)
-    least = np.where(scores > -np.inf, scores, best).min(axis=-1, keepdims=True)
-    with np.errstate(invalid="ignore"):
-        bar = best - (tolerance * np.abs(best) + ROUNDING * np.maximum(np.abs(best), np.abs(least)))
-    bar = np.where(np.isinf(best), best, bar)
-    tied = scores >= bar
-    return np.where(np.isnan(best), np.nan, tied / np.maximum(tied.sum(axis=-1, keepdims=True), 1))
 
 
 def in_blocks(belief: Array, numbers: int, scored: Callable[[Array], Array]) -> Array:
@@ -101,7 +68,7 @@ def in_blocks(belief: Array, numbers: int, scored: Callable[[Array], Array]) -> 
     ----------
     belief : (..., n_types) float
     numbers : int
-        Size of what `scored` makes for one belief on the way.
+        Size of the temporary arrays that `scored` makes for one belief.
     scored : callable
         (n, n_types) to (n, n_policies), and (n_types,) to (n_policies,).
     """
@@ -122,13 +89,13 @@ def weighted(belief: Array, values: Array) -> Array:
 
 
 def check_variant(variant: str) -> None:
-    """Refuse a variant that is neither ``standard`` nor ``thesis``."""
+    """Raise InputError where the variant is neither ``standard`` nor ``thesis``."""
     if variant not in ("standard", "thesis"):
         raise InputError(f"variant must be 'standard' or 'thesis' (as printed), got {variant!r}")
 
 
 def check_generator(rule: str, generator: np.random.Generator | None) -> np.random.Generator:
-    """The generator; InputError where a rule that draws has none."""
+    """The generator; InputError where it is None and the rule draws."""
     if generator is None:
         raise InputError(f"{rule} draws at random; give a generator, e.g. numpy.random.default_rng(0)")
     return generator

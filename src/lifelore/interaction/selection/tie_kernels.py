@@ -1,12 +1,12 @@
-"""The largest score of a row, equals at random, compiled."""
+"""Compiled kernels: the largest score of a row with equals at random, and the shares of tied policies."""
 
 import numpy as np
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.interaction.selection.rule import ROUNDING
+from lifelore.interaction.selection.ties import ROUNDING
 
 TIED = -2
-"""Answer of `choose_row` where policies tie and no uniform number was given."""
+"""Return value of `choose_row` where policies tie and `uniform` is negative."""
 
 
 @inlined

@@ -1,8 +1,7 @@
-"""Types that a policy cannot tell apart: for that policy they count as one, exactly.
+"""Classes of types whose signal distributions are equal under a policy; sums over types then run over classes.
 
-A drone over one place sees poachers there, next to it, two away, or not at all: five laws of signals for 68
-types. Sums over types then have as many terms as there are laws. Models learnt from samples have no two laws
-alike, and nothing is gained.
+A drone over a place sees poachers there, next to it, at other distances, or not at all: five distributions of
+signals for 68 types. Models learnt from samples have no two equal distributions, and classes save nothing.
 """
 
 from typing import NamedTuple
@@ -16,11 +15,11 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 
 
 class TypeClasses(NamedTuple):
-    """Which types share a law of signals.
+    """The types that share a distribution of signals, for each policy.
 
-    of_type : (n_policies, n_types) int32, equal numbers for equal laws of one policy, from 0
-    number : (n_policies,) int64, how many laws each policy has
-    few : bool, whether policies have at most half as many laws as there are types, on average
+    of_type : (n_policies, n_types) int32, equal numbers for equal distributions under a policy, from 0
+    number : (n_policies,) int64, number of distributions of each policy
+    few : bool, whether policies have at most half as many distributions as there are types, on average
     """
 
     of_type: NDArray[np.int32]
@@ -32,7 +31,7 @@ _KNOWN: WeakKeyDictionary[SignalTable, TypeClasses] = WeakKeyDictionary()
 
 
 def type_classes(table: SignalTable) -> TypeClasses:
-    """The classes of a table's types, found once for each table."""
+    """The classes of a table's types, computed once for each table."""
     found = _KNOWN.get(table)
     if found is None:
         found = _KNOWN[table] = _classes(table)
@@ -50,7 +49,7 @@ def _classes(table: SignalTable) -> TypeClasses:
 
 def _equal_rows(rows: NDArray, mark: NDArray) -> NDArray[np.int64]:
     """Numbers from 0 for rows (n, k), equal for equal rows."""
-    # Equal rows have equal sums, and sums are soon compared; that unequal rows have unequal sums is checked.
+    # Equal rows have equal sums, and sums are compared faster than rows; the converse is checked.
     _, first, number = np.unique((rows * mark).sum(axis=1), return_index=True, return_inverse=True)
     if len(first) < len(rows) and not np.array_equal(rows, rows[first[number]]):
         number = np.unique(rows, axis=0, return_inverse=True)[1]

@@ -1,4 +1,4 @@
-"""Signals that are one of a few categories, such as the distance bands of the golf example.
+"""Category signal: one of a few categories, such as the distance bands of the golf example.
 
 Thesis: §4.4.1, §4.6.1 (Table 4.1).
 """
@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, TableLikelihood
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
 from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
@@ -28,12 +29,12 @@ class CategorySignal:
     probs : (n_types, n_policies, n_categories) float
         Rows over categories sum to 1; zeros are allowed.
     categories : sequence of hashable, optional
-        What the categories are called; then signals are these names. Otherwise signals are 0 … n_categories - 1.
+        Names of the categories; signals are then names. By default signals are 0 … n_categories - 1.
 
     Raises
     ------
     InputError
-        A row is no distribution, or names are too few or not distinct.
+        A row is no distribution, or there are too few names or equal names.
 
     Examples
     --------
@@ -52,7 +53,7 @@ class CategorySignal:
         self._place = {name: place for place, name in enumerate(names)}
         if len(names) != n or len(self._place) != n:
             raise InputError(f"categories must be {n} distinct names, got {len(names)}")
-        # Policy and category first: an update reads one row.
+        # Policy and category first: an update reads a row.
         self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
         self._log.flags.writeable = False
 
@@ -64,14 +65,14 @@ class CategorySignal:
         pseudo_count: float = 0.5,
         categories: Sequence[Hashable] | None = None,
     ) -> Self:
-        """Fitted to category numbers `samples` (n_types, n_policies, n), NaN where missing.
+        """The model fitted to category numbers `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
         n_categories : int, optional
-            The number of `categories`, or one more than the largest sample, unless given.
+            By default the number of `categories`, or else the largest sample plus 1.
         pseudo_count : float
-            Added to every category of every pair, ≥ 0; at 0, one category never seen deletes a type for ever.
+            Added to every category of every pair, ≥ 0; at 0, a category never seen excludes a type for ever.
 
         Raises
         ------
@@ -120,11 +121,15 @@ class CategorySignal:
         return self._log[policy, place]
 
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Those of many category numbers at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
         return self._log[policies, np.asarray(signals, np.int64)]
 
+    def batch_likelihood(self) -> BatchLikelihood:
+        """The table of log probabilities; signals of a batch are category numbers, not names."""
+        return TableLikelihood(self._log)
+
     def table(self, n_bins: int = 8) -> SignalTable:
-        """All categories where they are at most `n_bins`; otherwise neighbours joined, as for outcomes."""
+        """All categories where they are at most `n_bins`; otherwise neighbours are joined, as for outcomes."""
         check_bins(n_bins)
         by_policy = self.probs.transpose(1, 0, 2)
         if self.n_categories <= n_bins:
@@ -132,7 +137,7 @@ class CategorySignal:
         return SignalTable(np.stack([joined_bins(rows, n_bins) for rows in by_policy]))
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
-        """Category numbers drawn for one pair."""
+        """Random category numbers of a pair."""
         return generator.choice(self.n_categories, size, p=self.probs[type_, policy])
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
@@ -141,7 +146,7 @@ class CategorySignal:
         return type(self)(self.probs[chosen], self.categories)
 
     def parts(self) -> tuple[Any, ...]:
-        """It rests on no other model."""
+        """It uses no other model."""
         return ()
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:

@@ -1,4 +1,4 @@
-"""Several signals of one episode, independent given the type and the policy."""
+"""Joint signal: several signals of an episode, independent given the type and the policy."""
 
 from collections.abc import Sequence
 from typing import Any, ClassVar, Self
@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 class JointSignal:
-    """Signals that are tuples, one part a factor: log F is the sum of the factors'.
+    """Signals that are tuples with a part for each factor; log F is the sum over the factors.
 
     Parameters
     ----------
@@ -24,7 +24,7 @@ class JointSignal:
     Raises
     ------
     InputError
-        There is none, or sizes differ.
+        There is no factor, or sizes differ.
 
     Examples
     --------
@@ -75,7 +75,7 @@ class JointSignal:
         return self.factors
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Nothing beyond its parts."""
+        """Empty: the parts hold the state."""
         return {}
 
     @classmethod

@@ -1,4 +1,4 @@
-"""A signal model that is the caller's own function."""
+"""Likelihood signal: a signal model by the caller's own log likelihood function."""
 
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -39,7 +39,7 @@ class LikelihoodSignal:
         self.function, self.n_types, self.n_policies = function, n_types, n_policies
 
     def log_likelihood(self, policy: int, signal: Any) -> Array:
-        """What the function gives, checked.
+        """The checked answer of the function.
 
         Raises
         ------
@@ -65,10 +65,10 @@ class LikelihoodSignal:
         self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None
     ) -> "LikelihoodSignal":
         """The model of some types and policies."""
-        kept = chosen_of(types, self.n_types)
+        chosen = chosen_of(types, self.n_types)
         given = self.function
 
         def cut(policy: int, signal: Any) -> Array:
-            return np.asarray(given(policy if policies is None else int(policies[policy]), signal))[kept]
+            return np.asarray(given(policy if policies is None else int(policies[policy]), signal))[chosen]
 
-        return LikelihoodSignal(cut, len(kept), self.n_policies if policies is None else len(policies))
+        return LikelihoodSignal(cut, len(chosen), self.n_policies if policies is None else len(policies))

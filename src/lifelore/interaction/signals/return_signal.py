@@ -1,4 +1,4 @@
-"""The episode's return as the signal: the performance model is the observation model too.
+"""Return signal: the episode's return is the signal, the performance model is the observation model.
 
 Thesis: §4.4.2.3.
 """
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel
 
 Array = NDArray[np.float64]
@@ -21,7 +22,7 @@ class ReturnSignal:
     Parameters
     ----------
     outcomes : OutcomeModel
-        Kept, not copied: what it learns, the signal model knows.
+        Not copied: the signal model uses what the outcomes learn in place.
     """
 
     kind: ClassVar[str] = "return"
@@ -50,8 +51,14 @@ class ReturnSignal:
         return self.outcomes.log_density(policy, signal)
 
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
-        """Those of many returns at once, (n,) and (n,) to (n, n_types); checks nothing."""
+        """Log densities of many returns, (n,) and (n,) to (n, n_types); without checks."""
         return self.outcomes.log_densities(policies, signals)
+
+    def batch_likelihood(self) -> BatchLikelihood:
+        """The outcomes' likelihood; for a subclass with its own `log_likelihood`, calls of the subclass."""
+        if type(self).log_likelihood is not ReturnSignal.log_likelihood:
+            return CalledLikelihood(self.log_likelihoods, finite_signals)
+        return self.outcomes.batch_likelihood()
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The return in bins."""
@@ -62,11 +69,11 @@ class ReturnSignal:
         return type(self)(self.outcomes.take(types, policies))
 
     def parts(self) -> tuple[Any, ...]:
-        """The models it rests on."""
+        """The models that it uses."""
         return (self.outcomes,)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Nothing beyond its parts."""
+        """Empty: the parts hold the state."""
         return {}
 
     @classmethod

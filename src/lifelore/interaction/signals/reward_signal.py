@@ -1,6 +1,6 @@
-"""The instantaneous rewards of an episode as the signal, each drawn alone.
+"""Reward signal: the instantaneous rewards of an episode, independent of one another.
 
-Thesis: §4.4.2.2. `StepRewardSignal` conditions each reward on the state and action it came from.
+Thesis: §4.4.2.2. `StepRewardSignal` conditions each reward on its state and action.
 """
 
 from collections.abc import Iterable, Sequence
@@ -52,7 +52,7 @@ class RewardSignal:
         model: str = "categorical",
         **options: Any,
     ) -> Self:
-        """Fitted to rewards of episodes.
+        """The model fitted to rewards of episodes.
 
         Parameters
         ----------
@@ -63,17 +63,17 @@ class RewardSignal:
         Raises
         ------
         InputError
-            A pair has no reward, or one is not finite.
+            A pair has no reward, or a reward is not finite.
         """
-        kept = [(type_, policy, _numbers(rewards)) for type_, policy, rewards in sequences]
-        if not kept:
+        episodes = [(type_, policy, _numbers(rewards)) for type_, policy, rewards in sequences]
+        if not episodes:
             raise InputError("sequences must hold at least one episode")
-        lengths = [len(rewards) for _, _, rewards in kept]
-        types = np.repeat([type_ for type_, _, _ in kept], lengths)
-        policies = np.repeat([policy for _, policy, _ in kept], lengths)
+        lengths = [len(rewards) for _, _, rewards in episodes]
+        types = np.repeat([type_ for type_, _, _ in episodes], lengths)
+        policies = np.repeat([policy for _, policy, _ in episodes], lengths)
         if not ((types >= 0) & (types < n_types) & (policies >= 0) & (policies < n_policies)).all():
             raise InputError(f"sequences must name types 0 to {n_types - 1} and policies 0 to {n_policies - 1}")
-        values = np.concatenate([rewards for _, _, rewards in kept])
+        values = np.concatenate([rewards for _, _, rewards in episodes])
         rows = checked_rows(OutcomeRows(types, policies, values, (n_types, n_policies)))
         return cls(outcome_kind(model).from_rows(rows, **options))
 
@@ -86,12 +86,12 @@ class RewardSignal:
         return self.rewards.n_policies
 
     def log_likelihood(self, policy: int, signal: ArrayLike) -> Array:
-        """Log likelihood of the rewards (n,) per type, (n_types,); 0 where there are none.
+        """Log likelihood of the rewards (n,) per type, (n_types,); 0 for no rewards.
 
         Raises
         ------
         InputError
-            They are no finite numbers.
+            A reward is not finite.
         NotFoundError
             There is no such policy.
         """
@@ -104,11 +104,11 @@ class RewardSignal:
         return type(self)(self.rewards.take(types, policies))
 
     def parts(self) -> tuple[Any, ...]:
-        """The models it rests on."""
+        """The models that it uses."""
         return (self.rewards,)
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """Nothing beyond its parts."""
+        """Empty: the parts hold the state."""
         return {}
 
     @classmethod

@@ -1,8 +1,8 @@
-"""P(outcome of a step | state, action; type, policy) over whole numbers: what a step leads to, or what it pays.
+"""Base of signals made of steps: P(outcome | state, action; type, policy) for next states or rewards as numbers.
 
-Steps are independent given the type, as in an MDP, so an episode's log likelihood is a sum. One table holds
-n_types × n_states × n_actions × n_outcomes numbers, times n_policies where policies differ beyond the actions they
-take. Thesis: §4.4.2.1–2, §4.7.6.
+Steps are independent given the type, as in an MDP, so an episode's log likelihood is a sum. A table holds n_types
+× n_states × n_actions × n_outcomes numbers, times n_policies where outcomes depend on the policy beyond its
+actions. Thesis: §4.4.2.1–2, §4.7.6.
 """
 
 from collections.abc import Iterable, Sequence
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 
 _AXES = ("n_types", "n_policies or 1", "n_states", "n_actions", "n_outcomes")
 _ABOVE = 2e-6
-"""How far above 0 a logarithm may lie: rows are taken as they come when they sum to 1 to 1e-6."""
+"""Largest logarithm of a probability that is accepted: rows may sum to 1 + 1e-6."""
 
 
 class StepModel:
@@ -31,7 +31,7 @@ class StepModel:
     probs : (n_types, n_states, n_actions, n_outcomes) or (n_types, n_policies, n_states, n_actions, n_outcomes)
         Rows over outcomes sum to 1; zeros are allowed. Without the policies' axis all policies share the table.
     n_policies : int, optional
-        How many policies share the table; any number where None.
+        Number of policies that share the table; any number where None.
 
     Raises
     ------
@@ -47,7 +47,7 @@ class StepModel:
         self.shared = probs.ndim == 4
         table = checked_distributions(probs[:, None] if self.shared else probs, "probs", _AXES)
         self.n_policies = n_policies if self.shared else table.shape[1]
-        # Types last: a step reads one row.
+        # Types last: a step reads a row.
         self._log = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
 
     @property
@@ -61,17 +61,17 @@ class StepModel:
 
     @property
     def probs(self) -> Array:
-        """P(outcome | state, action; type[, policy]), axes as given; made anew at each call."""
+        """P(outcome | state, action; type[, policy]), axes as given; computed at each call."""
         table = np.moveaxis(np.exp(self._log), -1, 0)
         return table[:, 0] if self.shared else table
 
     @property
     def n_entries(self) -> int:
-        """How many numbers are stored."""
+        """Number of stored probabilities."""
         return self._log.size
 
     def log_sum(self, policy: int, steps: NDArray[np.int64]) -> Array:
-        """Log likelihood per type, (n_types,), of steps (n, 3): state, action, outcome; 0 where there are none.
+        """Log likelihood per type, (n_types,), of steps (n, 3): state, action, outcome; 0 for no steps.
 
         Raises
         ------
@@ -86,22 +86,22 @@ class StepModel:
         return self._log[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
 
     def taken(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> tuple[Array, int | None]:
-        """The table of some types and policies, and how many policies share it."""
+        """The table of some types and policies, and the number of policies that share it."""
         table = self.probs[chosen_of(types, self.n_types)]
         if self.shared:
             return table, self.n_policies if policies is None else len(policies)
         return table[:, chosen_of(policies, table.shape[1])], None
 
     def parts(self) -> tuple[Any, ...]:
-        """It rests on no other model."""
+        """It uses no other model."""
         return ()
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """The logarithms, as they are read, and how many policies share them."""
+        """The logarithms, and the number of policies that share them."""
         return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0])}
 
     def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
-        """Take what `to_arrays` gave, bit for bit."""
+        """Restore the arrays of `to_arrays`, bit for bit."""
         log, (shared, n_policies) = np.array(arrays["log"], np.float64), arrays["shared"].tolist()
         if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
@@ -110,7 +110,7 @@ class StepModel:
 
 
 def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
-    """Refuse steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
+    """Raise InputError for steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
     if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
         bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
         raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
@@ -138,7 +138,7 @@ def step_counts(
     n_policies: int | None,
     shape: tuple[int, int, int],
 ) -> Array:
-    """How often each step was made: (n_types, *shape), with `n_policies` (n_types, n_policies, *shape).
+    """Number of times of each step: (n_types, *shape), with `n_policies` (n_types, n_policies, *shape).
 
     Parameters
     ----------
@@ -162,7 +162,7 @@ def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | Non
     Parameters
     ----------
     possible : bool, broadcastable to the counts, optional
-        What may follow at all; everything unless given. What was counted is possible in any case.
+        Possible outcomes; by default all. Counted outcomes are possible in any case.
     """
     counts = np.asarray(counts, np.float64)
     if possible is None:

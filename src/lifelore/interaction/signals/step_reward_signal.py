@@ -1,4 +1,4 @@
-"""The (s, a, r) tuples of an episode as the signal: the observation model is the type's reward function.
+"""Step reward signal: the (s, a, r) tuples of an episode; the observation model is the type's reward function.
 
 Thesis: §4.4.2.2, §4.6.2.
 """
@@ -21,11 +21,11 @@ class StepRewardSignal(StepModel):
     Parameters
     ----------
     rewards : (n_rewards,) float
-        All that a step may pay, distinct.
+        Possible rewards of a step, distinct.
     probs : (n_types, n_states, n_actions, n_rewards) or (n_types, n_policies, n_states, n_actions, n_rewards)
-        P(r | s, a; type), or by policy as well.
+        P(r | s, a; type), or also by policy.
     n_policies : int, optional
-        How many policies share the table; any number where None.
+        Number of policies that share the table; any number where None.
 
     Examples
     --------
@@ -53,7 +53,7 @@ class StepRewardSignal(StepModel):
         pseudo_count: float = 0.5,
         possible: ArrayLike | None = None,
     ) -> Self:
-        """From episodes (type, policy, steps); with `n_policies` each policy has a table of its own."""
+        """The model from episodes (type, policy, steps); with `n_policies` each policy has its own table."""
         listed = np.array(rewards, np.float64)
         index = _index_of(listed, listed.size)
         steps = ((type_, policy, _coded(rows, index)) for type_, policy, rows in sequences)
@@ -66,7 +66,7 @@ class StepRewardSignal(StepModel):
         Raises
         ------
         InputError
-            A reward is not listed, or a state or action outside the table.
+            A reward is not listed, or a state or action is outside the table.
         NotFoundError
             There is no such policy.
         """
@@ -101,7 +101,7 @@ def _coded(signal: Sequence[tuple[int, int, float]], index: dict[float, int]) ->
     try:
         coded = [(int(state), int(action), index[float(reward)]) for state, action, reward in signal]
     except KeyError as error:
-        raise InputError(f"reward {error} is none of {list(index)[:10]}; list all that can occur") from None
+        raise InputError(f"reward {error} is not among {list(index)[:10]}; list all possible rewards") from None
     except (TypeError, ValueError, OverflowError):
         raise InputError(f"a signal must be rows of (state, action, reward), got {signal!r:.80}") from None
     return np.array(coded, np.int64).reshape(-1, 3)

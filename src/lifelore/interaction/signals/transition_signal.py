@@ -1,6 +1,6 @@
-"""The (s, a, s') tuples of an episode as the signal: the observation model is the type's transition function.
+"""Transition signal: the (s, a, s') tuples of an episode; the observation model is the type's transition function.
 
-Thesis: §4.4.2.1; the richest signal, and the dearest to store.
+The signal with most information, and the most expensive to store. Thesis: §4.4.2.1.
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,14 +16,14 @@ Array = NDArray[np.float64]
 
 
 class TransitionSignal(StepModel):
-    """Signals that are sequences of (s, a, s'), or (s, s') where there is one action.
+    """Signals that are sequences of (s, a, s'), or (s, s') where there is a single action.
 
     Parameters
     ----------
     probs : (n_types, n_states, n_actions, n_states) or (n_types, n_policies, n_states, n_actions, n_states)
-        T(s' | s, a; type), or by policy as well.
+        T(s' | s, a; type), or also by policy.
     n_policies : int, optional
-        How many policies share the table; any number where None.
+        Number of policies that share the table; any number where None.
 
     Examples
     --------
@@ -47,14 +47,14 @@ class TransitionSignal(StepModel):
         possible: ArrayLike | None = None,
         n_policies: int | None = None,
     ) -> Self:
-        """From how often each transition was seen, axes as `probs`.
+        """The model from counts of transitions, axes as `probs`.
 
         Parameters
         ----------
         pseudo_count : float
             Added to each transition that is `possible`, ≥ 0.
         possible : bool, broadcastable to `counts`, optional
-            What may happen at all; everything unless given.
+            Possible transitions; by default all.
         """
         return cls(step_probs(counts, pseudo_count, possible), n_policies)
 
@@ -69,7 +69,7 @@ class TransitionSignal(StepModel):
         pseudo_count: float = 0.5,
         possible: ArrayLike | None = None,
     ) -> Self:
-        """From episodes (type, policy, steps); with `n_policies` each policy has a table of its own."""
+        """The model from episodes (type, policy, steps); with `n_policies` each policy has its own table."""
         steps = ((type_, policy, _triples(rows)) for type_, policy, rows in sequences)
         counts = step_counts(steps, n_types, n_policies, (n_states, n_actions, n_states))
         return cls.from_counts(counts, pseudo_count, possible)
@@ -80,7 +80,7 @@ class TransitionSignal(StepModel):
         Raises
         ------
         InputError
-            They are no whole numbers, or outside the table.
+            A number is not whole, or outside the table.
         NotFoundError
             There is no such policy.
         """

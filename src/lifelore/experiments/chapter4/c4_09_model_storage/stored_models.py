@@ -20,7 +20,6 @@ from lifelore.core.streams import stream
 from lifelore.domains.pacman.pacman import MAX_STEPS, STRATEGIES, PacmanMaze, PacmanTask, step
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.domains.telephone.telephone import PATHS, Telephone, rewards_of
-from lifelore.interaction.library.library_file import library_bytes
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.storage_cost import StorageSizes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
@@ -254,5 +253,5 @@ def _filled(found: Application, returns: Array) -> dict[str, int]:
 def _bytes(model, returns: Array) -> int:
     """Bytes of the library's file with this signal."""
     if isinstance(model, HistogramOutcomes):
-        return len(library_bytes(PolicyLibrary(model)))
-    return len(library_bytes(PolicyLibrary.from_samples(returns, signal=model)))
+        return len(PolicyLibrary(model).to_bytes())
+    return len(PolicyLibrary.from_samples(returns, signal=model).to_bytes())

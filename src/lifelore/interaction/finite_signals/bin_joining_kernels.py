@@ -1,4 +1,4 @@
-"""Joining of neighbouring bins that loses least information about the type, compiled."""
+"""Compiled kernel: join neighbouring bins so that least information about the type is lost."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +10,7 @@ Array = NDArray[np.float64]
 
 @kernel
 def _information(bins: Array, first: int, second: int) -> float:
-    """n_types times what joining two bins loses of the information about the type, in nats."""
+    """n_types times the information about the type, in nats, that is lost when two bins are joined."""
     both = 0.0
     one = 0.0
     other = 0.0
@@ -37,7 +37,7 @@ def _information(bins: Array, first: int, second: int) -> float:
 
 @kernel
 def joined_ends(bins: Array, n_bins: int) -> NDArray[np.int64]:
-    """Where each joined bin ends; `bins` (n, n_types) is summed up in place."""
+    """The end of each joined bin, (n_bins,); `bins` (n, n_types) is summed up in place."""
     n = bins.shape[0]
     after = np.arange(1, n + 1)
     before = np.arange(-1, n - 1)

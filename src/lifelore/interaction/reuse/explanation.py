@@ -1,4 +1,4 @@
-"""What an agent says for itself: what its signals said of each type, and why it selects as it does."""
+"""The explanation of an agent's state: the evidence of its last signals for each type, and its last selection."""
 
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
@@ -9,18 +9,18 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-KEPT = 16
-"""Signals whose evidence an agent keeps."""
-MOST_SURPRISE = 745.0
-"""Nats that one signal adds to the surprise at most, as the impossible does: −log of the smallest number."""
+MAX_EVIDENCE = 16
+"""Number of last signals whose evidence an agent keeps; more cost memory and longer session files."""
+MAX_SURPRISE = 745.0
+"""Largest surprise of a single signal in nats, that of an impossible signal: −log of the smallest number."""
 
 
 class Evidence(NamedTuple):
-    """What one signal said.
+    """The evidence of a single signal.
 
     policy : int
     log_likelihood : (n_types,) float64, log F(σ | τ, π)
-    log_evidence : float, log Σ F β before it was absorbed; minus infinity where no type explains the signal
+    log_evidence : float, log Σ F β under the belief before the signal; minus infinity where no type explains it
     """
 
     policy: int
@@ -30,25 +30,26 @@ class Evidence(NamedTuple):
 
 @dataclass(frozen=True)
 class Explanation:
-    """Why the agent stands where it does; everything by name, types with the most belief first.
+    """The state of an agent; policies and types by name, types with the most belief first.
 
     Parameters
     ----------
     selected, runner_up : str or None
-        Of the last selection; None before it, or where there is one policy only.
+        Of the last selection; None before it. `runner_up` is also None where there is a single policy.
     score, runner_up_score : float or None
         By the rule's measure.
     belief : dict of str to float
     evidence : dict of str to list of float
         For each type, log F of each of the last signals less that of the type that explains it best: 0 is best,
-        minus infinity impossible. A signal that no type explains says nothing and is 0 for all.
+        minus infinity impossible. A signal that no type explains is 0 for all types.
     policies : list of str
-        What the last signals were answers to.
+        The policies that gave the last signals.
     log_evidence : list of float
-        How expected each of them was, log Σ F β.
+        log Σ F β of each of the last signals: how expected it was.
     surprise : float
+        Sum of −log Σ F β over all signals, in nats.
     unexplained : int
-        Signals so far that no type explains.
+        Number of signals so far that no type explains.
     """
 
     selected: str | None
@@ -68,25 +69,25 @@ class Explanation:
 
 
 def surprise_of(log_evidence: float) -> float:
-    """What a signal of this evidence adds to the surprise, in nats; negative for densities above 1."""
-    return min(-log_evidence, MOST_SURPRISE)
+    """The surprise of a signal in nats, −log Σ F β, at most `MAX_SURPRISE`; negative for densities above 1."""
+    return min(-log_evidence, MAX_SURPRISE)
 
 
-def relative_evidence(kept: Sequence[Evidence], n_types: int) -> Array:
+def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
     """Log likelihoods less each signal's best, (n_signals, n_types), at most 0."""
-    if not kept:
+    if not evidence:
         return np.zeros((0, n_types))
-    rows = np.array([one.log_likelihood for one in kept])
+    rows = np.array([signal.log_likelihood for signal in evidence])
     best = rows.max(axis=1, keepdims=True)
     return np.where(best > -np.inf, rows - np.where(best > -np.inf, best, 0.0), 0.0)
 
 
 def two_best(scores: Array, selected: int) -> tuple[float, int | None, float | None]:
-    """Score of the policy selected, and the best of the others with its score (None where there is none)."""
+    """Score of the selected policy, and the best other policy with its score; None where there is no other."""
     if len(scores) < 2:
         return float(scores[selected]), None, None
     others = np.array(scores)
     others[selected] = -np.inf
-    # Where all others are at minus infinity, any of them but the selected one is next.
+    # Where all others are at minus infinity, any of them is the runner-up.
     runner_up = int(others.argmax()) if others.max() > -np.inf else int(selected == 0)
     return float(scores[selected]), runner_up, float(scores[runner_up])
