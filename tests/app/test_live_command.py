@@ -214,5 +214,5 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
     rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
     assert rows == {"lore", "scratch"}
     (tmp_path / "file").write_text("")
-    assert "folder must be one" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
+    assert "folder must be a folder" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
     assert not (tmp_path / "none.db").exists()

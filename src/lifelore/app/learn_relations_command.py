@@ -33,13 +33,13 @@ def learn_relations(
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Learn what words for relations mean from scenes in which they were said."""
-    from lifelore.agent.perceive.learn_relations import RelationLesson
+    from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
     from lifelore.app.console import print_json, progress_bar
     from lifelore.app.perceive_command import direction, to_stderr
 
     upwards = None if up is None else direction(up)
-    lesson = RelationLesson(folder, truth, name, method, adjacent_gap, several, labels, units, upwards)
+    lesson = LearnRelationsSettings(folder, truth, name, method, adjacent_gap, several, labels, units, upwards)
     with progress_bar("learning") as progress:
         report = learn(lesson, memory, out, progress, to_stderr)
     if as_json:

@@ -5,9 +5,9 @@ from contextlib import suppress
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.memory.merging import Union
+from lifelore.memory.merging import MemoryUnion
 from lifelore.memory.refusal import one_line_refusals
-from lifelore.memory.sqlite_file import lived_in, read_header, refuse_unless_ours
+from lifelore.memory.sqlite_file import is_in_use, read_header, refuse_unless_ours
 from lifelore.memory.store import Store, open_file
 
 
@@ -34,7 +34,7 @@ def _write(store: Store, path: Path) -> int:
     copy = open_file(path, durable=True, journal="DELETE")
     try:
         with store.reading() as there, copy.writing() as here:
-            union = Union(here)
+            union = MemoryUnion(here)
             added = union.take(there, store.location)["added"]
             union.finish()
             return added
@@ -46,5 +46,5 @@ def _write(store: Store, path: Path) -> int:
 
 def _refuse_to_overwrite(path: Path) -> None:
     refuse_unless_ours(path)
-    if path.exists() and path.stat().st_size and lived_in(read_header(path)):
+    if path.exists() and path.stat().st_size and is_in_use(read_header(path)):
         raise InputError(f"path {path} is a memory in use, which an export must not replace; name another file")

@@ -39,7 +39,7 @@ _LOAD = text(
 
 
 @dataclass(frozen=True)
-class Entry:
+class ContributionRow:
     """What a merge needs to know of a contribution before it reads the blob."""
 
     number: int
@@ -78,7 +78,7 @@ def insert(conn: Connection, contribution: Contribution) -> Stored:
     return Stored(int(conn.execute(_INSERT_ONE, vars(contribution)).scalar_one()), contribution)
 
 
-def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[Entry]:
+def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:
     """Write contributions down, a batch in memory at a time."""
     last = conn.execute(_LAST).scalar_one()
     for batch in in_batches(contributions):
@@ -86,7 +86,7 @@ def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list
     return _entries(conn.execute(text(_SINCE), {"last": last}))
 
 
-def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
+def entries(conn: Connection, robot: str | None = None) -> list[ContributionRow]:
     """All contributions, or one robot's, without their blobs, oldest first."""
     query = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions"
     if robot is None:
@@ -96,8 +96,8 @@ def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
     return sorted(_entries(rows), key=lambda entry: entry.order)
 
 
-def _entries(rows: Iterable[Row]) -> list[Entry]:
-    return [Entry(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
+def _entries(rows: Iterable[Row]) -> list[ContributionRow]:
+    return [ContributionRow(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
 
 
 def load(conn: Connection, numbers: Iterable[int]) -> Iterator[Stored]:

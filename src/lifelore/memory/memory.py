@@ -196,12 +196,12 @@ class Memory:
             if isinstance(place, Path):
                 check_source(place)
         with self._store.writing() as here:
-            union = merging.Union(here)
+            union = merging.MemoryUnion(here)
             counts = [self._take(union, here, place) for place in places]
             union.finish()
         return counts
 
-    def _take(self, union: merging.Union, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
+    def _take(self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
         if isinstance(place, Memory):
             if place.location == self.location:
                 return union.take(here, self.location)

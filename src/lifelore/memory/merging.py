@@ -1,4 +1,4 @@
-"""Union of memories: exact in any order and grouping, and the same when done twice.
+"""MemoryUnion of memories: exact in any order and grouping, and the same when done twice.
 
 Tombstones of all count. Should one identity stand for two different contributions (the same task given to
 two memories by hand carries two stamps), the one with the smaller (stamp, digest) stays, so that all
@@ -17,7 +17,7 @@ from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
 from lifelore.memory.contribution import Contribution, Identity
 from lifelore.memory.folding import LoreKey, Stored, fold
-from lifelore.memory.ledger import Entry
+from lifelore.memory.ledger import ContributionRow
 from lifelore.memory.refusal import one_line_refusals
 
 Counts = dict[str, int]
@@ -28,14 +28,14 @@ Counts = dict[str, int]
 class _Plan:
     """What a source will do: rows to remove here, rows to add from there."""
 
-    remove: list[Entry]
-    add: list[Entry]
+    remove: list[ContributionRow]
+    add: list[ContributionRow]
     added: int
     already_there: int
     forgotten: int
 
 
-class Union:
+class MemoryUnion:
     """One memory while others are brought into it, in one transaction.
 
     `take` each source, then `finish`. After an error nothing of the transaction may be kept.
@@ -90,7 +90,7 @@ class Union:
             except StoreError as error:
                 raise StoreError(f"memory {self._sources[part.mentions[0]]}: {error}") from error
 
-    def _remove(self, gone: list[Entry]) -> None:
+    def _remove(self, gone: list[ContributionRow]) -> None:
         numbers = [entry.number for entry in gone]
         self._stale |= cache.mentioned(self._here, (number for number in numbers if number not in self._sources))
         ledger.remove(self._here, numbers)
@@ -110,7 +110,7 @@ def _read(there: Connection, numbers: list[int], source: str) -> Iterator[Contri
         yield from (stored.contribution for stored in ledger.load(there, numbers))
 
 
-def remove(conn: Connection, gone: list[Entry]) -> None:
+def remove(conn: Connection, gone: list[ContributionRow]) -> None:
     """Delete contributions and fold the keys they had anew."""
     if gone:
         numbers = [entry.number for entry in gone]
@@ -119,7 +119,7 @@ def remove(conn: Connection, gone: list[Entry]) -> None:
         cache.rebuild(conn, stale)
 
 
-def _plan(own: dict[Identity, Entry], theirs: list[Entry], graves: set[Identity]) -> _Plan:
+def _plan(own: dict[Identity, ContributionRow], theirs: list[ContributionRow], graves: set[Identity]) -> _Plan:
     buried = [entry for entry in own.values() if entry.identity in graves]
     offered = [entry for entry in theirs if entry.identity not in graves]
     new = [entry for entry in offered if entry.identity not in own]
@@ -133,5 +133,5 @@ def _plan(own: dict[Identity, Entry], theirs: list[Entry], graves: set[Identity]
     )
 
 
-def _earlier(entry: Entry, other: Entry) -> bool:
+def _earlier(entry: ContributionRow, other: ContributionRow) -> bool:
     return (entry.stamp, entry.digest) < (other.stamp, other.digest)

@@ -49,7 +49,7 @@ def read_header(path: Path) -> bytes:
         return file.read(_HEADER)
 
 
-def lived_in(header: bytes) -> bool:
+def is_in_use(header: bytes) -> bool:
     """True for a memory that has been opened to live in (WAL), false for a fresh export."""
     return header[18:20] != b"\x01\x01"
 
@@ -93,7 +93,7 @@ def _look(path: Path, *, immutable: bool) -> None:
 
 def connect_source(path: Path) -> sqlite3.Connection:
     """A connection to read another memory by, which leaves that memory's content as it is."""
-    if not lived_in(read_header(path)):
+    if not is_in_use(read_header(path)):
         return connect(path, "ro")
     if os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
         # An ordinary connection takes SQLite's locks and tidies its side files away when it closes.

@@ -31,7 +31,7 @@ class Arms(NamedTuple):
     paid: NDArray[np.float64]
 
 
-Index = Callable[[Arms, np.random.Generator], NDArray[np.float64]]
+ArmIndex = Callable[[Arms, np.random.Generator], NDArray[np.float64]]
 """What an arm is worth pulling, (n_problems, n_arms); the largest of a row is pulled, equals at random."""
 
 
@@ -80,7 +80,7 @@ def beta_thompson(arms: Arms, generator: np.random.Generator) -> NDArray[np.floa
     return generator.beta(1 + arms.paid, 1 + np.maximum(arms.pulls - arms.paid, 0.0))
 
 
-def gaussian_thompson(noise: float) -> Index:
+def gaussian_thompson(noise: float) -> ArmIndex:
     """Thompson sampling for payoffs with a normal noise of known deviation `noise` > 0."""
     if not noise > 0:
         raise InputError(f"noise must be positive, got {noise}")
@@ -94,7 +94,7 @@ def gaussian_thompson(noise: float) -> Index:
 
 
 def play(
-    index: Index, arms: Arms, payoffs: NDArray[np.float64], generator: np.random.Generator
+    index: ArmIndex, arms: Arms, payoffs: NDArray[np.float64], generator: np.random.Generator
 ) -> NDArray[np.int64]:
     """The arms pulled, (n_problems, horizon).
 

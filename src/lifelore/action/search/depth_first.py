@@ -27,7 +27,7 @@ class Preferences(NamedTuple):
     n_tried: NDArray[np.int32]
 
 
-class Found(NamedTuple):
+class DepthFirstResult(NamedTuple):
     """A finished search: whether the end was found, nodes expanded, and the actions of the way."""
 
     reached: bool
@@ -57,7 +57,7 @@ def preferences(probs: NDArray[np.float64], generator: np.random.Generator, prun
     return Preferences(order.astype(np.int32), np.maximum(kept, 1).astype(np.int32))
 
 
-def depth_first(tables: Tables, start: int, liked: Preferences) -> Found:
+def depth_first(tables: Tables, start: int, preferred: Preferences) -> DepthFirstResult:
     """Search from `start` for a terminal move, never entering a state twice.
 
     A node is expanded when its actions begin to be tried.
@@ -65,52 +65,54 @@ def depth_first(tables: Tables, start: int, liked: Preferences) -> Found:
     Raises
     ------
     InputError
-        The world is not deterministic, or `start` or `liked` do not fit it.
+        The world is not deterministic, or `start` or `preferred` do not fit it.
     """
-    _check(tables, start, liked)
-    return _found(tables, int(start), liked, tables.n_states, shortest=False)
+    _check(tables, start, preferred)
+    return _found(tables, int(start), preferred, tables.n_states, shortest=False)
 
 
-def iterative_deepening(tables: Tables, start: int, liked: Preferences, max_depth: int | None = None) -> Found:
+def iterative_deepening(
+    tables: Tables, start: int, preferred: Preferences, max_depth: int | None = None
+) -> DepthFirstResult:
     """Depth-first search below limits of 1, 2, … moves; nodes expanded are summed over all limits.
 
     Parameters
     ----------
-    tables, start, liked
+    tables, start, preferred
         As in `depth_first`.
     max_depth : int, optional
         Last limit tried; default: the number of states, beyond which no shortest way reaches.
     """
-    _check(tables, start, liked)
+    _check(tables, start, preferred)
     most = tables.n_states if max_depth is None else max_depth
     if most < 1:
         raise InputError(f"max_depth must be at least 1, got {max_depth}")
     expanded = 0
     for limit in range(1, most + 1):
-        found = _found(tables, int(start), liked, limit, shortest=True)
+        found = _found(tables, int(start), preferred, limit, shortest=True)
         expanded += found.expanded
         if found.reached:
             return found._replace(expanded=expanded)
-    return Found(False, expanded, np.empty(0, np.int32))
+    return DepthFirstResult(False, expanded, np.empty(0, np.int32))
 
 
-def _check(tables: Tables, start: int, liked: Preferences) -> None:
+def _check(tables: Tables, start: int, preferred: Preferences) -> None:
     if tables.outcome_cum.size != 1:
         raise InputError("depth-first search needs a deterministic world; use tree_search for one of chance")
     if not 0 <= start < tables.n_states:
         raise InputError(f"start must lie in [0, {tables.n_states}), got {start}")
     shape = (tables.n_states, tables.n_actions)
-    if liked.order.shape != shape:
-        raise InputError(f"liked must have an order of shape {shape}, got {liked.order.shape}")
+    if preferred.order.shape != shape:
+        raise InputError(f"preferred must have an order of shape {shape}, got {preferred.order.shape}")
 
 
-def _found(tables: Tables, start: int, liked: Preferences, limit: int, shortest: bool) -> Found:
+def _found(tables: Tables, start: int, preferred: Preferences, limit: int, shortest: bool) -> DepthFirstResult:
     entered = np.full(tables.n_states, limit + 1, np.int64)
     path = np.empty(limit, np.int32)
     reached, expanded, length = _descend(
-        tables.next_state, tables.event, liked.order, liked.n_tried, start, limit, shortest, entered, path
+        tables.next_state, tables.event, preferred.order, preferred.n_tried, start, limit, shortest, entered, path
     )
-    return Found(bool(reached), int(expanded), path[:length].copy())
+    return DepthFirstResult(bool(reached), int(expanded), path[:length].copy())
 
 
 @kernel

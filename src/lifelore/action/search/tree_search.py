@@ -27,7 +27,7 @@ from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 ROLLOUTS = ("uniform", "prior")
 
 
-class Guidance(NamedTuple):
+class SearchGuidance(NamedTuple):
     """What a prior tells the search.
 
     prior : (n_rows, n_actions) float64, P(s, a) by context; rows sum to 1
@@ -57,7 +57,7 @@ class SearchSettings(NamedTuple):
     by_mean: bool = False
 
 
-class Searched(NamedTuple):
+class SearchResult(NamedTuple):
     """What a search found at its root.
 
     action : int, the one tried most (or of the best mean), of equals one at random
@@ -70,7 +70,7 @@ class Searched(NamedTuple):
     means: NDArray[np.float64]
 
 
-class Played(NamedTuple):
+class EpisodeResult(NamedTuple):
     """An episode of a searching agent: moves made, whether it ended at a terminal move, discounted return."""
 
     steps: int
@@ -88,9 +88,9 @@ class _Tree(NamedTuple):
     total: NDArray[np.float64]
 
 
-def guidance(
+def search_guidance(
     tables: Tables, probs: ArrayLike | None = None, row: ArrayLike | None = None, rollout: str = "prior"
-) -> Guidance:
+) -> SearchGuidance:
     """What a prior tells the search.
 
     Parameters
@@ -123,12 +123,12 @@ def guidance(
     if row.shape != (tables.n_states,) or row.min() < 0 or row.max() >= len(probs):
         raise InputError(f"row must give each of {tables.n_states} states a row in [0, {len(probs)})")
     drawn = probs if rollout == "prior" else np.broadcast_to(flat, probs.shape)
-    return Guidance(probs, cumulative(drawn), row)
+    return SearchGuidance(probs, cumulative(drawn), row)
 
 
 def search(
-    tables: Tables, guide: Guidance, state: int, settings: SearchSettings, generator: np.random.Generator
-) -> Searched:
+    tables: Tables, guide: SearchGuidance, state: int, settings: SearchSettings, generator: np.random.Generator
+) -> SearchResult:
     """Search from `state`; the tree is new. The same generator state gives the same search."""
     _check(tables, settings)
     if not 0 <= state < tables.n_states:
@@ -138,18 +138,18 @@ def search(
     _grow(tables, guide, tree, int(state), settings, random)
     visits, total = tree.visits[0].copy(), tree.total[0]
     means = np.divide(total, visits, out=np.zeros_like(total), where=visits > 0)
-    return Searched(int(_move(tree, settings.by_mean, random)), visits, means)
+    return SearchResult(int(_move(tree, settings.by_mean, random)), visits, means)
 
 
 def play(
     tables: Tables,
-    guide: Guidance,
+    guide: SearchGuidance,
     start: int,
     settings: SearchSettings,
     max_steps: int,
     world: np.random.Generator,
     own: np.random.Generator,
-) -> Played:
+) -> EpisodeResult:
     """One episode from `start`, searched anew before every move, of at most `max_steps` moves.
 
     `world` draws what happens (nothing where the world is deterministic), `own` what the search imagines.
@@ -162,7 +162,7 @@ def play(
     tree = _new_tree(tables, settings.simulations)
     randoms = random_state(world), random_state(own)
     steps, reached, gained, bumps = _walk(tables, guide, tree, int(start), _plain(settings), max_steps, *randoms)
-    return Played(int(steps), bool(reached), float(gained), int(bumps))
+    return EpisodeResult(int(steps), bool(reached), float(gained), int(bumps))
 
 
 def _check(tables: Tables, settings: SearchSettings) -> None:

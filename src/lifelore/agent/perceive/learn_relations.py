@@ -38,7 +38,7 @@ SUFFIXES = (".pcd", ".ply", ".npz", ".npy")
 
 
 @dataclass(frozen=True)
-class RelationLesson:
+class LearnRelationsSettings:
     """What is to be learnt from, and how; see `RelationClassifier`.
 
     Parameters
@@ -84,7 +84,7 @@ class RelationLesson:
 
 
 def learn_relations(
-    lesson: RelationLesson,
+    lesson: LearnRelationsSettings,
     memory: str | None = None,
     out: str | None = None,
     progress: Progress | None = None,
@@ -135,7 +135,7 @@ def _check_out(out: str) -> None:
 
 
 def look_at(
-    lesson: RelationLesson, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
+    lesson: LearnRelationsSettings, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
 ) -> tuple[list[ScenePairs], int]:
     """Read the clouds that the truths speak of, find their near pairs; and how many had parts for labels."""
     folder = Path(lesson.folder)
@@ -181,7 +181,7 @@ def _check_labels(scene: str, truth: Sequence[PairLabel], there: set[int]) -> No
 
 
 def _report(
-    lesson: RelationLesson, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
+    lesson: LearnRelationsSettings, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
 ) -> dict[str, Any]:
     said = Counter(
         label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
