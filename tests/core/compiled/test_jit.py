@@ -15,6 +15,8 @@ import lifelore
 from lifelore.core.compiled.kernel_cache import STALE_DAYS, kernel_cache_dir, kernel_sources, remove_stale
 from lifelore.core.compiled.numba_internals import quick_cache
 
+from .fresh_python import run
+
 KERNELS_RUN = Path(__file__).parents[1] / "kernels_run.py"
 PACKAGE = Path(lifelore.__file__).parent
 
@@ -34,19 +36,6 @@ who, curve = new_learner(1, 2, np.random.default_rng(0), np.random.default_rng(1
 learn(tables, uniform_rows(tables), Schedule(np.ones(1), np.ones(1), 50, 0.9), who, curve, 50)
 print(who.visits[0, 0], who.own_random[0])
 """
-
-
-def run(*arguments, **environment) -> str:
-    """What a fresh Python prints, warnings being errors."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", *arguments],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
@@ -163,6 +152,8 @@ import sys
 import numba.core.caching
 del numba.core.caching.CompileResultCacheImpl
 from lifelore.core.compiled.numba_internals import quick_cache
+
+from .fresh_python import run
 assert quick_cache() is None
 """
 
