@@ -155,7 +155,7 @@ def test_logs_that_cannot_be(tmp_path):
         LifeLog(tmp_path / "file", "lattice")
     with pytest.raises(InputError, match="scenario must be of letters, digits"):
         L2Log(tmp_path, "a/b", ["reward"])
-    with pytest.raises(InputError, match="at least one column beside the standard ones"):
+    with pytest.raises(InputError, match="at least one column that is not standard"):
         L2Log(tmp_path, "life", [])
     log = L2Log(tmp_path, "life", ["reward"])
     (log.path / "worker-0" / "0-train" / "data-log.tsv").mkdir(parents=True)

@@ -63,7 +63,7 @@ class L2Log:
     ) -> None:
         self.measures = list(measures)
         if not self.measures or set(self.measures) & set(STANDARD):
-            raise InputError(f"measures must be at least one column beside the standard ones, got {self.measures}")
+            raise InputError(f"measures must be at least one column that is not standard, got {self.measures}")
         if not _SCENARIO.fullmatch(scenario):
             raise InputError(f"scenario must be of letters, digits, _ and -, got '{scenario}'")
         moment = datetime.now().timestamp()
