@@ -67,7 +67,7 @@ def test_modules_and_files_named_on_a_page_exist(page):
 def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     said = run([sys.executable, "-W", "error", "-c", SEARCH], tmp_path)
     played, report = said.splitlines()
-    assert played.startswith("Played(steps=")
+    assert played.startswith("EpisodeResult(steps=")
     assert f"{ast.literal_eval(report)['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
 

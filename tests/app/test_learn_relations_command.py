@@ -33,7 +33,7 @@ def test_it_learns_and_says_what_and_where(ask, folder):
     assert report["not_near"] == {"apart": 1}
     told = ask(*options, "--out", folder / "m.npz")
     assert "2 scenes" in told.out
-    assert "1 labels are of things too far apart" in told.out
+    assert "1 labels are of objects too far apart" in told.out
     assert str(folder / "m.npz") in told.out
 
 

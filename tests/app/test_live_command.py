@@ -182,8 +182,8 @@ def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
 def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
     assert (said.status, said.err) == (0, "")
-    for words in ("6 tasks in lattice, 341 places", "this robot has now finished 6 tasks", "steps to 80 %",
-                  "lore against scratch, last third", "wrote out/summary.json"):  # fmt: skip
+    for words in ("6 tasks in lattice, 341 places", "this robot has finished 6 tasks in all", "steps to 80 %",
+                  "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
     written = [Path(line.removeprefix("wrote ")) for line in said.out.splitlines() if line.startswith("wrote ")]
     assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.pgm"}
@@ -214,5 +214,5 @@ def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
     rows = {path.parts[-4].split("-")[0] for path in (tmp_path / "logs").glob("*/*/0-train/data-log.tsv")}
     assert rows == {"lore", "scratch"}
     (tmp_path / "file").write_text("")
-    assert "folder must be one" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
+    assert "folder must be a folder" in ask(*LATTICE, "--memory", "none.db", "--l2log", tmp_path / "file").refusal
     assert not (tmp_path / "none.db").exists()

@@ -137,7 +137,7 @@ def test_show(ask, known):
 def test_what_a_person_reads(ask, known):
     said = ask("memory", "show", "--memory", known)
     assert (said.status, said.err) == (0, "")
-    for words in ("who lived", "robot", "what is known", "action_prior", "transitions"):
+    for words in ("robots", "robot", "records", "action_prior", "transitions"):
         assert words in said.out
     assert ask("memory", "export", "all.lore", "--memory", known).out == "2 contributions written to all.lore\n"
     imported = "contributions: 0 added, 2 already there, 0 forgotten\n"

@@ -70,12 +70,12 @@ def test_in_words(reuse, log):
     assert word == "decision"
     assert "(probability 1" in decision
     first = reuse("update", "--decision", identifier, "--outcome", "1")
-    assert f"outcome 1 of {policy} taken; ann is most likely type" in first.out
+    assert f"outcome 1 of {policy} stored; ann is most likely type" in first.out
     again = reuse("update", "--decision", identifier, "--outcome", "1")
-    assert (again.status, "was there already, nothing changed" in again.out) == (0, True)
+    assert (again.status, "was stored already, nothing changed" in again.out) == (0, True)
     assert reuse("retire", "big").out == "big is retired\n"
     assert reuse("add", "big").out == "big is in use again\n"
-    assert "given to the held-out users" in reuse("add", "round").out
+    assert "given to the control group" in reuse("add", "round").out
     assert reuse("forget", "ann").out == "2 contributions of ann forgotten\n"
     assert "no outcome yet" in reuse("report").out
 

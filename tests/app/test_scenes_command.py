@@ -27,7 +27,7 @@ def test_a_mix_that_is_missed_is_one_line_beside_the_document(tmp_path, capsys):
     scenes(4, str(tmp_path / "out"), mix="both=1", arrangement="stack", as_json=True)
     told = capsys.readouterr()
     assert json.loads(told.out)["mix_missed"] is True
-    assert told.err.startswith("lifelore: the mix was missed: the pairs came to on=0.67")
+    assert told.err.startswith("lifelore: the mix was not reached: the pairs have on=0.67")
     assert told.err.count("\n") == 1
 
 

@@ -21,7 +21,7 @@ def test_pictures_and_a_line_for_people(tmp_path, capsys, type_in):
     assert out.startswith("move with w a s d or the arrow keys")
     assert "task 1 of 3\n#######\n" in out
     assert out.count("@") == 2
-    assert out.endswith(f"0 tasks shown in 0 steps, added to {tmp_path / 'shown'}\n")
+    assert out.endswith(f"0 tasks shown in 0 steps, appended to {tmp_path / 'shown'}\n")
     assert err == ""
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import FORMS, ActionPrior
-from lifelore.bridges.cached_prior_sampler import KeptDraws
+from lifelore.bridges.cached_prior_sampler import CachedPriorSampler
 from lifelore.core.errors import InputError, NotFoundError
 
 
@@ -18,7 +18,7 @@ def counted():
 @pytest.mark.parametrize("code", [7, 8])
 def test_the_law_is_the_priors(form, code):
     prior, random = counted(), np.random.default_rng(1)
-    draws = KeptDraws(prior, form, {})
+    draws = CachedPriorSampler(prior, form, {})
     n = 20_000
     shares = np.bincount([draws.draw(code, random) for _ in range(n)], minlength=3) / n
     # One draw of the Dirichlet for each action has, in the mean, the law of the proportion.
@@ -29,14 +29,14 @@ def test_the_law_is_the_priors(form, code):
 def test_what_has_no_mass_is_never_drawn():
     prior, random = ActionPrior(3), np.random.default_rng(2)
     prior.update([0, 1], [[True, False, False], [False, False, True]])
-    draws = KeptDraws(prior, "support", {"escape": 0.0})
+    draws = CachedPriorSampler(prior, "support", {"escape": 0.0})
     assert {draws.draw(0, random) for _ in range(2000)} == {0}
     assert {draws.draw(1, random) for _ in range(2000)} == {2}
 
 
 def test_counts_are_heeded_after_forgetting():
     prior, random = ActionPrior(2), np.random.default_rng(3)
-    draws = KeptDraws(prior, "support", {"escape": 0.0})
+    draws = CachedPriorSampler(prior, "support", {"escape": 0.0})
     assert {draws.draw(4, random) for _ in range(100)} == {0, 1}
     prior.update([4], [[False, True]])
     assert {draws.draw(4, random) for _ in range(100)} == {0, 1}
@@ -46,6 +46,6 @@ def test_counts_are_heeded_after_forgetting():
 
 def test_what_cannot_be_drawn_from_is_refused_at_once():
     with pytest.raises(NotFoundError, match="form must be one of"):
-        KeptDraws(ActionPrior(2), "greedy", {})
+        CachedPriorSampler(ActionPrior(2), "greedy", {})
     with pytest.raises(InputError, match="escape must lie in"):
-        KeptDraws(ActionPrior(2), "support", {"escape": 2.0})
+        CachedPriorSampler(ActionPrior(2), "support", {"escape": 2.0})

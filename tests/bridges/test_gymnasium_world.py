@@ -168,19 +168,19 @@ def test_context_is_the_state_by_default():
 
 def test_context_of_a_state_elsewhere_is_refused():
     world = GymnasiumWorld(Probe(answer=7))
-    with pytest.raises(InputError, match="state must be the one last returned"):
+    with pytest.raises(InputError, match="state must be the last state"):
         world.context(7, 0.0)
     world.reset(0, 0)
-    with pytest.raises(InputError, match="state must be the one last returned"):
+    with pytest.raises(InputError, match="state must be the last state"):
         world.context(8, 0.0)
 
 
 def test_unhashable_answers_are_refused():
     world = GymnasiumWorld(Probe(), context=lambda seen: [seen])
     state = world.reset(0, 0)
-    with pytest.raises(InputError, match="context must answer something hashable, got list"):
+    with pytest.raises(InputError, match="context must return a hashable value, got list"):
         world.context(state, 0.0)
-    with pytest.raises(InputError, match="state must answer something hashable, got ndarray"):
+    with pytest.raises(InputError, match="state must return a hashable value, got ndarray"):
         GymnasiumWorld(Probe(), state=np.array).reset(0, 0)
 
 

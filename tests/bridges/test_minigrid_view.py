@@ -16,7 +16,7 @@ from lifelore.bridges.minigrid_view import (
     RIGHT,
     UNSEEN,
     SymbolicView,
-    open_ways,
+    open_directions,
     solved_layout,
 )
 from lifelore.core.errors import InputError
@@ -74,8 +74,12 @@ def test_the_view_by_hand():
     assert kinds[3].tolist() == [BLOCKED] * 4 + [FREE] * 3
     assert kinds[2].tolist() == [BLOCKED] * 7
     assert kinds[5].tolist() == [BLOCKED] * 4 + [GOAL, FREE, FREE]
-    assert open_ways(observation[None]).tolist() == [0b110]  # right and front
-    assert open_ways(np.stack([observation, env.step(RIGHT)[0], env.step(RIGHT)[0]])).tolist() == [6, 0b011, 0b001]
+    assert open_directions(observation[None]).tolist() == [0b110]  # right and front
+    assert open_directions(np.stack([observation, env.step(RIGHT)[0], env.step(RIGHT)[0]])).tolist() == [
+        6,
+        0b011,
+        0b001,
+    ]
 
 
 def test_what_walls_hide_is_unseen():
@@ -93,7 +97,7 @@ def test_the_goal_is_an_open_way():
     for move in (FORWARD, FORWARD, RIGHT, FORWARD):
         observation, reward, *_ = env.step(move)
     assert reward == 0
-    assert open_ways(observation[None]).tolist() == [0b110]  # the goal before it, free cells to its right
+    assert open_directions(observation[None]).tolist() == [0b110]  # the goal before it, free cells to its right
     assert env.step(FORWARD)[1] > 0
 
 
@@ -106,7 +110,7 @@ def test_an_empty_room_solved_by_hand():
     assert layout.steps[layout.passed].tolist() == [5, 4, 3, 2, 1]
     moves = [np.flatnonzero(best).tolist() for best in layout.best[layout.passed]]
     assert moves == [[FORWARD], [FORWARD], [RIGHT], [FORWARD], [FORWARD]]
-    assert layout.ways[layout.passed].tolist() == [0b110, 0b110, 0b100, 0b110, 0b110]
+    assert layout.open_directions[layout.passed].tolist() == [0b110, 0b110, 0b100, 0b110, 0b110]
 
 
 @settings(deadline=None, max_examples=4)
@@ -129,9 +133,9 @@ def test_poses_are_solved_as_by_walking(seed):
             passed.add(pose)
             open_poses += [after for after in following[pose] if steps[after] + 1 == steps[pose]]
     assert layout.passed.tolist() == [pose in passed for pose in poses]
-    for pose, ways in zip(poses, layout.ways, strict=True):
+    for pose, ways in zip(poses, layout.open_directions, strict=True):
         inner.agent_pos, inner.agent_dir = (pose[0], pose[1]), pose[2]
-        assert open_ways(env.observation(inner.gen_obs())[None]).tolist() == [ways]
+        assert open_directions(env.observation(inner.gen_obs())[None]).tolist() == [ways]
 
 
 def test_turning_left_and_right_are_not_confused():

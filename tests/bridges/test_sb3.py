@@ -74,7 +74,7 @@ def new_model(env=None, prior=None, contexts=places, policy="MlpPolicy", **setti
 
 def strictly(**settings):
     """A model whose every exploring step takes the only counted action."""
-    return new_model(form="support", how={"escape": 0.0}, **settings)
+    return new_model(form="support", form_settings={"escape": 0.0}, **settings)
 
 
 def always(model, action):
@@ -222,7 +222,7 @@ def test_what_was_saved_goes_on(tmp_path):
     model.save(tmp_path / "model")
     again = PriorDQN.load(tmp_path / "model", env=Ring())
     assert again.form == "support"
-    assert again.how == {"escape": 0.0}
+    assert again.form_settings == {"escape": 0.0}
     assert again.prior.counts(range(6)).tolist() == model.prior.counts(range(6)).tolist()
     seen, actions = lived(again.learn(100))
     assert (actions == seen % N).all()

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.advisor import Advisor
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.experiments.chapter3.advice_grid import (
     errands_of,
     maze_of,
@@ -37,13 +37,13 @@ def test_ceiling_by_hand():
         [True] * 4,
         [False] * 4,
     ]
-    found = ceiling(Purpose.from_best_actions(best))
+    found = ceiling(GoalModel.from_best_actions(best))
     assert found == pytest.approx([log(4), log(2), log(4 / 3), 0, 0])
 
 
 @pytest.mark.parametrize("alpha0", [0.01, 1.0, 100.0])
 def test_an_agent_that_seems_an_expert_gains_less_than_the_ceiling_however_blurred_experts_are(alpha0):
-    purpose = Purpose.from_best_actions([[True, False, False, False]], alpha0=alpha0)
+    purpose = GoalModel.from_best_actions([[True, False, False, False]], alpha0=alpha0)
     blurred = -log((1 + alpha0) / (1 + 4 * alpha0))
     sure = Advisor([purpose], weights=[1, 1e-12])
     assert sure.consider(sure.watch(), 0).gain == pytest.approx(blurred, abs=1e-9)

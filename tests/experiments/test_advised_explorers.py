@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.experiments.chapter3.advised_explorers import (
     block_curve,
     own_normalcy,
@@ -37,7 +37,7 @@ def test_unadvised_steps_by_hand():
 
 def test_own_steps_by_hand():
     # One count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2, against 1/2.
-    advisor = Advisor.of_thesis([Purpose.from_best_actions([[True, False]])])
+    advisor = Advisor.of_thesis([GoalModel.from_best_actions([[True, False]])])
     after = (0.1 / 1.2) / (0.1 / 1.2 + 0.5)
     # It chose 1, was then told 0 twice, and chose 1: P(M₁ | H) before each step is 1/2, then that after one step.
     found = own_normalcy(advisor, walked([0.5] * 4, [0, 1, 1, 0], actions=[1, 0, 0, 1]))

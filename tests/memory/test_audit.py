@@ -63,4 +63,4 @@ def test_a_changed_contribution_is_found_and_never_merged(lived, damage, tmp_pat
 def test_a_forgotten_contribution_that_is_there_is_found(lived):
     with lived._store.writing() as conn:
         conn.execute(text("INSERT INTO lifelore_tombstones VALUES ('a', 'p', 1)"))
-    assert any("although forgotten" in problem for problem in lived.check())
+    assert any("although it was forgotten" in problem for problem in lived.check())

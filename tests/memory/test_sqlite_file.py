@@ -15,7 +15,7 @@ import pytest
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import open_memory
-from lifelore.memory.sqlite_file import connect, lived_in, read_header
+from lifelore.memory.sqlite_file import connect, is_in_use, read_header
 
 
 def fill(path: Path, tasks: int = 20) -> Path:
@@ -121,8 +121,8 @@ def test_a_copy_of_a_file_and_its_log_is_whole(file, tmp_path):
 def test_a_memory_is_lived_in_once_opened(file, tmp_path):
     with open_memory(fill(file)) as memory:
         memory.export_to(tmp_path / "export.db")
-    assert lived_in(read_header(file))
-    assert not lived_in(read_header(tmp_path / "export.db"))
+    assert is_in_use(read_header(file))
+    assert not is_in_use(read_header(tmp_path / "export.db"))
 
 
 AS_NOBODY = """

@@ -1,5 +1,5 @@
-"""Agent: one function for each verb of the command line; plain data in and out.
+"""Functions behind the verbs of the command line; they take settings and return JSON data.
 
-`live`, `perceive`, `reuse` and `advise` are folders, `teach` and `doctor` files; `external_world` is `live_in`,
-the life in a user's own world; `warm` compiles the kernels of the verbs before their first use.
+`live`, `perceive`, `reuse` and `advise` are folders, `teach` and `doctor` files. `external_world` holds `live_in`,
+which lives in a user's own world. `compile_kernels` compiles the kernels of the verbs before their first use.
 """

@@ -1,4 +1,4 @@
-"""What is installed, what is missing, what is fast: `lifelore doctor` as plain data."""
+"""Examines the installation for `lifelore doctor`: packages, speed of the kernels, kernel cache and memory."""
 
 import os
 import platform
@@ -41,11 +41,11 @@ PACKAGES = {
     "botorch": "a peer in benchmarks (extra peers)",
 }
 SLOW = 5.0
-"""Million steps a second below which kernels hardly run compiled."""
+"""Million Q-learning steps a second; slower kernels are probably not compiled."""
 
 
 def examine(memory: str | None = None) -> dict:
-    """Look at this machine.
+    """Examine this machine.
 
     Returns
     -------
@@ -95,7 +95,7 @@ def _kernel_cache() -> dict:
 def _memory(where: str | None) -> dict:
     place = locate(where)
     if isinstance(place, Path) and not place.exists():
-        return _check("memory", True, f"none yet; the first life begins {place}")
+        return _check("memory", True, f"none yet; the first life creates {place}")
     try:
         with open_memory(where) as opened:
             return _check("memory", True, f"{opened.location}, {len(opened.robots())} robots")
@@ -105,7 +105,7 @@ def _memory(where: str | None) -> dict:
 
 def _compiler() -> dict:
     found = shutil.which("gcc")
-    return _check("C compiler", True, found or "none; only `bench kernels` would compare itself with it")
+    return _check("C compiler", True, found or "none; only `bench kernels` uses it")
 
 
 def _check(what: str, ok: bool, finding: str) -> dict:

@@ -1,7 +1,7 @@
-"""The verb behind `lifelore teach`: a person shows the way in a grid world, key by key.
+"""Records demonstrations of a person who walks to goals in a grid world by keys (`lifelore teach`).
 
-Keys are read as text, so that a terminal, a pipe and a test are one: w a s d or the arrow keys move, n gives the
-task up, q leaves. Only tasks whose goal was reached are written: a way that leads nowhere shows no task.
+Keys are read as text, from a terminal or a pipe: w a s d or the arrow keys move, n skips the task, q quits. Only
+walks that reach the goal are written.
 """
 
 import re
@@ -25,11 +25,11 @@ from lifelore.domains.grids.grid_world import MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 
 MOVE_OF = {"w": 0, "\x1b[A": 0, "s": 1, "\x1b[B": 1, "d": 2, "\x1b[C": 2, "a": 3, "\x1b[D": 3}
-"""Key to move, in the order of `MOVES`; terminals send the arrow keys as escape sequences."""
+"""Number of the move of each key, in the order of `MOVES`; terminals send arrow keys as escape sequences."""
 _KEY = re.compile(r"\x1b[\[O][ABCD]|\S")
 ROWS, COLUMNS = 31, 79
-"""Cells shown at most; a larger world is shown around the agent."""
-HELP = "move with w a s d or the arrow keys, then Enter (several at once will do); n next task, q quit"
+"""Maximum number of cells shown; of a larger world the part around the agent is shown."""
+HELP = "move with w a s d or the arrow keys, then Enter (several keys a line are allowed); n next task, q quit"
 
 
 def teach(
@@ -43,17 +43,17 @@ def teach(
     seed: int = 0,
     prior: str | Path | None = None,
 ) -> dict[str, Any]:
-    """Let a person show `tasks` tasks; what they show is added to the file `out`.
+    """Let a person demonstrate `tasks` tasks; append the demonstrations to the file `out`.
 
     Parameters
     ----------
     settings : WorldSettings
     lines : iterable of str
-        What the person types; the end of it ends the lesson.
+        Lines that the person types; the lesson ends where they end.
     show : callable
         Called with each picture and message.
     out : str or Path
-        Demonstrations as JSON lines are added here, see `lifelore.action.demonstrations.demonstrations`.
+        Demonstrations are appended as JSON lines, see `lifelore.action.demonstrations.demonstrations`.
     person : str
         The name written as `agent`.
     tasks : int
@@ -61,21 +61,21 @@ def teach(
     seed : int
         Draws goals and starts.
     prior : str or Path, optional
-        Also write the percept prior of this lesson here, weighted by the person's estimated competence.
+        File for the percept prior of this lesson, weighted by the person's estimated competence.
 
     Returns
     -------
     dict
-        ``out``, ``person``, ``shown`` (tasks whose goal was reached), ``given_up`` (begun, goal not
-        reached), ``steps``, ``competence``
-        (w(π) in [0, 1] by `competence_by_steps`; None where nothing was shown), ``prior`` (its place, or None).
+        ``out``, ``person``, ``shown`` (tasks whose goal was reached), ``given_up`` (tasks begun without reaching
+        the goal), ``steps``, ``competence`` (w(π) in [0, 1] by `competence_by_steps`; None without a
+        demonstration), ``prior`` (path of its file, or None).
     """
     if tasks < 1:
         raise InputError(f"tasks must be at least 1, got {tasks}")
     if not person.strip():
-        raise InputError("name must not be empty; say who is teaching")
-    for place in (out, prior):
-        _check_place(place)
+        raise InputError("name must not be empty, got an empty text; name the person who teaches")
+    for path in (out, prior):
+        _check_path(path)
     if prior is not None and Path(out).resolve() == Path(prior).resolve():
         raise InputError(f"out and prior must be two files, got '{out}' for both")
     world = world_from_settings(settings)
@@ -89,30 +89,30 @@ def teach(
         "person": person,
         "shown": len(shown),
         "given_up": begun - len(shown),
-        "steps": sum(len(one.states) for one in shown),
+        "steps": sum(len(demonstration.states) for demonstration in shown),
         "competence": weights.get(person),
         "prior": None if prior is None else str(prior),
     }
 
 
-def _check_place(place: str | Path | None) -> None:
-    if place is not None and (not str(place) or Path(place).is_dir() or not Path(place).parent.is_dir()):
-        raise InputError(f"out and prior must be files in a folder that exists, got '{place}'")
+def _check_path(path: str | Path | None) -> None:
+    if path is not None and (not str(path) or Path(path).is_dir() or not Path(path).parent.is_dir()):
+        raise InputError(f"out and prior must be files in a folder that exists, got '{path}'")
 
 
 def _lesson(world: GridWorld, settings: WorldSettings, lines, show, person: str, tasks: int, seed: int):
-    """Demonstrations shown, tasks begun, and the best actions of each task shown."""
+    """Demonstrations that reached the goal, number of tasks begun, and best actions of each demonstrated task."""
     keys, shown, best, begun = _keys(lines), [], {}, 0
     show(HELP)
     for number in range(tasks):
         goal, start = (int(s) for s in stream(seed, "teach", number).choice(world.n_states, 2, replace=False))
         task = f"{world.name}/{settings.seed}/{world.fingerprint[:8]}/goal {goal}/start {start}"
-        states, actions, left = _walk(world, goal, start, keys, show, f"task {number + 1} of {tasks}")
+        states, actions, end = _walk(world, goal, start, keys, show, f"task {number + 1} of {tasks}")
         begun += bool(actions)
-        if left == "goal":
+        if end == "goal":
             shown.append(Demonstration(task, person, np.array(states, np.int64), np.array(actions, np.int64)))
             best[task] = _best(world, goal)
-        elif left in ("q", None):
+        elif end in ("q", None):
             break
     return shown, begun, best
 
@@ -124,7 +124,7 @@ def _keys(lines: Iterable[str]) -> Iterator[str]:
 
 
 def _walk(world: GridWorld, goal: int, start: int, keys: Iterator[str], show, title: str):
-    """States, actions and what ended it: ``goal``, a key ``n`` or ``q``, or None where the keys ran out."""
+    """States, actions, and the end of the walk: ``goal``, key ``n``, key ``q``, or None if no key is left."""
     tables = world.task(goal).tables()
     state, states, actions = start, [], []
     show(f"{title}\n{grid_text(world, state, goal)}")
@@ -148,7 +148,7 @@ def _walk(world: GridWorld, goal: int, start: int, keys: Iterator[str], show, ti
 
 
 def grid_text(world: GridWorld, agent: int, goal: int) -> str:
-    """The world as text: ``#`` wall, ``.`` free, ``G`` the goal, ``@`` the agent; cut out around the agent."""
+    """The world around the agent as text: ``#`` wall, ``.`` free, ``G`` goal, ``@`` agent."""
     picture = np.full(world.shape, "#")
     picture[tuple(world.cells.T)] = "."
     picture[tuple(world.cells[goal])] = "G"
@@ -172,7 +172,7 @@ def _best(world: GridWorld, goal: int) -> np.ndarray:
 
 
 def _percept_prior(world: GridWorld, shown: list[Demonstration], weights: dict[str, float]) -> ActionPrior:
-    scope = prior_scope(world, "observation")  # the key of memory's percept priors, so that they merge
+    scope = prior_scope(world, "observation")  # the key of the percept priors in memory, so that they merge
     prior = ActionPrior(len(MOVE_NAMES), key=scope.key)
-    count_demonstrations(prior, shown, lambda one: scope.contexts[one.states], weights)
+    count_demonstrations(prior, shown, lambda demonstration: scope.contexts[demonstration.states], weights)
     return prior

@@ -1,1 +1,1 @@
-"""Command line and, later, service and pages: asks and shows, decides nothing."""
+"""The command line: reads options, calls one function of a lower room for each verb, prints the result."""

@@ -1,4 +1,4 @@
-"""`lifelore advise`: advice for agents whose goals nobody knows."""
+"""`lifelore advise`: advise agents whose goals are unknown."""
 
 import json
 import sys
@@ -12,40 +12,48 @@ Option = typer.Option
 def advise(
     world: Annotated[str, typer.Argument(metavar="MAP|MAZE", help="A ROS map's YAML, or NAME:SEED (advice:3).")],
     experts: Annotated[
-        str, Option(metavar="FILE", help='JSON lines {"agent", "state", "action"} of who knows the way.')
+        str, Option(metavar="FILE", help='JSON lines {"agent", "state", "action"} of agents that know the paths.')
     ],
     goals: Annotated[
-        str | None, Option(metavar="FILE", help='JSON lines {"state"}; default: where experts ended.')
+        str | None,
+        Option(metavar="FILE", help='JSON lines {"state"} of the goals; default: the ends of the experts.'),
     ] = None,
-    watch: Annotated[str, Option(metavar="FILE", help="Steps of the agents to advise; - is stdin.")] = "-",
+    watch: Annotated[
+        str, Option(metavar="FILE", help="JSON lines with the steps of the agents to advise; - is stdin.")
+    ] = "-",
     method: Annotated[
-        str, Option(help="better (a goal at a time), or thesis (one prior over all goals).")
+        str, Option(help="better (one goal at a time), or thesis (one prior over all goals).")
     ] = "better",
-    kappa: Annotated[float, Option(help="Advise where the gain is at least κ nats.")] = 0.5,
-    window: Annotated[int, Option(help="Steps of an agent that are looked back over.")] = 300,
+    kappa: Annotated[float, Option(help="Least gain κ of advice, in nats.")] = 0.5,
+    window: Annotated[int, Option(help="Number of last steps of an agent that count as evidence.")] = 300,
     share: Annotated[
-        float | None, Option(help="Most advised steps of an agent, as a share [0.4; thesis: 1].")
+        float | None, Option(help="Largest share of an agent's steps that are advised [0.4; thesis: 1].")
     ] = None,
-    cell: Annotated[float | None, Option(help="Side of a grid cell, metres [map: 0.5].")] = None,
-    robot_radius: Annotated[float | None, Option(help="Metres [map: 0.2].")] = None,
+    cell: Annotated[float | None, Option(help="Side of a grid cell in metres [map: 0.5].")] = None,
+    robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [map: 0.2].")] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Watch agents step by step and tell the lost ones the way; one JSON line out for each line in."""
+    """Watch agents step by step and advise those that seem lost; one JSON line of output for each line of input.
+
+    Use it when experts have walked in the same world and you do not know the goals of the agents.
+    """
     from contextlib import nullcontext
 
-    from lifelore.agent.advise.advise import AdviceDesk, AdviseSettings
+    from lifelore.agent.advise.advise import AdviceSession, AdviseSettings
     from lifelore.agent.advise.step_lines import read_steps
     from lifelore.app.console import print_json
 
-    desk = AdviceDesk(AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius))
+    session = AdviceSession(
+        AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius)
+    )
     name = "stdin" if watch == "-" else watch
     with nullcontext(sys.stdin) if watch == "-" else _opened(watch) as lines:
-        answers = (desk.answer(step) for step in read_steps(lines, desk.world, name))
+        answers = (session.answer(step) for step in read_steps(lines, session.world, name))
         if as_json:
-            print_json({"goals": desk.goals, "experts": desk.n_experts, "advice": list(answers)})
+            print_json({"goals": session.goals, "experts": session.n_experts, "advice": list(answers)})
             return
         for answer in answers:
-            # Whoever asks waits for this line before the agent's next step.
+            # The caller waits for this line before the agent's next step.
             print(json.dumps(answer, allow_nan=False), flush=True)
 
 

@@ -1,4 +1,4 @@
-"""`lifelore bench`: speed as ratios, measured side by side in one run."""
+"""`lifelore bench`: run benchmarks against other methods in one process."""
 
 from typing import Annotated
 
@@ -10,14 +10,19 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
-            "Worth: courier, relations, pictures, deep."
+            "Benefit: courier, relations, pictures, deep."
         ),
     ],
-    repeats: Annotated[int, typer.Option(help="Interleaved rounds; medians are reported.")] = 7,
-    map: Annotated[str | None, typer.Option(metavar="YAML", help="courier: a ROS map; else offices.")] = None,
+    repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,
+    map: Annotated[
+        str | None, typer.Option(metavar="YAML", help="courier: a ROS map; default: generated offices.")
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Measure beside peers, in one process; ratios are of pairs."""
+    """Measure Lifelore and other methods in turn, in one process; ratios compare paired rounds.
+
+    Use it to check a claim about speed or benefit on your machine.
+    """
     from lifelore.app.console import print_json, progress_bar
     from lifelore.experiments.bench import bench as run
 
@@ -31,10 +36,10 @@ def _print(result: dict) -> None:
     from rich.table import Table
 
     console = Console()
-    rows = Table("what", "value", "unit", "ratio", "to", title=f"bench {result['bench']}")
+    rows = Table("measure", "value", "unit", "ratio", "to", title=f"bench {result['bench']}")
     for row in result["rows"]:
         rows.add_row(row["name"], _number(row["value"]), row["unit"], _number(row["ratio"]), row["ratio_to"] or "")
-    goals = Table("goal", "asked", "measured", "met")
+    goals = Table("condition", "goal", "measured", "met")
     for goal in result["goals"]:
         met = "–" if goal["met"] is None else "yes" if goal["met"] else "no"
         goals.add_row(goal["name"], str(goal["goal"]), _number(goal["measured"]), met)

@@ -1,7 +1,7 @@
-"""`lifelore`: the command line. Asks and shows; what is done is one function of a lower room a verb.
+"""`lifelore`: the command line; each verb calls one function of a lower room.
 
-Exit status: 0 done, 2 the user's mistake (one line that says what to do), 130 stopped by Ctrl-C, 1 ours.
-Heavy imports happen inside the verbs, so that ``--help`` answers at once.
+Exit status: 0 done, 2 mistake of the user (with one line that names the next step), 130 stopped by Ctrl-C, 1
+defect of Lifelore. Heavy imports happen inside the verbs, so that ``--help`` is fast.
 """
 
 import errno
@@ -16,9 +16,9 @@ from lifelore.core.errors import LifeloreError
 
 DISK_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 NEW_OBJECTS = 100_000
-"""Objects made between two runs of the garbage collector; fewer make every verb start 0.1 s later."""
+"""Objects created between two runs of the garbage collector; a smaller number delays every start by 0.1 s."""
 UsageError: type[Exception] = next(kind for kind in typer.BadParameter.__mro__ if kind.__name__ == "UsageError")
-"""Click's, which newer versions of Typer carry inside themselves."""
+"""Click's class for wrong options, which newer versions of Typer include."""
 
 app = typer.Typer(
     name="lifelore",
@@ -74,13 +74,13 @@ _register()
 
 def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit the process."""
-    # Imports make some hundred thousand objects that all stay; looking through them finds no garbage.
+    # Imports create some hundred thousand objects that all stay, so the collector would find no garbage.
     gc.set_threshold(NEW_OBJECTS)
     sys.exit(run(sys.argv[1:] if arguments is None else arguments))
 
 
 def run(arguments: list[str]) -> int:
-    """Run the command line; the exit status. Every mistake of the user is one line on stderr."""
+    """Run the command line and return the exit status; a mistake of the user is one line on stderr."""
     command = typer.main.get_command(app)
     try:
         status = command.main(arguments, prog_name="lifelore", standalone_mode=False)
@@ -93,15 +93,14 @@ def run(arguments: list[str]) -> int:
         print("lifelore: stopped", file=sys.stderr)
         return INTERRUPTED
     except (BrokenPipeError, SystemExit):
-        # The reader of our output went away (`lifelore … | head`), for which Typer exits by itself; there is
-        # nobody left to tell.
+        # The reader of the output has closed the pipe (`lifelore … | head`); Typer then exits by itself.
         _drop_output()
         return 0
     except OSError as error:
         if error.errno not in DISK_FULL:
             raise
         _drop_output()
-        return _mistake(f"the output cannot be written: {error.strerror}; free space, what is finished is kept")
+        return _mistake(f"the output cannot be written: {error.strerror}; free space, finished work is stored")
     return status if isinstance(status, int) else 0
 
 
@@ -114,7 +113,7 @@ def _usage(error) -> int:
 
 
 def _drop_output() -> None:
-    """Let what waits for stdout go nowhere, or the interpreter would try once more and complain at its end."""
+    """Discard buffered output; otherwise the interpreter would write it again at exit and report an error."""
     nowhere = os.open(os.devnull, os.O_WRONLY)
     os.dup2(nowhere, 1)
     os.close(nowhere)

@@ -1,4 +1,4 @@
-"""How the command line speaks: progress to a terminal's stderr, one JSON document or tables to stdout."""
+"""Output of the command line: progress bars on stderr, JSON documents on stdout, and stopping by Ctrl-C."""
 
 import json
 import signal
@@ -12,22 +12,22 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import Progress
 
 INTERRUPTED = 130
-"""Exit status after Ctrl-C, as shells have it."""
+"""Exit status after Ctrl-C, as in shells."""
 
 
 def print_json(document: Any) -> None:
-    """One whole JSON document on stdout; NaN and infinity are refused rather than written as invalid JSON."""
+    """Print a JSON document on stdout; raise ValueError for NaN and infinity, which JSON does not have."""
     print(json.dumps(document, indent=2, allow_nan=False))
 
 
 def print_json_line(document: Any) -> None:
-    """One JSON document in one line of stdout, at once: a stream that can be read while it grows."""
+    """Print a JSON document as one line of stdout and flush it, for readers of a stream."""
     print(json.dumps(document, allow_nan=False), flush=True)
 
 
 @contextmanager
-def progress_bar(what: str) -> "Iterator[Progress | None]":
-    """A callback ``(done, total, label)`` that draws a bar on stderr; None where stderr is no terminal."""
+def progress_bar(action: str) -> "Iterator[Progress | None]":
+    """A callback ``(done, total, label)`` that draws a bar on stderr; None if stderr is no terminal."""
     if not sys.stderr.isatty():
         yield None
         return
@@ -50,24 +50,24 @@ def progress_bar(what: str) -> "Iterator[Progress | None]":
         TimeRemainingColumn(),
     )
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
-        line = bar.add_task(what, total=None)
+        line = bar.add_task(action, total=None)
 
         def show(done: int, total: int, label: str) -> None:
-            bar.update(line, completed=done, total=total, description=f"{what}: {label}")
+            bar.update(line, completed=done, total=total, description=f"{action}: {label}")
 
         yield show
 
 
 @contextmanager
 def stop_on_interrupt() -> Iterator[Event]:
-    """An event that the first Ctrl-C sets; the second one interrupts at once."""
+    """An event that the first Ctrl-C sets; the second Ctrl-C interrupts at once."""
     stop = Event()
 
     def interrupted(number, frame) -> None:
         if stop.is_set():
             raise KeyboardInterrupt
         stop.set()
-        print("stopping: keeping what is finished (Ctrl-C again to leave at once)", file=sys.stderr)
+        print("stopping: finished work is stored (press Ctrl-C again to quit at once)", file=sys.stderr)
 
     before = signal.signal(signal.SIGINT, interrupted)
     try:

@@ -1,4 +1,4 @@
-"""`lifelore doctor`: what is installed, what is missing, what is fast; and the kernels compiled ahead."""
+"""`lifelore doctor`: examine the installation, or compile the kernels before their first use."""
 
 from typing import Annotated
 
@@ -6,21 +6,28 @@ import typer
 
 
 def doctor(
-    memory: Annotated[str | None, typer.Option(metavar="FILE|URL", help="Which memory to look at.")] = None,
+    memory: Annotated[
+        str | None, typer.Option(metavar="FILE|URL", help="Memory to examine; default: your own.")
+    ] = None,
     warm: Annotated[
         bool,
-        typer.Option("--warm", help="Compile the kernels of live, perceive and reuse now, not at first use."),
+        typer.Option(
+            "--warm", help="Compile the kernels of live, perceive and reuse now instead of at their first use."
+        ),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Say what is installed, what is missing and what brings it, whether memory opens, how fast this is."""
+    """List installed and missing packages, test that memory opens, and measure the speed of the kernels.
+
+    Use it after installing, or when a verb fails or is slow.
+    """
     from lifelore.app.console import print_json
     from lifelore.core.errors import InputError
 
     if warm:
         if memory is not None:
-            raise InputError("memory is not looked at while kernels are compiled: leave --memory or --warm out")
-        _warm(as_json)
+            raise InputError("memory is not examined while kernels are compiled: leave --memory or --warm out")
+        _compile(as_json)
         return
     from lifelore.agent.doctor import examine
 
@@ -28,12 +35,12 @@ def doctor(
     print_json(report) if as_json else _print(report)
 
 
-def _warm(as_json: bool) -> None:
-    from lifelore.agent.warm import warm
+def _compile(as_json: bool) -> None:
+    from lifelore.agent.compile_kernels import compile_kernels
     from lifelore.app.console import print_json, progress_bar
 
     with progress_bar("compiling kernels") as progress:
-        done = warm(progress)
+        done = compile_kernels(progress)
     if as_json:
         print_json(done)
     else:

@@ -1,4 +1,4 @@
-"""`lifelore learn-relations`: teach words for relations by labelled scenes."""
+"""`lifelore learn-relations`: train a relation model on labelled scenes."""
 
 from typing import Annotated
 
@@ -8,45 +8,56 @@ Option = typer.Option
 
 
 def learn_relations(
-    folder: Annotated[str, typer.Argument(metavar="DIR", help="A labelled cloud a scene: NAME.pcd, ply, npz.")],
-    truth: Annotated[
-        str, Option(metavar="CSV", help="Columns scene, a, b, relation, confidence (3 certain … 1 doubtful).")
+    folder: Annotated[
+        str, typer.Argument(metavar="DIR", help="Folder with a labelled cloud for each scene: NAME.pcd, ply, npz.")
     ],
-    memory: Annotated[str | None, Option(metavar="FILE|URL", help="SQLite file or postgresql:// URL.")] = None,
-    name: Annotated[str, Option(help="Memory keeps the model under this name.")] = "default",
-    out: Annotated[
-        str | None, Option(metavar="FILE", help="Write the model to NAME.npz; without --memory only there.")
+    truth: Annotated[
+        str,
+        Option(metavar="CSV", help="Labels: columns scene, a, b, relation, confidence (3 certain … 1 doubtful)."),
+    ],
+    memory: Annotated[
+        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL.")
     ] = None,
-    method: Annotated[str, Option(help="trees, or displacement (the thesis's).")] = "trees",
-    adjacent_gap: Annotated[
-        float, Option(help="Metres up to which things side by side are adjacent, not none.")
-    ] = 0.0225,
-    several: Annotated[bool, Option("--several", help="Several relations may hold of one pair.")] = False,
-    labels: Annotated[
-        str, Option(help="The label field: plain ids, parts (20–29 are one object), or auto.")
-    ] = "auto",
-    units: Annotated[str, Option(help="Of the coordinates: m or mm.")] = "m",
+    name: Annotated[str, Option(help="Name of the model in memory.")] = "default",
+    out: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="File NAME.npz for the model; without --memory the model is written only there."
+        ),
+    ] = None,
+    method: Annotated[str, Option(help="Method: trees, or displacement (the thesis's).")] = "trees",
+    adjacent_gap: Annotated[float, Option(help="Largest gap in metres between adjacent objects.")] = 0.0225,
+    several: Annotated[bool, Option("--several", help="A pair may have several relations.")] = False,
+    labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
+    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
     up: Annotated[
         str | None,
-        Option(metavar="table|z|X,Y,Z", help="Where up is in every cloud [as planes.csv has it, else table]."),
+        Option(
+            metavar="table|z|X,Y,Z",
+            help="Upward direction in every cloud [from planes.csv, else the table's normal].",
+        ),
     ] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Learn what words for relations mean from scenes in which they were said."""
-    from lifelore.agent.perceive.learn_relations import RelationLesson
+    """Train a model of spatial relations on scenes with labelled pairs of objects.
+
+    Use it if the shipped model does not know your relations, objects or camera; then give the model to perceive.
+    """
+    from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
     from lifelore.app.console import print_json, progress_bar
     from lifelore.app.perceive_command import direction, to_stderr
 
     upwards = None if up is None else direction(up)
-    lesson = RelationLesson(folder, truth, name, method, adjacent_gap, several, labels, units, upwards)
+    settings = LearnRelationsSettings(folder, truth, name, method, adjacent_gap, several, labels, units, upwards)
     with progress_bar("learning") as progress:
-        report = learn(lesson, memory, out, progress, to_stderr)
+        report = learn(settings, memory, out, progress, to_stderr)
     if as_json:
         print_json(report)
         return
-    said = ", ".join(f"{count} {relation}" for relation, count in report["pairs"].items())
-    places = " and ".join(str(place) for place in (report["memory"], report["out"]) if place)
+    pairs = ", ".join(f"{count} {relation}" for relation, count in report["pairs"].items())
+    locations = " and ".join(str(place) for place in (report["memory"], report["out"]) if place)
     far = sum(report["not_near"].values())
-    not_near = f"; {far} labels are of things too far apart" if far else ""
-    print(f"learnt from {report['scenes']} scenes ({said}{not_near}); model '{report['name']}' kept in {places}")
+    not_near = f"; {far} labels are of objects too far apart" if far else ""
+    print(f"learnt from {report['scenes']} scenes ({pairs}{not_near})")
+    print(f"model '{report['name']}' stored in {locations}")

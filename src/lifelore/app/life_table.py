@@ -1,4 +1,4 @@
-"""The end of a life as a table."""
+"""Prints the summary of a life as a table."""
 
 import sys
 
@@ -14,14 +14,14 @@ SHOWN = (
 
 
 def print_life(report: dict, written: list[str]) -> None:
-    """First and last third of each agent with intervals, then the ratios to scratch."""
-    # Into a pipe or file there is no width to obey; four intervals in a row need a hundred columns.
+    """Print means of each agent over the first and last third of the tasks, then the ratios to scratch."""
+    # A pipe or file has no width, and four intervals in a row need a hundred columns.
     console = Console() if sys.stdout.isatty() else Console(width=110)
     tasks, memory = report["tasks"], report["memory"]
     place = report["map"] or report["domain"]
     console.print(
         f"{len(tasks)} tasks in {place}, {report['n_states']:,} places, {report['seconds']:.1f} s; "
-        f"this robot has now finished {memory['tasks_after']} tasks",
+        f"this robot has finished {memory['tasks_after']} tasks in all",
         highlight=False,
         soft_wrap=True,
     )
@@ -64,7 +64,7 @@ def _ratio_line(name: str, ratios: dict) -> str:
     steps, hits = ratios["steps_to_80_ratio"], ratios["collisions_ratio"]
     who = name.removesuffix("_vs_scratch")
     return (
-        f"{who} against scratch, last third: steps to 80 % {_ratio(steps)}, collisions {_ratio(hits)}, "
+        f"{who} compared with scratch, last third: steps to 80 % {_ratio(steps)}, collisions {_ratio(hits)}, "
         f"first return {ratios['jumpstart']['value']:+,.0f}"
     )
 

@@ -1,20 +1,21 @@
-"""`lifelore memory …`: look into what was learnt, move it, merge it, forget it."""
+"""`lifelore memory …`: show, export, import, merge and forget the content of a memory."""
 
 from typing import Annotated, Any
 
 import typer
 
-memory = typer.Typer(help="Show, export, import, merge or forget what was learnt.", no_args_is_help=True)
+memory = typer.Typer(
+    help="Show, export, import, merge or forget the content of a memory, for example to share it in a fleet.",
+    no_args_is_help=True,
+)
 
-Where = Annotated[
-    str | None, typer.Option("--memory", metavar="FILE|URL", help="Which memory; default: your own.")
-]
+Where = Annotated[str | None, typer.Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")]
 AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
 @memory.command()
 def show(where: Where = None, as_json: AsJson = False) -> None:
-    """Who lived here, and what is known."""
+    """List the robots that contributed, and the stored records with their sizes."""
     from lifelore.app.console import print_json
     from lifelore.app.memory_table import print_memory
     from lifelore.memory import open_memory
@@ -28,7 +29,7 @@ def show(where: Where = None, as_json: AsJson = False) -> None:
 def export(
     path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Write everything into one portable file."""
+    """Write all contributions to one portable file; use it for backups, or to move a memory."""
     from lifelore.memory import open_memory
 
     with open_memory(where) as opened:
@@ -40,7 +41,7 @@ def export(
 def import_(
     paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Take in exported files, all or none; what is there already, or was forgotten, stays as it is."""
+    """Add exported files, all or none; contributions stored already or forgotten are skipped."""
     _merge(paths, where, as_json)
 
 
@@ -50,13 +51,16 @@ def merge(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Take in other memories, all or none, which stay as they are. Exact in any order and grouping."""
+    """Add the content of other memories, all or none; use it to share what several robots learnt.
+
+    The other memories are not changed. The result does not depend on order and grouping.
+    """
     _merge(others, where, as_json)
 
 
 @memory.command()
 def forget(robot: Annotated[str, typer.Argument()], where: Where = None, as_json: AsJson = False) -> None:
-    """Forget one robot for good: no later import brings it back."""
+    """Delete all contributions of a robot for ever: no later import restores them."""
     from lifelore.memory import open_memory
 
     with open_memory(where) as opened:
@@ -71,13 +75,13 @@ def _merge(others: list[str], where: str | None, as_json: bool) -> None:
     with open_memory(where) as opened:
         each = opened.merge_many(others)
     totals = {name: sum(counts[name] for counts in each) for name in each[0]}
-    said = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
+    counts_text = ", ".join(f"{count} {name.replace('_', ' ')}" for name, count in totals.items())
     document: dict[str, Any] = dict(totals)
     if len(others) > 1:
-        said += f", from {len(others)} memories"
+        counts_text += f", from {len(others)} memories"
         named = zip(others, each, strict=True)
         document["sources"] = [{"source": describe(locate(other))} | counts for other, counts in named]
-    _say(document, f"contributions: {said}", as_json)
+    _say(document, f"contributions: {counts_text}", as_json)
 
 
 def _say(document: dict, line: str, as_json: bool) -> None:

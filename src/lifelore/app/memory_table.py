@@ -1,4 +1,4 @@
-"""What a memory holds, as tables."""
+"""Prints the content of a memory as tables."""
 
 from rich.console import Console
 from rich.table import Table
@@ -7,21 +7,21 @@ from lifelore.memory.overview import grouped_lore, grouped_robots
 
 
 def print_memory(overview: dict) -> None:
-    """Robots with their tasks, then each kind and key of lore with its size; many of one sort are one line."""
+    """Print robots with their tasks, then records with their sizes; large groups are one line."""
     console = Console()
     console.print(f"memory {overview['location']} (schema {overview['schema']})", highlight=False)
-    robots = Table("robot", "tasks", "first", "last", title="who lived")
+    robots = Table("robot", "tasks", "first", "last", title="robots")
     for entry in grouped_robots(overview["robots"]):
         name = entry["robot"] + _of(entry["of"])
         robots.add_row(name, f"{entry['tasks']:,}", entry["first"][:19], entry["last"][:19])
-    lore = Table("kind", "key", "version", "merges by", "slots", title="what is known")
+    lore = Table("kind", "key", "version", "merges by", "slots", title="records")
     for entry in grouped_lore(overview["lore"]):
         key = entry["key"][:12] if entry["of"] == 1 else entry["key"] + _of(entry["of"])
         lore.add_row(entry["kind"], key, str(entry["version"]), entry["merge"], f"{entry['slots']:,}")
     console.print(robots)
     console.print(lore)
     if overview["forgotten"]:
-        console.print(f"{overview['forgotten']} contributions were forgotten and will not come back")
+        console.print(f"{overview['forgotten']} contributions were forgotten and cannot be restored")
 
 
 def _of(number: int) -> str:

@@ -10,7 +10,7 @@ import typer
 
 Option = typer.Option
 Files = dict[str, str | None]
-"""What --pddl, --dot and --plot name."""
+"""Files named by --pddl, --dot and --plot."""
 
 
 def perceive(
@@ -18,50 +18,50 @@ def perceive(
         list[str] | None, typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy or a rosbag; one or more.")
     ] = None,
     up: Annotated[
-        str, Option(metavar="table|z|X,Y,Z", help="Where up is: the table's normal, +z, or a vector.")
+        str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
     ] = "table",
-    units: Annotated[str, Option(help="Of the coordinates: m or mm.")] = "m",
-    labels: Annotated[
-        str, Option(help="The label field: plain ids, parts (20–29 are one object), or auto.")
-    ] = "auto",
-    topic: Annotated[str | None, Option(help="Of a rosbag's clouds; needed where it has several.")] = None,
-    index: Annotated[int | None, Option(help="Which cloud of a rosbag, from 0 [0].")] = None,
+    units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
+    labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
+    topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
+    index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
     segment: Annotated[
-        str | None, Option(help="A cloud without labels is cut by clusters or by colour [clusters].")
+        str | None, Option(help="Segmentation of a cloud without labels: clusters or colour [clusters].")
     ] = None,
     colours: Annotated[
-        int | None, Option(help="--segment colour: clusters of colour, the smallest is background [3].")
+        int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")
     ] = None,
     model: Annotated[
-        str | None, Option(metavar="NAME|FILE", help="A relation model of learn-relations; default: shipped.")
+        str | None,
+        Option(metavar="NAME|FILE", help="Relation model of learn-relations; default: the shipped model."),
     ] = None,
-    memory: Annotated[str | None, Option(metavar="FILE|URL", help="Where the model NAME is kept.")] = None,
+    memory: Annotated[str | None, Option(metavar="FILE|URL", help="Memory that holds the model NAME.")] = None,
     pddl: Annotated[
-        str | None, Option(metavar="FILE", help="Write a planning problem, its domain beside it.")
+        str | None, Option(metavar="FILE", help="File for a planning problem; its domain is written beside it.")
     ] = None,
-    dot: Annotated[str | None, Option(metavar="FILE", help="Write the relations as a Graphviz graph.")] = None,
+    dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,
     plot: Annotated[
-        str | None, Option(metavar="FILE", help="Draw the scene as its camera saw it; NAME.png.")
+        str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
     ] = None,
     watch: Annotated[
         str | None,
-        Option(metavar="FOLDER", help="Perceive each new cloud that appears in a folder, until Ctrl-C."),
+        Option(metavar="FOLDER", help="Perceive each new cloud of a folder until Ctrl-C."),
     ] = None,
     as_json: Annotated[
         bool,
-        Option("--json", help="One JSON document on stdout and nothing else; with --watch one a line and cloud."),
+        Option("--json", help="One JSON document on stdout and nothing else; with --watch one line a cloud."),
     ] = False,
 ) -> int:
-    """Find objects, contact points and relations in clouds.
+    """Find objects, contact points and spatial relations in point clouds.
 
-    Several clouds are perceived in one process, which is much faster than one process a cloud; --json then gives
-    {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}. A cloud that cannot be perceived is one line on
-    stderr, the others go on, and the exit status is 2. In the FILE of --pddl, --dot and --plot, {name} stands for
-    the name of the cloud without its suffix; several clouds, and --watch, need it.
+    Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
+    faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
+    A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
+    perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
+    several clouds, and --watch, need it.
     """
     if (watch is None) == (not clouds):
         raise typer.BadParameter(
-            "--watch perceives what appears in a folder: leave the clouds out" if clouds else
+            "--watch perceives the new clouds of a folder: leave the clouds out" if clouds else
             "give one or more clouds, or --watch FOLDER"
         )  # fmt: skip
     _one_thread_for_matrices()
@@ -83,7 +83,7 @@ def perceive(
 
 
 def _one_thread_for_matrices() -> None:
-    """Before NumPy is loaded: matrices of three columns are too small to share, and threads wait by spinning."""
+    """Limit BLAS to one thread, before NumPy is loaded: for matrices of three columns more threads are slower."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 
@@ -92,9 +92,11 @@ def _one(cloud: str, source: Callable[[str], Any], settings: Any, files: Files, 
     from lifelore.agent.perceive.scene_files import named_files
     from lifelore.app.console import print_json, progress_bar
 
-    own = vars(named_files(cloud, **files))
+    own = named_files(cloud, **files)
     with progress_bar("perceiving") as progress:
-        document = look(source(cloud), settings, **own, progress=progress, notice=to_stderr)
+        document = look(
+            source(cloud), settings, pddl=own.pddl, dot=own.dot, plot=own.plot, progress=progress, notice=to_stderr
+        )
     print_json(document) if as_json else _print_scene(cloud, document, files)
     return 0
 
@@ -104,7 +106,7 @@ def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, fil
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
 
     entries = []
-    # A person sees each scene when it is found; a bar would draw over it.
+    # Without --json each scene is printed at once; a progress bar would draw over it.
     with stop_on_interrupt() as stop, progress_bar("perceiving") if as_json else nullcontext() as progress:
         for entry in perceive_many(
             clouds, settings, **files, read=source, stop=stop, progress=progress, notice=to_stderr
@@ -132,7 +134,7 @@ def _watched(folder: str, settings: Any, files: Files, as_json: bool) -> int:
 
 
 def _print_entry(entry: Mapping[str, Any], files: Files, show: Callable[..., None] | None) -> None:
-    """A failure as one line on stderr; a scene as `show` does."""
+    """Print a failure as one line on stderr, a scene by `show`."""
     if "error" in entry:
         to_stderr(f"{entry['source']}: {entry['error']}")
     elif show is not None:
@@ -153,7 +155,7 @@ def _print_scene(cloud: str, document: Mapping[str, Any], files: Files) -> None:
 
 
 def to_stderr(line: str) -> None:
-    """What a person should know beside the answer."""
+    """Print a note for the user on stderr."""
     print(f"lifelore: {line}", file=sys.stderr)
 
 
@@ -174,7 +176,7 @@ def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None
     if (topic is not None or index is not None) and not _is_bag(cloud):
         from lifelore.core.errors import InputError
 
-        raise InputError(f"topic and index choose a cloud of a rosbag, and '{cloud}' is none: leave them out")
+        raise InputError(f"topic and index choose a cloud of a rosbag, but '{cloud}' is no rosbag: leave them out")
 
 
 def _is_bag(path: str) -> bool:
@@ -188,7 +190,7 @@ def _out_of_bag(path: str, topic: str | None, index: int, units: str, labels: st
 
 
 def direction(text: str):
-    """Where up is, of the words of a person."""
+    """Parse the upward direction: table, z or X,Y,Z."""
     if "," not in text:
         return text
     from lifelore.core.errors import InputError

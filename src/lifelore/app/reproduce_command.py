@@ -1,4 +1,4 @@
-"""`lifelore reproduce`: run the thesis's claims."""
+"""`lifelore reproduce`: run claims of the thesis as experiments."""
 
 from typing import Annotated
 
@@ -7,20 +7,25 @@ import typer
 
 def reproduce(
     claims: Annotated[
-        list[str] | None, typer.Argument(metavar="[CLAIM]...", help="Such as C3.2; none: all.")
+        list[str] | None, typer.Argument(metavar="[CLAIM]...", help="Claims, such as C3.2; default: all.")
     ] = None,
-    quick: Annotated[bool, typer.Option("--quick", help="Small, for tests; no evidence. The default.")] = False,
-    full: Annotated[bool, typer.Option("--full", help="At the thesis's size or more.")] = False,
-    list_all: Annotated[bool, typer.Option("--list", help="Name every claim of the ledger.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Run at a small size, for tests only (the default).")
+    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger.")] = False,
+    list_all: Annotated[bool, typer.Option("--list", help="List every claim.")] = False,
     settings: Annotated[
-        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting.")
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting of the claims.")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="Threads; results do not depend on them.")] = None,
-    out: Annotated[str, typer.Option(metavar="DIR", help="Folder of the results.")] = "results",
-    seed: Annotated[int, typer.Option(help="Same seed, same numbers.")] = 0,
+    jobs: Annotated[int | None, typer.Option(help="Threads; results do not depend on their number.")] = None,
+    out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the results.")] = "results",
+    seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Run claims of the thesis as measured experiments. Stop and start as you like: finished parts are kept."""
+    """Run claims of the thesis as experiments and compare the results with the thesis.
+
+    Use it to check a claim yourself. You can stop it and start it again: finished parts are stored.
+    """
     from lifelore.app.console import print_json, progress_bar
     from lifelore.core.errors import InputError
     from lifelore.experiments.engine.registry import list_claims

@@ -1,4 +1,4 @@
-"""`lifelore reuse …`: from a log of choices and outcomes to a choice for each user."""
+"""`lifelore reuse …`: choose a policy for each user, from a log of choices and outcomes."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -11,40 +11,48 @@ if TYPE_CHECKING:
     from lifelore.memory import Memory
 
 reuse = typer.Typer(
-    help="Choose for each user what served users of their kind: fit a log, choose, update, report.",
+    help="Choose for each user a policy that served similar users well: fit a log, choose, update, report.",
     no_args_is_help=True,
 )
 
 Option = typer.Option
-Name = Annotated[str, Option(help="Of the study.")]
-Where = Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Which memory; default: your own.")]
-Seed = Annotated[int, Option(help="For whatever is drawn at random.")]
-Unused = Annotated[int, Option("--seed", help="Taken for likeness: nothing is drawn here.")]
+Name = Annotated[str, Option(help="Name of the study.")]
+Where = Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")]
+Seed = Annotated[int, Option(help="Draws all random numbers.")]
+Unused = Annotated[int, Option("--seed", help="Without effect: this verb draws no random numbers.")]
 AsJson = Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
 @reuse.command()
 def fit(
-    logs: Annotated[list[str], typer.Argument(metavar="LOG.csv…", help="user,policy,outcome[,type,context].")],
+    logs: Annotated[
+        list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome[,type,context].")
+    ],
     name: Name = "default",
-    model: Annotated[str, Option(help="auto, gaussian, student-t or categorical outcomes.")] = "auto",
-    types: Annotated[
-        int | None, Option(help="Types to look for; default: as many as the outcomes call for.")
-    ] = None,
-    control: Annotated[float, Option(help="Share of users held out.")] = 0.1,
+    model: Annotated[
+        str, Option(help="Model of the outcomes: auto, gaussian, student-t or categorical.")
+    ] = "auto",
+    types: Annotated[int | None, Option(help="Number of types; default: selected by the outcomes.")] = None,
+    control: Annotated[float, Option(help="Share of users in the control group.")] = 0.1,
     incumbent: Annotated[
-        str | None, Option(metavar="POLICY", help="What the held out get; default: each policy alike.")
+        str | None,
+        Option(metavar="POLICY", help="Policy of the control group; default: each policy with equal probability."),
     ] = None,
     rule: Annotated[
         str, Option(help="Selection rule, such as sampling or expected-improvement.")
     ] = "information-directed",
-    explore: Annotated[float, Option(help="Share of the other choices that are any policy.")] = 0.0,
-    change: Annotated[float, Option(help="Probability that a user's type is another next time.")] = 0.0,
+    explore: Annotated[float, Option(help="Share of the other choices that are drawn from all policies.")] = 0.0,
+    change: Annotated[
+        float, Option(help="Probability that the type of a user changes between two choices.")
+    ] = 0.0,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Learn types of users and what each policy achieves on them from a log."""
+    """Learn types of users, and the outcomes of each policy with each type, from logs.
+
+    Use it first, and again when there are more outcomes.
+    """
     from lifelore.agent.reuse.fit import FitSettings
     from lifelore.agent.reuse.fit import fit as fitted
     from lifelore.app.console import print_json
@@ -58,22 +66,20 @@ def fit(
 
 @reuse.command()
 def choose(
-    user: Annotated[str, Option(help="Whom to choose for.")],
-    context: Annotated[
-        str | None, Option(help="What is known of the user beforehand: a context of the log.")
-    ] = None,
+    user: Annotated[str, Option(help="User to choose for.")],
+    context: Annotated[str | None, Option(help="Context of the user, as in the log.")] = None,
     name: Name = "default",
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Choose a policy for a user, and remember the choice."""
+    """Choose a policy for a user, and store the decision."""
     from lifelore.agent.reuse.one_user import choose as chosen
 
     with _opened(name, where) as (memory, study):
         document = chosen(memory, study, user, context=context, seed=seed)
-    held = ", held out" if document["control"] else ""
-    new = f"\ncontext {context} is not in the logs: everybody's prior counts"
+    held = ", control group" if document["control"] else ""
+    new = f"\ncontext {context} is not in the logs: the prior of all users is used"
     _say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
@@ -84,14 +90,14 @@ def choose(
 
 @reuse.command()
 def update(
-    decision: Annotated[str, Option(metavar="ID", help="What `choose` printed.")],
-    outcome: Annotated[str, Option(help="How well it went, a number; larger is better.")],
+    decision: Annotated[str, Option(metavar="ID", help="The decision that `choose` printed.")],
+    outcome: Annotated[str, Option(help="Outcome, a number; larger is better.")],
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Take in how a decision ended: once, however late."""
+    """Store the outcome of a decision, once, at any later time."""
     from lifelore.agent.reuse.log import read_outcome
     from lifelore.agent.reuse.one_user import update as updated
 
@@ -99,10 +105,10 @@ def update(
     with _opened(name, where) as (memory, study):
         document = updated(memory, study, decision, value)
     likely = max(document["belief"], key=document["belief"].get)
-    said = "taken" if document["taken"] else "was there already, nothing changed"
+    status = "stored" if document["taken"] else "was stored already, nothing changed"
     _say(
         document,
-        f"outcome {document['outcome']:g} of {document['policy']} {said}; "
+        f"outcome {document['outcome']:g} of {document['policy']} {status}; "
         f"{document['user']} is most likely {likely} ({document['belief'][likely]:.3g})",
         as_json,
     )
@@ -110,14 +116,14 @@ def update(
 
 @reuse.command()
 def report(
-    out: Annotated[str | None, Option(metavar="FOLDER", help="Gets report.json and report.png.")] = None,
-    log: Annotated[str | None, Option(metavar="FILE", help="Gets every decision as CSV.")] = None,
+    out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and report.png.")] = None,
+    log: Annotated[str | None, Option(metavar="FILE", help="CSV file for all decisions.")] = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Uplift and regret against the users held out, with 95 % intervals."""
+    """Report uplift and regret compared with the control group, with 95 % intervals."""
     from lifelore.agent.reuse.report import report as reported
     from lifelore.app.console import print_json
 
@@ -127,9 +133,9 @@ def report(
         print_json(document)
         return
     _print_report(document)
-    for what, place in (("report.json and report.png", out), ("every decision", log)):
-        if place is not None:
-            print(f"  {what} written to {place}")
+    for content, path in (("report.json and report.png", out), ("every decision", log)):
+        if path is not None:
+            print(f"  {content} written to {path}")
 
 
 @reuse.command()
@@ -139,7 +145,7 @@ def retire(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Give a policy to nobody from now on."""
+    """Stop choosing a policy."""
     from lifelore.agent.reuse.one_user import retire as retired
 
     with _opened(name, where) as (memory, study):
@@ -154,14 +160,14 @@ def add(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Bring a policy in: a retired one as it was, a new one to the held out first."""
+    """Add a policy: a retired one as it was, a new one first to the control group only."""
     from lifelore.agent.reuse.one_user import add as added
 
     with _opened(name, where) as (memory, study):
         study = added(memory, study, policy)
     state = study.states[policy]
-    said = "in use again" if state == "active" else "given to the held-out users, till a fit knows its outcomes"
-    _say({"policy": policy, "state": state}, f"{policy} is {said}", as_json)
+    use = "in use again" if state == "active" else "given to the control group until a fit has outcomes of it"
+    _say({"policy": policy, "state": state}, f"{policy} is {use}", as_json)
 
 
 @reuse.command()
@@ -171,7 +177,7 @@ def forget(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Forget one user's decisions, outcomes and belief for good."""
+    """Delete the decisions, outcomes and belief of a user for ever."""
     from lifelore.agent.reuse.one_user import forget as forgot
 
     with _opened(name, where) as (memory, study):
@@ -202,44 +208,44 @@ def _print_fit(document: dict[str, Any]) -> None:
         f"{policies}, {_count(document['types'], 'type', 'types')} {found}, "
         f"{document['model']} outcomes"
     )
-    for one in document["types"]:
-        print(f"  {one['name']}: {one['users']} users, best served by {one['best']}")
-    for what, count in (
-        ("of users of no named type taken in: their outcomes tell it", document["guessed"]),
+    for kind in document["types"]:
+        print(f"  {kind['name']}: {kind['users']} users, best served by {kind['best']}")
+    for note, count in (
+        ("of users without a named type used: their type follows from the outcomes", document["guessed"]),
         ("without an outcome yet left out", document["pending"]),
         ("of unknown type left out", document["left_out"]),
     ):
         if count:
-            print(f"  {count} lines {what}")
+            print(f"  {count} lines {note}")
     if document["borrowed"]:
         print(
-            f"  {document['borrowed']} pairs of type and policy have no outcome; expected is what everybody gets"
+            f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
         )
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"
         print(f"  {name} is {document[name]}, was {before} until now{keep}")
 
 
-def _count(things: list[Any], one: str, many: str) -> str:
-    return f"{len(things)} {one if len(things) == 1 else many}"
+def _count(items: list[Any], singular: str, plural: str) -> str:
+    return f"{len(items)} {singular if len(items) == 1 else plural}"
 
 
 def _print_report(document: dict[str, Any]) -> None:
     pending = f"{document['pending']} without an outcome yet"
     print(f"study {document['study']}: {document['decisions']} decisions, {pending}")
-    for label, one in (
+    for label, estimate in (
         ("chosen by belief", document["personal"]),
-        ("held out", document["control"]),
+        ("control group", document["control"]),
         ("uplift", document["uplift"]),
         ("regret by the library, chosen by belief", document["regret"]["personal"]),
-        ("regret by the library, held out", document["regret"]["control"]),
+        ("regret by the library, control group", document["regret"]["control"]),
     ):
-        print(f"  {label}: {_estimate(one)}")
+        print(f"  {label}: {_estimate(estimate)}")
 
 
-def _estimate(one: dict[str, Any] | None) -> str:
-    if one is None:
+def _estimate(estimate: dict[str, Any] | None) -> str:
+    if estimate is None:
         return "no outcome yet"
-    users = " and ".join(map(str, one["n"])) if isinstance(one["n"], list) else one["n"]
-    interval = f" ({one['ci95'][0]:.4g} to {one['ci95'][1]:.4g})" if one["ci95"] else ""
-    return f"{one['value']:.4g}{interval}, {users} users"
+    users = " and ".join(map(str, estimate["n"])) if isinstance(estimate["n"], list) else estimate["n"]
+    interval = f" ({estimate['ci95'][0]:.4g} to {estimate['ci95'][1]:.4g})" if estimate["ci95"] else ""
+    return f"{estimate['value']:.4g}{interval}, {users} users"

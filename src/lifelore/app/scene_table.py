@@ -1,10 +1,10 @@
-"""What `lifelore perceive` shows a person: the relations as a table, and what follows from them."""
+"""Prints the relations of a perceived scene as a table."""
 
 from collections.abc import Mapping, Sequence
 
 
 def print_scene(document: Mapping, written: Sequence[str]) -> None:
-    """Print a perceived scene's document; *none* is left out."""
+    """Print the document of a perceived scene, without pairs that have relation *none*."""
     from rich.console import Console
     from rich.table import Table
 
@@ -24,5 +24,5 @@ def print_scene(document: Mapping, written: Sequence[str]) -> None:
         console.print(f"written: {path}", highlight=False, soft_wrap=True)
 
 
-def _many(n: int, what: str) -> str:
-    return f"{n} {what}{'' if n == 1 else 's'}"
+def _many(n: int, noun: str) -> str:
+    return f"{n} {noun}{'' if n == 1 else 's'}"

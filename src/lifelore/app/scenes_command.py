@@ -1,4 +1,4 @@
-"""`lifelore scenes`: simulated scenes on a table, as files."""
+"""`lifelore scenes`: simulate scenes of objects on a table and write their point clouds."""
 
 from typing import Annotated
 
@@ -8,41 +8,44 @@ Option = typer.Option
 
 
 def scenes(
-    n: Annotated[int, Option("--n", help="Scenes.")],
-    out: Annotated[str, Option(metavar="DIR", help="Folder that holds no scenes yet.")],
-    seed: Annotated[int, Option(help="Same seed, same files.")] = 0,
+    n: Annotated[int, Option("--n", help="Number of scenes.")],
+    out: Annotated[str, Option(metavar="DIR", help="Folder without scenes; it is made if it is missing.")],
+    seed: Annotated[int, Option(help="Draws the scenes; the same seed gives the same files.")] = 0,
     mix: Annotated[
         str | None,
-        Option(metavar="on=…,adjacent=…,both=…,none=…", help="Shares of the pairs' relations; on any scale."),
+        Option(
+            metavar="on=…,adjacent=…,both=…,none=…", help="Shares of the relations among the pairs, in any unit."
+        ),
     ] = None,
-    camera: Annotated[str, Option(help="kinect or stereo.")] = "kinect",
-    shapes: Annotated[str, Option(help="training, held-out (no kind in common) or all.")] = "training",
+    camera: Annotated[str, Option(help="Depth camera: kinect or stereo.")] = "kinect",
+    shapes: Annotated[str, Option(help="Shapes: training, held-out (other kinds of shapes) or all.")] = "training",
     arrangement: Annotated[
-        str, Option(help="mixed, pair, apart, hole, no-hole, stack, ball-on-block, …")
+        str, Option(help="Arrangement: mixed, pair, apart, hole, no-hole, stack, ball-on-block, …")
     ] = "mixed",
     mesh: Annotated[
-        list[str] | None, Option(metavar="FILE", help="A shape of yours, in metres; may be repeated.")
+        list[str] | None, Option(metavar="FILE", help="Your own mesh in metres; may be repeated.")
     ] = None,
-    jobs: Annotated[int, Option(help="Processes; the files do not depend on them.")] = 1,
+    jobs: Annotated[int, Option(help="Processes; the files do not depend on their number.")] = 1,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Let things fall on a table, settle them by physics, and photograph them with a depth camera (extra: sim).
+    """Simulate objects that fall on a table, and record them with a simulated depth camera (extra: sim).
 
-    Writes a PCD a scene, and relations.csv, planes.csv and gaps.csv with what is true of all.
+    Use it to make labelled scenes for learn-relations or for tests. It writes a PCD file for each scene, and the
+    true relations, planes and gaps of all scenes as relations.csv, planes.csv and gaps.csv.
     """
     from lifelore.agent.perceive.scenes import make_scenes
     from lifelore.app.console import print_json, progress_bar
     from lifelore.app.perceive_command import to_stderr
 
-    wanted = _mix(mix)
+    shares = _mix(mix)
     with progress_bar("drawing") as progress:
         report = make_scenes(
-            n, out, seed, mix=wanted, camera=camera, shapes=shapes, arrangement=arrangement,
+            n, out, seed, mix=shares, camera=camera, shapes=shapes, arrangement=arrangement,
             meshes=mesh or (), jobs=jobs, progress=progress,
         )  # fmt: skip
     if report["mix_missed"]:
-        shares = ", ".join(f"{relation}={share:.2f}" for relation, share in report["mix"].items())
-        to_stderr(f"the mix was missed: the pairs came to {shares}; draw more scenes, or ask for another mix")
+        measured = ", ".join(f"{relation}={share:.2f}" for relation, share in report["mix"].items())
+        to_stderr(f"the mix was not reached: the pairs have {measured}; draw more scenes, or change --mix")
     if as_json:
         print_json(report)
         return

@@ -1,1 +1,1 @@
-"""Other people's systems: any Gymnasium world, and what comes after it."""
+"""Connections to other programs: Gymnasium, MiniGrid, Stable-Baselines3, rosbags and PDDL planners."""

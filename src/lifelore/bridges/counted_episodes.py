@@ -1,4 +1,4 @@
-"""A prior from what a trained model does: the step from one task, solved by deep learning, to the next."""
+"""Counts the actions of a trained model into an action prior, which guides learning in later tasks."""
 
 from typing import Any
 
@@ -18,9 +18,9 @@ def count_episodes(
     least: float = 0.0,
     seed: int = 0,
 ) -> int:
-    """Count what a trained model does in the episodes whose return exceeds `least`; returns how many those were.
+    """Count the actions of a trained model in episodes whose return exceeds `least`; return their number.
 
-    Each visit counts once, weighted alike (§3.4.8): what a network believes where it never goes does not count.
+    Each visit counts once with equal weight (§3.4.8). States that the model does not visit do not count.
 
     Parameters
     ----------
@@ -34,14 +34,14 @@ def count_episodes(
     check_actions(prior, env.action_space)
     counted = 0
     for episode in range(episodes):
-        codes, actions, earned = _lived(model, env, contexts, int(stream(seed, "sb3", episode).integers(2**31)))
+        codes, actions, earned = _episode(model, env, contexts, int(stream(seed, "sb3", episode).integers(2**31)))
         if earned > least:
             prior.update_trajectory(codes, actions)
             counted += 1
     return counted
 
 
-def _lived(model: Any, env: gymnasium.Env, contexts: Contexts, seed: int) -> tuple[list[int], list[int], float]:
+def _episode(model: Any, env: gymnasium.Env, contexts: Contexts, seed: int) -> tuple[list[int], list[int], float]:
     codes, actions, earned = [], [], 0.0
     observation, _ = env.reset(seed=seed)
     over = False

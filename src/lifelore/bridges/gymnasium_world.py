@@ -1,8 +1,8 @@
-"""Any Gymnasium environment with discrete actions as a `World`: tasks by seed or by a function of yours.
+"""Turns a Gymnasium environment with discrete actions into a `World` whose tasks differ by seed or by a function.
 
-An environment draws its layout, and all chance, from the seed of `reset`. A *task* must stay the same from
-episode to episode, so every episode of it is reset by the task's own seed; then the environment's generator
-is seeded anew for the episode, so that outcomes (slips, dealt cards) differ.
+An environment draws its layout and all random outcomes from the seed of `reset`. A *task* must stay the same in
+all its episodes, so each episode is reset with the seed of the task. Then the environment's generator gets the
+seed of the episode, so that outcomes (slips, dealt cards) differ.
 """
 
 import ast
@@ -24,32 +24,32 @@ ResetBy = Literal["task", "episode"]
 
 
 class GymnasiumWorld:
-    """A user's own environment to be lived in; implements `lifelore.core.protocols.World`.
+    """An environment of the user as a world for `live_in`; implements `lifelore.core.protocols.World`.
 
     Parameters
     ----------
     env_or_factory : gymnasium.Env or callable
         One environment whose tasks differ by the seed of `reset`, or a function from task number to
-        environment. What the function makes is closed when the task changes; an environment given is
-        closed by `close` alone.
+        environment. The environments of the function are closed when the task changes; a given environment
+        is closed by `close` only.
     context : callable, optional
-        ``context(observation)`` or ``context(observation, last_reward)`` to hashable features: what is
-        sensible to do is learnt for each value and carried to other tasks. Default: the state itself.
+        ``context(observation)`` or ``context(observation, last_reward)`` to hashable features. The
+        prior counts useful actions for each value and uses them in other tasks. Default: the state itself.
     state : callable, optional
-        ``state(observation)`` to a hashable state, what the task itself is learnt over. Default: `hashable`.
-        Mind that a partial view makes different places one state, and that a continuous observation is a
-        new state at every step.
+        ``state(observation)`` to a hashable state, over which each task is learnt. Default: `hashable`. With a
+        partial view, different places become one state; a continuous observation gives a new state at every
+        step.
     seed : int
-        Which tasks: task t is reset by a number drawn from (seed, t).
+        Selects the tasks: task t is reset with a number drawn from (seed, t).
     reset_by : {"task", "episode"}
-        ``task``: each episode of a task has the same layout and start. ``episode``: `reset` follows the
-        episode's seed, for environments in which it draws only where an episode starts.
+        ``task``: each episode of a task has the same layout and start. ``episode``: `reset` uses the seed of the
+        episode, for environments whose `reset` draws only the start.
 
     Raises
     ------
     InputError
-        Actions are not ``Discrete``, or differ between tasks; `context` or `state` answers something
-        unhashable. What the environment itself raises passes unchanged.
+        Actions are not ``Discrete`` or differ between tasks; `context` or `state` returns an unhashable
+        value. Errors of the environment itself pass unchanged.
 
     Examples
     --------
@@ -79,7 +79,7 @@ class GymnasiumWorld:
         self._context, self._state, self._seed, self._reset_by = context, state, seed, reset_by
         self._with_reward = context is not None and _takes_two(context)
         self._factory = None if isinstance(env_or_factory, gymnasium.Env) else env_or_factory
-        # The first task's environment is made at once: it says what the actions are.
+        # The environment of the first task is made at once, because it defines the actions.
         self._task: int | None = 0
         self._env = _made(env_or_factory, 0)
         self.n_actions, self._first_action = _actions(self._env)
@@ -109,13 +109,13 @@ class GymnasiumWorld:
 
     @property
     def context_key(self) -> str:
-        """What the contexts mean, as far as can be seen; lore of different keys never mixes.
+        """A key for the meaning of the contexts; priors of different keys never mix.
 
         A hash of the environment's id, the names of its wrappers, the number of actions, and the source of
-        `context` (without comments and layout). By default contexts are states, and the source of `state`
-        and the observation space stand in its place. What these functions *read* (global
-        names, enclosed values, what a wrapper computes) and the environment's own arguments are not seen: if
-        their meaning may change, pass a key of your own to `live_in`.
+        `context` (without comments and layout). If contexts are states (the default), the source of
+        `state` and the observation space replace it. The key does not depend on values that these functions
+        *read* (global names, enclosed values, results of wrappers), nor on the environment's arguments: if their
+        meaning may change, pass your own key to `live_in`.
 
         Raises
         ------
@@ -144,7 +144,7 @@ class GymnasiumWorld:
     def _change_task(self, task: int) -> None:
         if self._factory:
             self._env.close()
-            # A factory that fails must not leave a closed environment behind as the current task's.
+            # If the factory fails, the closed environment must not stay the current one.
             self._task = self._current = None
             self._env = _made(self._factory, task)
             actions = _actions(self._env)
@@ -161,18 +161,22 @@ class GymnasiumWorld:
             raise InputError("step must follow reset, got step first; call reset(task, seed)")
         observation, reward, terminated, truncated, _ = self._env.step(self._first_action + int(action))
         if not isinstance(reward, SupportsFloat):
-            raise InputError(f"reward of {self.name} must be a number, got {type(reward).__name__}; mend its step")
+            raise InputError(
+                f"reward of {self.name} must be a number, got {type(reward).__name__}; correct its step"
+            )
         return self._seen(observation), float(reward), bool(terminated), bool(truncated)
 
     def context(self, state: Hashable, last_reward: float) -> Hashable:
-        """Features of the state the world is in now, the only one whose observation is at hand."""
+        """Features of the current state; the observations of other states are not stored."""
         if self._current is None or state != self._current[1]:
-            raise InputError("state must be the one last returned by reset or step; ask for its context then")
+            raise InputError(
+                "state must be the last state that reset or step returned; call context right after them"
+            )
         if self._context is None:
             return state
         observation = self._current[0]
-        answer = self._context(observation, last_reward) if self._with_reward else self._context(observation)
-        return _require_hashable("context", answer)
+        features = self._context(observation, last_reward) if self._with_reward else self._context(observation)
+        return _require_hashable("context", features)
 
     def _seen(self, observation: Any) -> Hashable:
         state = _require_hashable("state", self._state(observation)) if self._state else hashable(observation)
@@ -189,7 +193,7 @@ def hashable(observation: Any) -> Hashable:
     Raises
     ------
     InputError
-        Something else is in it.
+        The observation holds a value of another type.
     """
     if observation is None or isinstance(observation, bool | int | float | str | bytes):
         return observation
@@ -203,18 +207,18 @@ def hashable(observation: Any) -> Hashable:
         return tuple(hashable(part) for part in observation)
     raise InputError(
         f"observation must be made of numbers, text, arrays, dicts and tuples, got {type(observation).__name__}; "
-        "pass state= to turn it into something hashable"
+        "pass state= to convert it to a hashable value"
     )
 
 
-def _require_hashable(name: str, answer: Any) -> Hashable:
+def _require_hashable(name: str, value: Any) -> Hashable:
     try:
-        hash(answer)
+        hash(value)
     except TypeError:
         raise InputError(
-            f"{name} must answer something hashable, got {type(answer).__name__}; return a tuple or a number"
+            f"{name} must return a hashable value, got {type(value).__name__}; return a tuple or a number"
         ) from None
-    return answer
+    return value
 
 
 def _made(env_or_factory: Any, task: int) -> gymnasium.Env:
@@ -230,7 +234,7 @@ def _made(env_or_factory: Any, task: int) -> gymnasium.Env:
 
 
 def _actions(env: gymnasium.Env) -> tuple[int, int]:
-    """Number of actions, and the number that the environment gives to the first."""
+    """Number of actions, and the environment's number of the first action."""
     space = env.action_space
     if not isinstance(space, Discrete):
         raise InputError(f"actions must be Discrete, got {space}; wrap the environment so that they are")
@@ -238,7 +242,7 @@ def _actions(env: gymnasium.Env) -> tuple[int, int]:
 
 
 def _takes_two(function: Callable) -> bool:
-    """Whether a function asks for two positional arguments; one where Python cannot tell."""
+    """Whether a function requires two positional arguments; False where Python cannot inspect it."""
     try:
         parameters = inspect.signature(function).parameters.values()
     except (TypeError, ValueError):
@@ -264,7 +268,7 @@ def _definition(argument: str, function: Any) -> str:
         node = None
     if node is None:
         raise InputError(
-            f"key cannot be made: the source of {argument} cannot be read; pass key= to say what contexts mean"
+            f"key cannot be made: the source of {argument} cannot be read; pass key= to name their meaning"
         )
     return f"{function.__qualname__}: {ast.unparse(node)}"
 
@@ -274,7 +278,7 @@ def _node(function: Callable, code: CodeType) -> ast.AST | None:
     if function.__name__ != "<lambda>":
         return ast.parse(textwrap.dedent(inspect.getsource(function)))
     lines, _ = inspect.findsource(function)
-    # Several lambdas may stand on one line; the positions of the instructions tell which body this is.
+    # A line may hold several lambdas; the positions of the instructions identify the body.
     spans = set(code.co_positions())
     for node in ast.walk(ast.parse("".join(lines))):
         if isinstance(node, ast.Lambda):

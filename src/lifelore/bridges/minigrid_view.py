@@ -1,7 +1,7 @@
-"""MiniGrid for learners and priors: the view as an array, the ways open to the robot, a layout's best moves.
+"""MiniGrid for learners and priors: the view as an array, the open directions, and the best moves of a layout.
 
-Read from the environments' own arrays; needs MiniGrid (extra ``envs``) only to make one. Layouts of walls, lava
-and goals are understood; doors, keys and boxes count as blocked.
+The functions read the environments' own arrays; only making an environment needs MiniGrid (extra ``envs``).
+Layouts may have walls, lava and goals; doors, keys and boxes count as blocked.
 """
 
 from collections.abc import Mapping
@@ -24,18 +24,18 @@ _KIND = np.full(256, BLOCKED)
 _KIND[[0, 1, 3, 8]] = UNSEEN, FREE, FREE, GOAL  # MiniGrid's numbers for unseen, empty, floor and goal
 _ONE_HOT = np.eye(4, dtype=np.float32)
 _BESIDE = np.ravel_multi_index(([2, 3, 4], [6, 5, 6]), (SIDE, SIDE))
-"""Left of, before and right of the robot, which stands at (3, 6) of its view and looks to (3, 5)."""
-_WORTH = np.array([1, 2, 4])
-_WAYS = np.zeros(SIDE * SIDE * 4 + 4, np.float32)
-_WAYS[4 * _BESIDE + FREE] = _WAYS[4 * _BESIDE + GOAL] = _WORTH
+"""Cells to the left, in front and to the right of the robot, which stands at (3, 6) of its view facing (3, 5)."""
+_BITS = np.array([1, 2, 4])
+_WEIGHTS = np.zeros(SIDE * SIDE * 4 + 4, np.float32)
+_WEIGHTS[4 * _BESIDE + FREE] = _WEIGHTS[4 * _BESIDE + GOAL] = _BITS
 _DIRECTIONS = np.array([(1, 0), (0, 1), (-1, 0), (0, -1)])
 
 
 class SymbolicView(gymnasium.ObservationWrapper):
-    """MiniGrid for one who only walks: the view as a flat array, and the three moves as actions.
+    """A MiniGrid environment with the view as a flat array, and only the three moves as actions.
 
     Observations are (200,) float32 of zeros and ones: for each of 7 × 7 cells unseen, free, blocked or goal, then
-    the compass, one of four.
+    the robot's direction, one of four.
     """
 
     def __init__(self, env: gymnasium.Env) -> None:
@@ -44,36 +44,36 @@ class SymbolicView(gymnasium.ObservationWrapper):
         self.action_space = Discrete(N_MOVES)
 
     def observation(self, observation: Mapping[str, Any]) -> NDArray[np.float32]:
-        """What MiniGrid tells, as an array."""
+        """MiniGrid's observation as an array."""
         cells = _ONE_HOT[_KIND[observation["image"][..., 0]]]
         return np.concatenate((cells.ravel(), _ONE_HOT[observation["direction"]]))
 
 
-def open_ways(observations: NDArray[np.float32]) -> NDArray[np.int64]:
-    """Which of left, front and right are free or the goal, (n,) codes 0 to 7 of `SymbolicView`'s (n, 200)."""
-    return observations.dot(_WAYS).astype(np.int64)
+def open_directions(observations: NDArray[np.float32]) -> NDArray[np.int64]:
+    """Codes 0 to 7 of the directions that are free or the goal (left 1, front 2, right 4), (n,) from (n, 200)."""
+    return observations.dot(_WEIGHTS).astype(np.int64)
 
 
-class Layout(NamedTuple):
-    """What is best in each pose (cell and direction) from which the goal can be reached.
+class SolvedLayout(NamedTuple):
+    """Best moves of each pose (cell and direction) from which the goal can be reached.
 
-    `ways` (n,) int64 as `open_ways`; `best` (n, 3) bool, every tied-best move; `steps` (n,) to the goal; `passed`
-    (n,) bool, whether a shortest way from where the robot stands leads through the pose.
+    `open_directions` (n,) int64 from the function of this name; `best` (n, 3) bool, every tied-best move; `steps`
+    (n,) to the goal; `passed` (n,) bool, whether a shortest path from the robot's pose leads through the pose.
     """
 
-    ways: NDArray[np.int64]
+    open_directions: NDArray[np.int64]
     best: NDArray[np.bool_]
     steps: NDArray[np.int64]
     passed: NDArray[np.bool_]
 
 
-def solved_layout(env: gymnasium.Env) -> Layout:
-    """The exact solution of the layout an environment was last reset to; the goal's own poses have no part.
+def solved_layout(env: gymnasium.Env) -> SolvedLayout:
+    """The exact solution of the layout after the environment's last reset, without the poses in the goal.
 
     Raises
     ------
     InputError
-        The environment is none of MiniGrid's, or its layout has no goal.
+        The environment is not from MiniGrid, or its layout has no goal.
     """
     grid = getattr(env.unwrapped, "grid", None)
     if grid is None or not hasattr(grid, "encode"):
@@ -86,20 +86,20 @@ def solved_layout(env: gymnasium.Env) -> Layout:
     after = _distances_after_moves(passable, kind == GOAL)
     steps = after.min(axis=-1) + 1
     counted = (passable & (kind != GOAL))[..., None] & np.isfinite(steps)
-    ways = np.stack([before[..., [(d - 1) % 4, d, (d + 1) % 4]] @ _WORTH for d in range(4)], axis=-1)
+    directions = np.stack([before[..., [(d - 1) % 4, d, (d + 1) % 4]] @ _BITS for d in range(4)], axis=-1)
     best = (after + 1 == steps[..., None]) & counted[..., None]
     here = (*env.unwrapped.agent_pos, env.unwrapped.agent_dir)  # pyright: ignore[reportAttributeAccessIssue]
     passed = _passed(best, here)
-    return Layout(ways[counted], best[counted], steps[counted].astype(np.int64), passed[counted])
+    return SolvedLayout(directions[counted], best[counted], steps[counted].astype(np.int64), passed[counted])
 
 
 def _neighbour(cells: NDArray[Any], direction: int) -> NDArray[Any]:
-    """What lies one cell further in a direction; the outer wall keeps the far side from being looked at."""
+    """Values of the next cell in a direction; the outer wall hides the values from the opposite side."""
     return np.roll(cells, tuple(-_DIRECTIONS[direction]), axis=(0, 1))
 
 
 def _distances_after_moves(passable: NDArray[np.bool_], goal: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Steps left after turning left, turning right and going forward in each pose, (width, height, 4, 3)."""
+    """Steps to the goal after turning left, turning right and moving forward, (width, height, 4, 3)."""
     steps = np.where(goal, 0.0, np.inf)[..., None].repeat(4, axis=-1)
     while True:
         forward = np.stack(
@@ -114,7 +114,7 @@ def _distances_after_moves(passable: NDArray[np.bool_], goal: NDArray[np.bool_])
 
 
 def _passed(best: NDArray[np.bool_], here: tuple[int, int, int]) -> NDArray[np.bool_]:
-    """Poses that best moves lead through, from a pose on."""
+    """Poses on the paths of best moves from a pose."""
     passed, open_poses = np.zeros(best.shape[:3], bool), [here]
     while open_poses:
         x, y, d = pose = open_poses.pop()

@@ -1,4 +1,4 @@
-"""Observations of other people's systems, alone and in batches, and what a prior must agree with."""
+"""Batches of observations of other libraries, and the check that a prior fits their actions."""
 
 from collections.abc import Callable
 from typing import Any
@@ -10,7 +10,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 Contexts = Callable[[Any], NDArray[np.int64]]
-"""From a batch of observations, an array (n, …) or a dict of such, to the (n,) codes a prior counts under."""
+"""Maps a batch of observations, an array (n, …) or a dict of arrays, to the (n,) context codes of a prior."""
 
 
 def as_batch(observation: Any) -> Any:
@@ -21,12 +21,12 @@ def as_batch(observation: Any) -> Any:
 
 
 def batch_size(observations: Any) -> int:
-    """How many observations a batch holds."""
+    """Number of observations in a batch."""
     return len(next(iter(observations.values())) if isinstance(observations, dict) else observations)
 
 
 def check_actions(prior: ActionPrior, space: Any) -> None:
-    """InputError unless the prior is for a space's actions."""
+    """Raise InputError unless the prior has the actions of a space."""
     if getattr(space, "n", None) != prior.n_actions:
         raise InputError(f"prior must be for the environment's actions {space}, got one for {prior.n_actions}")
     if getattr(space, "start", 0) != 0:

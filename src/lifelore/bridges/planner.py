@@ -1,6 +1,7 @@
-"""A real planner for the scenes perceived: PDDL in, a plan out, through `unified-planning` (extra ``planning``).
+"""Solves planning problems in PDDL, such as those of perceived scenes, with `unified-planning` (extra
+``planning``).
 
-The engine is Fast Downward, a program of its own that is run as such (GPL; nothing of it is linked in).
+The engine is Fast Downward, which runs as a separate program (GPL; Lifelore does not link to it).
 """
 
 import warnings
@@ -14,7 +15,7 @@ ENGINE = "fast-downward"
 
 @dataclass(frozen=True)
 class Step:
-    """One action of a plan and the objects it is done to.
+    """One action of a plan and its arguments.
 
     Examples
     --------
@@ -30,12 +31,13 @@ class Step:
 
 
 def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ...] | None:
-    """A plan for a problem, both given as PDDL text; None where it is proven that there is none.
+    """A plan for a problem in PDDL; None if the engine proves that there is no plan.
 
     Parameters
     ----------
     domain, problem : str
-        Such as `perception.planning_problem.DOMAIN`, and what `planning_problem` makes.
+        PDDL texts, such as `lifelore.perception.reasoning.planning_problem.DOMAIN` and the result of
+        `planning_problem`.
     timeout : float
         Seconds, > 0.
 
@@ -44,9 +46,9 @@ def solve(domain: str, problem: str, *, timeout: float = 60.0) -> tuple[Step, ..
     MissingExtraError
         unified-planning or the engine is not installed.
     InputError
-        The texts are not PDDL that can be read.
+        The texts are not valid PDDL.
     LifeloreError
-        The engine gave up: out of time or memory.
+        The engine ran out of time or memory.
     """
     if not timeout > 0:
         raise InputError(f"timeout must be above 0 seconds, got {timeout}")
@@ -73,10 +75,10 @@ def _read(domain: str, problem: str) -> tuple[Any, Any]:
         raise MissingExtraError(
             f"planning needs the extra planning: pip install 'lifelore[planning]' ({error})"
         ) from None
-    shortcuts.get_environment().credits_stream = None  # the library otherwise prints who made the engine
+    shortcuts.get_environment().credits_stream = None  # the library otherwise prints the engine's authors
     try:
         with warnings.catch_warnings():
-            # Its reader calls its own parser by names that the parser has since renamed.
+            # The library's reader uses old names of its parser.
             warnings.simplefilter("ignore", DeprecationWarning)
             return shortcuts, PDDLReader().parse_problem_string(domain, problem)
     except Exception as error:  # the reader raises its parsers' errors of many kinds

@@ -1,4 +1,4 @@
-"""Masks from a prior for agents that ask an environment which actions they may choose."""
+"""Action masks from a prior, for learners that ask the environment for a mask of allowed actions."""
 
 from typing import Any
 
@@ -13,21 +13,21 @@ from lifelore.core.streams import stream
 
 
 class PriorMask(gymnasium.Wrapper):
-    """Masks for sb3-contrib's ``MaskablePPO``: in each context the actions that the prior's `mask` leaves.
+    """Masks for sb3-contrib's ``MaskablePPO``: in each context the actions that the prior's `mask` allows.
 
     Parameters
     ----------
     env : gymnasium.Env
         With ``Discrete`` actions.
     prior : ActionPrior
-        Counts added while learning are heeded from the next episode on.
+        Counts added while learning take effect in the next episode.
     contexts : callable
-        Of batches of this environment's observations.
+        Maps batches of this environment's observations to context codes.
     threshold : float
-        An action is left where its share of the counts exceeds it; see `ActionPrior.mask`.
+        An action is allowed if its share of the counts exceeds the threshold; see `ActionPrior.mask`.
     escape : float
-        Probability in [0, 1] that a step is not masked at all: a mask can exclude the best action
-        (`ActionPrior.exclusion_rate` tells how often), and then this alone finds it. 0 for none.
+        Probability in [0, 1] that a step has no mask. A mask can exclude the best action
+        (`ActionPrior.exclusion_rate` measures how often); only steps without a mask can then find it.
 
     Raises
     ------
@@ -50,13 +50,13 @@ class PriorMask(gymnasium.Wrapper):
         self.prior, self.contexts, self.threshold, self.escape = prior, contexts, threshold, escape
         self._escapes = np.random.default_rng()
         self._all = self._mask = np.ones(prior.n_actions, bool)
-        self._kept: dict[int, NDArray[np.bool_]] = {}
+        self._cached: dict[int, NDArray[np.bool_]] = {}
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, dict[str, Any]]:
-        """As the environment's; a seed also fixes which steps escape."""
-        self._kept.clear()
+        """Reset the environment; the seed also selects the steps without a mask."""
+        self._cached.clear()
         if seed is not None:
             self._escapes = stream(seed, "sb3", "escape")
         observation, info = self.env.reset(seed=seed, options=options)
@@ -64,13 +64,13 @@ class PriorMask(gymnasium.Wrapper):
         return observation, info
 
     def step(self, action: Any) -> tuple[Any, Any, bool, bool, dict[str, Any]]:
-        """As the environment's."""
+        """Step the environment, then compute the mask of the new observation."""
         observation, reward, terminated, truncated, info = self.env.step(action)
         self._look(observation)
         return observation, reward, terminated, truncated, info
 
     def action_masks(self) -> NDArray[np.bool_]:
-        """Actions that may be chosen now, (n_actions,) bool; the same until the next step."""
+        """Actions allowed now, (n_actions,) bool; the same until the next step."""
         return self._mask
 
     def _look(self, observation: Any) -> None:
@@ -78,6 +78,6 @@ class PriorMask(gymnasium.Wrapper):
             self._mask = self._all
             return
         code = int(self.contexts(as_batch(observation))[0])
-        if code not in self._kept:
-            self._kept[code] = self.prior.mask([code], self.threshold)[0]
-        self._mask = self._kept[code]
+        if code not in self._cached:
+            self._cached[code] = self.prior.mask([code], self.threshold)[0]
+        self._mask = self._cached[code]

@@ -1,4 +1,4 @@
-"""Clouds out of a rosbag (ROS 1, ROS 2 in SQLite or MCAP) without ROS; the one file that knows rosbags."""
+"""Reads point clouds from a rosbag (ROS 1, ROS 2 in SQLite or MCAP) without ROS; needs the extra ``ros``."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,9 +26,9 @@ def read_bag_cloud(
     path : str or Path
         A ROS 1 ``.bag``, a ROS 2 bag's folder, or an ``.mcap`` file.
     topic : str, optional
-        Of the clouds; may be left out when only one topic carries any.
+        Topic of the clouds; not needed if only one topic has clouds.
     index : int
-        Which message of the topic, from 0 in order of time.
+        Number of the topic's message, from 0 in order of time.
     units, labels : str
         As in `read_cloud`.
 
@@ -37,7 +37,7 @@ def read_bag_cloud(
     MissingExtraError
         rosbags is not installed.
     NotFoundError
-        The topic does not exist, or holds fewer clouds than `index` asks for.
+        The topic does not exist, or has no cloud number `index`.
     InputError
         The bag is missing or damaged, or the cloud breaks a rule.
     """
@@ -61,11 +61,11 @@ def bag_clouds(
         As `read_bag_cloud`.
     """
     path = Path(path)
-    with _told(path), _opened(path) as reader:
-        carrying = [connection for connection in reader.connections if connection.msgtype == _TYPE]
-        topics = sorted({connection.topic for connection in carrying})
+    with _input_errors(path), _opened(path) as reader:
+        with_clouds = [connection for connection in reader.connections if connection.msgtype == _TYPE]
+        topics = sorted({connection.topic for connection in with_clouds})
         name = _topic(path, topics, topic)
-        chosen = [connection for connection in carrying if connection.topic == name]
+        chosen = [connection for connection in with_clouds if connection.topic == name]
         for connection, nanoseconds, content in islice(reader.messages(chosen), start, None):
             message = reader.deserialize(content, connection.msgtype)
             yield nanoseconds * 1e-9, cloud_from_message(message, units=units, labels=labels)
@@ -93,14 +93,15 @@ def _opened(path: Path) -> "AnyReader":
 
 
 @contextmanager
-def _told(path: Path) -> Iterator[None]:
+def _input_errors(path: Path) -> Iterator[None]:
+    """Turn every error of a damaged bag into an InputError that names the file."""
     try:
         yield
     except InputError as error:
         raise InputError(str(error) if str(error).startswith(str(path)) else f"{path}: {error}") from None
     except LifeloreError:
         raise
-    except Exception as error:  # a damaged bag can fail anywhere in its decoder; it is still one line
+    except Exception as error:  # a damaged bag can fail anywhere in its decoder
         reason = " ".join(str(error).split())[:200]
         raise InputError(
             f"{path}: is damaged or no rosbag ({type(error).__name__}: {reason}); record it again"

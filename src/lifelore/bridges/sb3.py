@@ -1,7 +1,7 @@
-"""A learnt prior in Stable-Baselines3 (extra ``deep``): how DQN explores, what MaskablePPO may choose.
+"""Action priors in Stable-Baselines3 (extra ``deep``): exploration of DQN, action masks of MaskablePPO.
 
-`contexts` is everywhere a function from a batch of observations, (n, …) or a dict of such, to (n,) whole numbers:
-the codes that the prior counted under. Thesis: §3.2.2, Alg. 2 and 4, for a learner whose Q-function is a network.
+`contexts` is a function that maps a batch of observations, an array (n, …) or a dict of arrays, to (n,) integers:
+the context codes of the prior. Thesis: §3.2.2, Alg. 2 and 4, for a learner whose Q-function is a network.
 """
 
 from typing import Any
@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.bridges.cached_prior_sampler import KeptDraws
+from lifelore.bridges.cached_prior_sampler import CachedPriorSampler
 from lifelore.bridges.counted_episodes import count_episodes as count_episodes
 from lifelore.bridges.observations import Contexts, as_batch, batch_size, check_actions
 from lifelore.bridges.prior_mask import PriorMask as PriorMask
@@ -26,19 +26,19 @@ except ImportError as error:
 
 
 class PriorDQN(DQN):
-    """DQN that explores by a prior: in the warm-up always, then each environment for itself with probability ε.
+    """DQN that explores by a prior: always in the warm-up, then in each environment separately with probability ε.
 
     Parameters
     ----------
     policy, env, *args, **settings
         As Stable-Baselines3's ``DQN``.
     prior : ActionPrior
-        Counts added while learning are heeded from the next episode on. Saved with the model.
+        Counts added while learning take effect in the next episode. The prior is saved with the model.
     contexts : callable
-        Sees observations as the policy does, but before ``VecNormalize``.
+        Gets the observations of the policy before ``VecNormalize``.
     form : str
         See `lifelore.action.priors.action_prior.FORMS`.
-    how : dict, optional
+    form_settings : dict, optional
         ``beta`` or ``escape`` of that form.
 
     Raises
@@ -48,8 +48,9 @@ class PriorDQN(DQN):
 
     Notes
     -----
-    Stable-Baselines3 decides once for all environments of a step whether to explore; here each is decided alone,
-    so that a step of many environments is as varied as many steps of one. With one environment it is the same law.
+    Stable-Baselines3 decides once for all environments of a step whether to explore. Here each environment decides
+    separately, so that a step of many environments is as varied as many steps of one environment. With one
+    environment the distribution is the same.
     """
 
     def __init__(
@@ -60,18 +61,18 @@ class PriorDQN(DQN):
         prior: ActionPrior | None = None,
         contexts: Contexts | None = None,
         form: str = "proportion",
-        how: dict[str, float] | None = None,
+        form_settings: dict[str, float] | None = None,
         **settings: Any,
     ) -> None:
-        # Before the base class's own: it may set up the model at once, and `load` gives these later.
-        self.prior, self.contexts, self.form, self.how = prior, contexts, form, dict(how or {})
+        # Before the base class, which may set up the model at once; `load` sets these later.
+        self.prior, self.contexts, self.form, self.form_settings = prior, contexts, form, dict(form_settings or {})
         super().__init__(policy, env, *args, **settings)
 
     def _setup_model(self) -> None:
         if self.prior is None or self.contexts is None:
             raise InputError("prior and contexts must be given, got None; pass PriorDQN(..., prior=, contexts=)")
         check_actions(self.prior, self.action_space)
-        self._draws, self._drawn_in = KeptDraws(self.prior, self.form, self.how), -1
+        self._draws, self._drawn_in = CachedPriorSampler(self.prior, self.form, self.form_settings), -1
         super()._setup_model()
 
     def set_random_seed(self, seed: int | None = None) -> None:
@@ -97,7 +98,7 @@ class PriorDQN(DQN):
     def predict(
         self, observation: Any, state: Any = None, episode_start: Any = None, deterministic: bool = False
     ) -> tuple[Any, Any]:
-        """Actions, each greedy or, with probability ε unless `deterministic`, by the prior; and the state."""
+        """Actions, and the state. Unless `deterministic`, each action comes from the prior with probability ε."""
         if deterministic or self.exploration_rate <= 0:
             return self.policy.predict(observation, state, episode_start, deterministic)
         self._draws.forget()
@@ -109,14 +110,14 @@ class PriorDQN(DQN):
         n = batch_size(observations)
         exploring = [place for place in range(n) if self._explorer.random() < rate]
         if len(exploring) == n:
-            return self._explored(observations, exploring)
+            return self._draws_of(observations, exploring)
         actions, _ = self.policy.predict(observations)
         if exploring:
             actions = np.array(actions)
-            actions[exploring] = self._explored(observations, exploring)
+            actions[exploring] = self._draws_of(observations, exploring)
         return actions
 
-    def _explored(self, observations: Any, places: list[int]) -> NDArray[np.int64]:
+    def _draws_of(self, observations: Any, places: list[int]) -> NDArray[np.int64]:
         if self._vec_normalize_env is not None:
             observations = self._vec_normalize_env.unnormalize_obs(observations)
         assert self.contexts is not None

@@ -1,8 +1,11 @@
-"""What was learnt, kept between runs and shared in a fleet; the only room that speaks SQL.
+"""Memory: stores records of many robots between runs and merges them; the only package that uses SQL.
 
-A memory is a set of *contributions* (what one robot learnt from one task) and a set of *tombstones* (what
-was forgotten). Merging two memories unites both sets, so it is exact in any order and grouping. Everything
-else, the cells and counts that `Memory.recall` reads, is a cache that `Memory.rebuild` can recompute.
+A memory is a set of *contributions* (the records of one robot about one task) and a set of *tombstones*
+(identities of forgotten contributions). Merging two memories unites both sets, so the result does not depend on
+order and grouping. The merged cells that `Memory.recall` reads are a cache, which `Memory.rebuild` computes again.
+
+Read in this order: `memory`, `contribution`, `folding`, `ledger`, `cache`, `merging`, `export`; then `store`,
+`sqlite_file`, `schema`, `refusal` for the database.
 """
 
 from lifelore.memory.memory import Memory, open_memory

@@ -1,4 +1,4 @@
-"""Does the memory hold what was put in, and does the cache say what the contributions say?"""
+"""Checks that the contributions are undamaged and that the cache agrees with them."""
 
 from collections.abc import Iterator
 
@@ -11,25 +11,25 @@ from lifelore.memory.folding import Folded, LoreKey, fold
 
 
 def problems(conn: Connection) -> list[str]:
-    """One line for each thing that is wrong; empty when all is well."""
+    """One line for each problem; empty for a sound memory."""
     found = list(_file_problems(conn))
     oldest_first = ledger.entries(conn)
-    graves = ledger.tombstones(conn)
+    tombstones = ledger.tombstones(conn)
     found += [
-        f"contribution {one.identity} is there although forgotten"
+        f"contribution {one.identity} is stored although it was forgotten"
         for one in oldest_first
-        if one.identity in graves
+        if one.identity in tombstones
     ]
     numbers = [entry.number for entry in oldest_first]
-    # A damaged contribution makes every comparison below it meaningless, so those come first and alone.
+    # With a damaged contribution, a comparison of the cache is meaningless, so damage is reported alone.
     return found + (list(_damaged(conn, numbers)) or list(_cache_problems(conn, numbers)))
 
 
 def _file_problems(conn: Connection) -> Iterator[str]:
     if conn.dialect.name == "sqlite":
-        for (said,) in conn.exec_driver_sql("PRAGMA integrity_check(10)"):
-            if said != "ok":
-                yield "the file: " + " ".join(said.split())
+        for (message,) in conn.exec_driver_sql("PRAGMA integrity_check(10)"):
+            if message != "ok":
+                yield "the file: " + " ".join(message.split())
 
 
 def _damaged(conn: Connection, numbers: list[int]) -> Iterator[str]:
@@ -59,7 +59,7 @@ def _orphans(conn: Connection) -> Iterator[str]:
     for table in ("lifelore_cells", "lifelore_mentions"):
         query = text(f"SELECT COUNT(*) FROM {table} WHERE lore NOT IN (SELECT number FROM lifelore_lore)")
         if count := conn.execute(query).scalar_one():
-            yield f"{count} rows of {table} belong to nothing; rebuild the memory"
+            yield f"{count} rows of {table} belong to no key; rebuild the memory"
 
 
 def _agrees(conn: Connection, name: LoreKey, lore: int, part: Folded) -> bool:

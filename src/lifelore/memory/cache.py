@@ -1,4 +1,4 @@
-"""The cache of folded lore: what `recall` reads, kept up to date by additive upserts."""
+"""The cache of merged records that `Memory.recall` reads, updated by additive upserts."""
 
 import json
 from collections.abc import Iterable
@@ -44,7 +44,7 @@ _FIND = text(
 
 
 def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
-    """Merge folded contributions, which must stand in the ledger already, into the cache."""
+    """Merge folded contributions into the cache; the ledger must hold them already."""
     for name, part in sorted(folded.items()):
         named = _named(name)
         about = json.dumps(part.about, sort_keys=True)
@@ -56,10 +56,10 @@ def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
 
 
 def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
-    """Upsert a key's cells. Only *newest* needs to know where a value came from; the others say 0.
+    """Upsert the cells of a key. Only *newest* needs the origin of a value; the other merges store 0.
 
-    The rows go to the driver as they are: a building has a million cells, and SQLAlchemy would take longer to
-    prepare their parameters than the database takes to store them.
+    The rows go directly to the driver: a building has a million cells, and SQLAlchemy needs more time to prepare
+    their parameters than the database needs to store them.
     """
     origins = part.origins if part.merge == "newest" else np.zeros_like(part.origins)
     upsert: Any = _UPSERT[part.merge].compile(dialect=conn.dialect)
@@ -94,7 +94,7 @@ def names(conn: Connection, kind: str) -> list[tuple[str, int, dict]]:
 
 
 def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
-    """The keys that any of these contributions has."""
+    """The keys of these contributions."""
     query = text(
         "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_mentions"
         " ON lore = lifelore_lore.number WHERE contribution = :contribution"
@@ -104,7 +104,7 @@ def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
 
 
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
-    """Forget the cache, of the keys in `only` or of all, and fold the contributions anew."""
+    """Delete the cache, of the keys in `only` or of all keys, and compute it again from the contributions."""
     if only is None:
         for table in ("cells", "mentions", "lore"):
             conn.execute(text(f"DELETE FROM lifelore_{table}"))
@@ -116,7 +116,7 @@ def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
 
 
 def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
-    """Delete the cache of some keys; the row numbers of the contributions that had them."""
+    """Delete the cache of some keys; return the row numbers of their contributions."""
     numbers: set[int] = set()
     for name in sorted(only):
         lore = {"lore": conn.execute(_FIND, _named(name)).one().number}

@@ -1,4 +1,4 @@
-"""A contribution: what one robot learnt from one task, the unit that memory stores, merges and forgets."""
+"""`Contribution`: the records of one robot about one task; memory stores, merges and forgets contributions."""
 
 import hashlib
 import json
@@ -17,20 +17,20 @@ Order = tuple[int, str, str, int]
 
 @dataclass(frozen=True)
 class Contribution:
-    """One robot's lore from one task, packed.
+    """The packed records of one robot about one task.
 
     Parameters
     ----------
     robot, process, seq : str, str, int
-        The identity: it is stored at most once in any memory.
+        The identity: each memory stores it at most once.
     stamp : int
-        Hybrid logical clock, nanoseconds; set once and carried along by merges.
+        Hybrid logical clock in nanoseconds; set once, and copied by merges.
     task : str
-        JSON text about the task, for people.
+        JSON text that describes the task for readers.
     blob : bytes
         The compressed records.
     digest : str
-        SHA-256 over everything above (over the records before compression).
+        SHA-256 of all fields above, with the records before compression.
     """
 
     robot: str
@@ -48,16 +48,16 @@ class Contribution:
 
     @property
     def order(self) -> Order:
-        """What decides which of two contributions is the newer one: a total order."""
+        """The key of a total order; the larger of two contributions is the newer."""
         return self.stamp, self.robot, self.process, self.seq
 
     def stamped(self, stamp: int) -> "Contribution":
-        """The same contribution, made at `stamp`."""
+        """The same contribution with another stamp."""
         moved = replace(self, stamp=stamp)
         return replace(moved, digest=_digest(moved, decompress(self.blob)))
 
     def records(self) -> list[Record]:
-        """The records; StoreError when a byte of the contribution is not what was stored."""
+        """The records; StoreError if the contribution has changed since it was stored."""
         payload = decompress(self.blob)
         if _digest(self, payload) != self.digest:
             raise StoreError(f"contribution {self.identity} does not match its SHA-256; the memory is damaged")
@@ -67,7 +67,7 @@ class Contribution:
 def new_contribution(
     robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]
 ) -> Contribution:
-    """A contribution not yet stamped (stamp 0), its rules checked."""
+    """A checked contribution without a stamp (stamp 0)."""
     unsigned = Contribution(
         robot=check_name("robot", robot),
         process=check_name("process", process),

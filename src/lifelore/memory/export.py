@@ -1,20 +1,20 @@
-"""A memory as one portable file: itself a valid memory, written aside and put in place whole."""
+"""Exports a memory to a portable file, itself a memory; the file appears complete or not at all."""
 
 import os
 from contextlib import suppress
 from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.memory.merging import Union
+from lifelore.memory.merging import MemoryUnion
 from lifelore.memory.refusal import one_line_refusals
-from lifelore.memory.sqlite_file import lived_in, read_header, refuse_unless_ours
+from lifelore.memory.sqlite_file import is_in_use, read_header, refuse_unless_ours
 from lifelore.memory.store import Store, open_file
 
 
 def export(store: Store, path: Path) -> int:
     """Write all contributions and tombstones to `path`; the number of contributions.
 
-    A file already there is replaced only if it is an earlier export, never a memory that was lived in.
+    An existing file is replaced only if it is an earlier export, never if it is a memory in use.
     """
     aside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     _refuse_to_overwrite(path)
@@ -24,7 +24,7 @@ def export(store: Store, path: Path) -> int:
             os.replace(aside, path)
     finally:
         for ending in ("", "-journal"):
-            # Below a file there is nothing to tidy, and the refusal under way says so.
+            # If `path` is below a file, there is nothing to delete, and the error in progress reports it.
             with suppress(NotADirectoryError):
                 aside.with_name(aside.name + ending).unlink(missing_ok=True)
     return count
@@ -33,9 +33,9 @@ def export(store: Store, path: Path) -> int:
 def _write(store: Store, path: Path) -> int:
     copy = open_file(path, durable=True, journal="DELETE")
     try:
-        with store.reading() as there, copy.writing() as here:
-            union = Union(here)
-            added = union.take(there, store.location)["added"]
+        with store.reading() as source, copy.writing() as target:
+            union = MemoryUnion(target)
+            added = union.take(source, store.location)["added"]
             union.finish()
             return added
     except StoreError as error:
@@ -46,5 +46,5 @@ def _write(store: Store, path: Path) -> int:
 
 def _refuse_to_overwrite(path: Path) -> None:
     refuse_unless_ours(path)
-    if path.exists() and path.stat().st_size and lived_in(read_header(path)):
+    if path.exists() and path.stat().st_size and is_in_use(read_header(path)):
         raise InputError(f"path {path} is a memory in use, which an export must not replace; name another file")

@@ -1,7 +1,7 @@
-"""Many contributions' records folded into one array of cells per key; the arithmetic of merging.
+"""Folds the records of many contributions into one array of cells per key.
 
-Folding is associative, and given in order (oldest first) it gives the same cells for any grouping:
-*add* sums, *union* takes the largest value, *newest* takes the last one.
+*add* sums the values of a cell, *union* takes the largest value, *newest* the last. Folding is associative: given
+oldest first, contributions give the same cells in any grouping.
 """
 
 from collections.abc import Iterable
@@ -17,7 +17,7 @@ from lifelore.memory.contribution import Contribution
 
 Ints = NDArray[np.int64]
 LoreKey = tuple[str, str, int]
-# Folding this many at a time keeps the repeated sorting linear and the unpacked arrays few.
+# Records folded at a time: more need more memory, fewer need more time for repeated sorting.
 _AT_A_TIME = 64
 
 
@@ -25,7 +25,7 @@ _AT_A_TIME = 64
 class Stored:
     """A contribution and the number of its row in one memory.
 
-    source : the memory that it is merged from, empty where it is not; refusals name it
+    source : the memory that it is merged from, for error messages; empty for a contribution of this memory
     """
 
     number: int
@@ -35,12 +35,12 @@ class Stored:
 
 @dataclass(frozen=True)
 class Folded:
-    """What some contributions together say about one key.
+    """The merged cells of one key over some contributions.
 
     Parameters
     ----------
     slots, values, origins : (n,) int64
-        Cells ascending by slot; `origins` is the row number of the contribution that gave the value last.
+        Cells ascending by slot; `origins` is the row number of the last contribution to the cell.
     about, origin : mapping, int
         The newest description and the row number of its contribution.
     mentions : list of int
@@ -64,7 +64,7 @@ def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[Lor
     stored : iterable of Stored
         Ascending in `Contribution.order`.
     only : set of (kind, key, version), optional
-        Fold these keys alone.
+        Fold only these keys.
 
     Raises
     ------
@@ -89,18 +89,18 @@ def _records(stored: Stored) -> list[Record]:
     try:
         return stored.contribution.records()
     except StoreError as error:
-        raise _named(stored, error) from error
+        raise _with_source(stored, error) from error
 
 
 def _require_alike(stored: Stored, name: LoreKey, merges: set[str]) -> None:
     try:
         require_one_merge(name, merges)
     except StoreError as error:
-        raise _named(stored, error) from error
+        raise _with_source(stored, error) from error
 
 
-def _named(stored: Stored, error: StoreError) -> StoreError:
-    """The refusal with the name of the memory that the contribution comes from."""
+def _with_source(stored: Stored, error: StoreError) -> StoreError:
+    """The error with the name of the memory that the contribution comes from."""
     return StoreError(f"memory {stored.source}: {error}") if stored.source else error
 
 
@@ -135,7 +135,7 @@ def _reduce(name: LoreKey, merge: Merge, values: Ints, starts: Ints, last: Ints)
 
 
 def _exact_sums(name: LoreKey, values: Ints, starts: Ints) -> Ints:
-    """Sums of runs through 32-bit halves, so that only a total beyond 64 bits fails, never a partial sum."""
+    """Sums of runs by 32-bit halves, so that only a total beyond 64 bits fails, never a partial sum."""
     low = np.add.reduceat(values & 0xFFFFFFFF, starts)
     high = np.add.reduceat(values >> 32, starts) + (low >> 32)
     if np.any(high != high.astype(np.int32)):
@@ -143,9 +143,9 @@ def _exact_sums(name: LoreKey, values: Ints, starts: Ints) -> Ints:
     return (high << 32) | (low & 0xFFFFFFFF)
 
 
-def too_large(what: str) -> str:
-    """The message for a sum beyond 64 bits."""
-    return f"a value of {what} would no longer fit 64 bits; nothing was changed, contribute smaller weights"
+def too_large(key: str) -> str:
+    """The error message for a sum beyond 64 bits."""
+    return f"a value of {key} would no longer fit 64 bits; nothing was changed, contribute smaller weights"
 
 
 def require_one_merge(name: LoreKey, merges: set[str]) -> None:

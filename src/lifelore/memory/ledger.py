@@ -1,4 +1,4 @@
-"""The memory proper: contributions, and tombstones of those forgotten."""
+"""SQL of contributions, and of the tombstones of forgotten ones."""
 
 import time
 from collections.abc import Iterable, Iterator, Sequence
@@ -29,7 +29,7 @@ _KNOWN = text(
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
 )
-_BURY = text(
+_ADD_TOMBSTONE = text(
     "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (:robot, :process, :seq) ON CONFLICT DO NOTHING"
 )
 _LOAD = text(
@@ -39,8 +39,8 @@ _LOAD = text(
 
 
 @dataclass(frozen=True)
-class Entry:
-    """What a merge needs to know of a contribution before it reads the blob."""
+class ContributionRow:
+    """Row number, identity, stamp and digest of a contribution, without its blob."""
 
     number: int
     identity: Identity
@@ -61,32 +61,32 @@ def in_batches(items: Iterable[Item], size: int = BATCH) -> Iterator[list[Item]]
 
 
 def is_known(conn: Connection, identity: Identity) -> bool:
-    """True when a contribution is there already, or was forgotten."""
+    """Whether the memory stores this contribution, or has forgotten it."""
     return conn.execute(_KNOWN, _named(identity)).first() is not None
 
 
 def next_stamp(conn: Connection) -> int:
-    """A stamp later than the clock and than every stamp here."""
+    """A stamp that is later than the clock and than every stamp in this memory."""
     largest = conn.execute(text("SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions")).scalar_one()
     if largest >= LARGEST:
-        raise StoreError("a contribution here has the last possible stamp; forget the robot whose clock is wrong")
+        raise StoreError("a contribution has the largest possible stamp; forget the robot whose clock is wrong")
     return max(time.time_ns(), int(largest) + 1)
 
 
 def insert(conn: Connection, contribution: Contribution) -> Stored:
-    """Write one contribution down."""
+    """Insert one contribution."""
     return Stored(int(conn.execute(_INSERT_ONE, vars(contribution)).scalar_one()), contribution)
 
 
-def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[Entry]:
-    """Write contributions down, a batch in memory at a time."""
+def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:
+    """Insert contributions in batches, with one batch in main memory at a time."""
     last = conn.execute(_LAST).scalar_one()
     for batch in in_batches(contributions):
         conn.execute(_INSERT_MANY, [vars(contribution) for contribution in batch])
     return _entries(conn.execute(text(_SINCE), {"last": last}))
 
 
-def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
+def entries(conn: Connection, robot: str | None = None) -> list[ContributionRow]:
     """All contributions, or one robot's, without their blobs, oldest first."""
     query = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions"
     if robot is None:
@@ -96,12 +96,12 @@ def entries(conn: Connection, robot: str | None = None) -> list[Entry]:
     return sorted(_entries(rows), key=lambda entry: entry.order)
 
 
-def _entries(rows: Iterable[Row]) -> list[Entry]:
-    return [Entry(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
+def _entries(rows: Iterable[Row]) -> list[ContributionRow]:
+    return [ContributionRow(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
 
 
 def load(conn: Connection, numbers: Iterable[int]) -> Iterator[Stored]:
-    """The contributions of these row numbers, in this order, a batch in memory at a time."""
+    """The contributions of these row numbers, in this order, with one batch in main memory at a time."""
     for batch in in_batches(numbers):
         rows = {row[0]: Stored(row[0], Contribution(*row[1:])) for row in conn.execute(_LOAD, {"numbers": batch})}
         for number in batch:
@@ -122,10 +122,10 @@ def tombstones(conn: Connection) -> set[Identity]:
     }
 
 
-def bury(conn: Connection, identities: Iterable[Identity]) -> None:
-    """Leave a tombstone for each identity."""
+def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
+    """Add a tombstone for each identity."""
     for batch in in_batches(sorted(identities), 1000):
-        conn.execute(_BURY, [_named(identity) for identity in batch])
+        conn.execute(_ADD_TOMBSTONE, [_named(identity) for identity in batch])
 
 
 def remove(conn: Connection, numbers: Sequence[int]) -> None:

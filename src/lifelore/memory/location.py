@@ -1,4 +1,4 @@
-"""Where a memory lies: a file, or a PostgreSQL database named by a URL."""
+"""Parses the location of a memory: a file, or the URL of a PostgreSQL database."""
 
 from pathlib import Path
 
@@ -24,7 +24,7 @@ def locate(where: str | Path | None) -> Path | URL:
     Raises
     ------
     InputError
-        An empty `where`, or a URL of another sort.
+        `where` is empty, or a URL of another kind.
     """
     if where is None:
         return default_path()
@@ -38,7 +38,7 @@ def locate(where: str | Path | None) -> Path | URL:
 
 
 def describe(place: Path | URL) -> str:
-    """`place` as one may show it: without a password."""
+    """`place` as text without passwords."""
     if isinstance(place, Path):
         return str(place)
     hidden = {name: "***" for name in _SECRETS if name in place.query}
@@ -54,7 +54,7 @@ def _postgresql_url(where: str) -> URL:
     try:
         return make_url(where).set(drivername=DRIVER)
     except (ArgumentError, ValueError) as error:
-        # The text itself may hold a password, so it is not repeated.
+        # The text may contain a password, so the message does not repeat it.
         raise InputError(
             "memory: this postgresql:// URL cannot be read; write postgresql://user:password@host:5432/database"
         ) from error

@@ -1,4 +1,4 @@
-"""Memory: lore kept between runs, in a file or on a PostgreSQL server."""
+"""`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -18,11 +18,11 @@ from lifelore.memory.location import locate
 from lifelore.memory.store import Store, check_source, open_file, open_postgresql, open_source
 
 NAMED = 10
-"""Robots that a refusal names."""
+"""Maximum number of robots that an error message lists."""
 
 
 def open_memory(where: str | Path | None = None, *, durable: bool = False, read_only: bool = False) -> "Memory":
-    """Open a memory, creating it if there is none.
+    """Open a memory; create it if there is none.
 
     Parameters
     ----------
@@ -30,22 +30,22 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False, read_
         A file (its folders are created), or a ``postgresql://`` URL. Default: ``lifelore.db`` in the user's
         data directory.
     durable : bool
-        A contribution survives the death of the process at any moment, always. With False (SQLite's
-        ``synchronous=NORMAL``) a power loss may take the last few contributions, each as a whole, and never
-        damages the file; with True (``FULL``) it takes none, at some milliseconds a contribution.
-        A PostgreSQL server decides this by its own settings.
+        With False (SQLite's ``synchronous=NORMAL``) a power loss may lose the last few contributions, each
+        completely, and never damages the file. With True (``FULL``) it loses none, and each contribution takes
+        some milliseconds more. A killed process loses none in both cases. A PostgreSQL server decides this by
+        its own settings.
     read_only : bool
-        A memory that is there is looked into; none is created, migrated or written to.
+        Only read an existing memory; do not create, migrate or write to one.
 
     Raises
     ------
     StoreError
-        The file is damaged, another program's, of a newer Lifelore, or cannot be written; it stays as it is.
-        With `read_only` also where there is none, or one of an older Lifelore.
+        The file is damaged, belongs to another program or a newer Lifelore, or cannot be written; it is not
+        changed. With `read_only` also if there is no memory, or one of an older Lifelore.
     InputError
-        A URL that is not PostgreSQL's.
+        The URL is not one of PostgreSQL.
     MissingExtraError
-        A PostgreSQL URL without psycopg (extra ``postgres``).
+        A PostgreSQL URL needs psycopg (extra ``postgres``).
 
     Examples
     --------
@@ -65,9 +65,10 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False, read_
 
 
 class Memory:
-    """Contributions of robots, merged; made by `open_memory`, closed by `close` or a ``with`` block.
+    """Merged contributions of robots; opened by `open_memory`, closed by `close` or a ``with`` block.
 
-    Any number of processes may use one memory at once: each method is one transaction, writers take turns.
+    Several processes may use one memory at the same time. Each method is one transaction; one process writes at a
+    time.
     """
 
     def __init__(self, store: Store) -> None:
@@ -82,7 +83,7 @@ class Memory:
         self.close()
 
     def close(self) -> None:
-        """Let go of file or server; harmless when done twice."""
+        """Close the file or connection; a second call does nothing."""
         self._store.close()
 
     @property
@@ -93,30 +94,30 @@ class Memory:
     def contribute(
         self, robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]
     ) -> bool:
-        """Store what a robot learnt from one finished task, all of it or nothing.
+        """Store the records of a robot about one finished task, all or none.
 
         Parameters
         ----------
         robot, process : str
-            Who; and which run of it (unique to the run). Printable, 1 to 200 characters.
+            Names of the robot and of its run; unique to the run. Printable, 1 to 200 characters.
         records : sequence of Record
-            What was learnt; (kind, key, version) differ.
+            Their (kind, key, version) must differ.
         seq : int
-            Which task of the run, from 0.
+            Number of the task in the run, from 0.
         task : mapping of str to JSON values
-            About the task, for people.
+            Description of the task for readers.
 
         Returns
         -------
         bool
-            False, with nothing changed, when (robot, process, seq) is there already or was forgotten.
+            False if (robot, process, seq) is already stored or was forgotten; then nothing changes.
 
         Raises
         ------
         InputError
-            A record or name that breaks its rule.
+            A record or name breaks its rule.
         StoreError
-            The disk is full or read-only; a sum beyond 64 bits; a key merged differently before.
+            The disk is full or read-only, a sum exceeds 64 bits, or the key has another merge.
         """
         offered = new_contribution(robot, records, process=process, seq=seq, task=task)
         with self._store.writing() as conn:
@@ -126,17 +127,17 @@ class Memory:
         return True
 
     def recall(self, kind: str, key: str, version: int) -> Record | None:
-        """The merged record of all robots, slots ascending, ``about`` of the newest; None if there is none."""
+        """The merged record of all robots, slots ascending, with the newest `about`; None if there is none."""
         with self._store.reading() as conn:
             return cache.read(conn, (kind, key, version))
 
     def keys(self, kind: str) -> list[tuple[str, int, dict[str, Any]]]:
-        """(key, version, about) of all that is known of a kind, sorted."""
+        """(key, version, about) of all records of a kind, sorted."""
         with self._store.reading() as conn:
             return cache.names(conn, kind)
 
     def tasks(self, robot: str) -> int:
-        """How many finished tasks of a robot are remembered; 0 for an unknown robot."""
+        """Number of stored tasks of a robot; 0 for an unknown robot."""
         count = text("SELECT COUNT(*) FROM lifelore_contributions WHERE robot = :robot")
         with self._store.reading() as conn:
             return int(conn.execute(count, {"robot": robot}).scalar_one())
@@ -147,14 +148,14 @@ class Memory:
             return [entry["robot"] for entry in overview.robots(conn)]
 
     def show(self) -> dict[str, Any]:
-        """What is in here, as plain data: ``location``, ``schema``, ``robots``, ``lore``, ``forgotten``."""
+        """Content of the memory as JSON data: ``location``, ``schema``, ``robots``, ``lore``, ``forgotten``."""
         with self._store.reading() as conn:
             return overview.overview(conn, self.location)
 
     def export_to(self, path: str | Path) -> int:
-        """Write a portable file, itself a memory; the number of contributions in it.
+        """Write a portable file, itself a memory; return the number of its contributions.
 
-        An earlier export of that name is replaced; any other file there is refused.
+        An earlier export of this name is replaced; any other existing file is an error.
         """
         place = locate(path)
         if not isinstance(place, Path):
@@ -162,22 +163,22 @@ class Memory:
         return export(self._store, place)
 
     def merge_from(self, other: "Memory | str | Path") -> dict[str, int]:
-        """Bring in all contributions and tombstones of another memory or export, which stays as it is.
+        """Copy all contributions and tombstones of another memory or export, which is not changed.
 
         Returns
         -------
         dict
-            ``added``; ``already_there``; ``forgotten`` (kept out or removed here because of a tombstone).
+            ``added``; ``already_there``; ``forgotten`` (not added, or removed here, because of a tombstone).
 
         Raises
         ------
         StoreError
-            The other file does not exist, is damaged or newer, or merges a key differently; nothing changed.
+            The other file does not exist, is damaged or newer, or has another merge for a key; nothing changes.
         """
         return self.merge_many([other])[0]
 
     def merge_many(self, others: Sequence["Memory | str | Path"]) -> list[dict[str, int]]:
-        """Bring in several memories and exports in one transaction: the same as one by one, only sooner.
+        """Copy several memories and exports in one transaction: as `merge_from` for each, but faster.
 
         Returns
         -------
@@ -187,7 +188,7 @@ class Memory:
         Raises
         ------
         StoreError
-            As for `merge_from`; the message names the source, and nothing of any source was taken.
+            As for `merge_from`; the message names the source, and nothing of any source is copied.
         """
         if isinstance(others, str):
             raise InputError(f"others must be a list of memories, got the text {others!r}: use merge_from for one")
@@ -196,12 +197,12 @@ class Memory:
             if isinstance(place, Path):
                 check_source(place)
         with self._store.writing() as here:
-            union = merging.Union(here)
+            union = merging.MemoryUnion(here)
             counts = [self._take(union, here, place) for place in places]
             union.finish()
         return counts
 
-    def _take(self, union: merging.Union, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
+    def _take(self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
         if isinstance(place, Memory):
             if place.location == self.location:
                 return union.take(here, self.location)
@@ -213,33 +214,34 @@ class Memory:
             return union.take(there, source.location)
 
     def forget(self, robot: str) -> int:
-        """Remove all a robot has contributed, for good; the number of contributions removed.
+        """Remove all contributions of a robot for ever; return their number.
 
-        Tombstones stay, so that no replay, merge or import brings them back; what the robot contributes
-        later is taken again.
+        Tombstones stay, so that no replay, merge or import restores them. Later contributions of the robot are
+        stored again.
 
         Raises
         ------
         NotFoundError
-            No such robot.
+            The robot has no contributions.
         """
         with self._store.writing() as conn:
-            gone = ledger.entries(conn, robot)
-            if not gone:
+            forgotten = ledger.entries(conn, robot)
+            if not forgotten:
                 known = [entry["robot"] for entry in overview.robots(conn)]
                 named = ", ".join(known[:NAMED]) or "none"
                 more = f" and {len(known) - NAMED:,} more" if len(known) > NAMED else ""
                 raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {named}{more}")
-            ledger.bury(conn, [entry.identity for entry in gone])
-            merging.remove(conn, gone)
-        return len(gone)
+            ledger.add_tombstones(conn, [entry.identity for entry in forgotten])
+            stale = merging.delete(conn, [entry.number for entry in forgotten])
+            cache.rebuild(conn, stale)
+        return len(forgotten)
 
     def rebuild(self) -> None:
-        """Compute the cache anew from the contributions; changes nothing in a sound memory."""
+        """Compute the cache again from the contributions; changes nothing in a sound memory."""
         with self._store.writing() as conn:
             cache.rebuild(conn)
 
     def check(self) -> list[str]:
-        """Look at every byte: one line for each problem, empty when contributions and cache are sound."""
+        """Check every byte; return one line for each problem, none if contributions and cache are sound."""
         with self._store.reading() as conn:
             return audit.problems(conn)

@@ -1,11 +1,10 @@
-"""Union of memories: exact in any order and grouping, and the same when done twice.
+"""Merges memories: the result does not depend on order and grouping, and merging twice changes nothing.
 
-Tombstones of all count. Should one identity stand for two different contributions (the same task given to
-two memories by hand carries two stamps), the one with the smaller (stamp, digest) stays, so that all
-memories end with the same one whichever way they are merged.
+The tombstones of all memories count. If an identity has two different contributions (a user stored the same task
+in two memories, with two stamps), the one with the smaller (stamp, digest) stays in every memory.
 
-Contributions are copied source by source, a batch in memory at a time; the cache follows once, at the end, because
-each key's cells are then written once and not once for each source.
+Contributions are copied source by source, with one batch in main memory at a time. The cache is updated once at
+the end, so that the cells of a key are written once and not once for each source.
 """
 
 from collections.abc import Iterator
@@ -17,28 +16,28 @@ from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
 from lifelore.memory.contribution import Contribution, Identity
 from lifelore.memory.folding import LoreKey, Stored, fold
-from lifelore.memory.ledger import Entry
+from lifelore.memory.ledger import ContributionRow
 from lifelore.memory.refusal import one_line_refusals
 
 Counts = dict[str, int]
-"""``added`` contributions; ``already_there``; ``forgotten``: kept out by a tombstone, or removed here by one."""
+"""``added``; ``already_there``; ``forgotten``: not added, or removed here, because of a tombstone."""
 
 
 @dataclass(frozen=True)
 class _Plan:
-    """What a source will do: rows to remove here, rows to add from there."""
+    """Changes for a source: rows to remove here, rows to add from the source."""
 
-    remove: list[Entry]
-    add: list[Entry]
+    remove: list[ContributionRow]
+    add: list[ContributionRow]
     added: int
     already_there: int
     forgotten: int
 
 
-class Union:
-    """One memory while others are brought into it, in one transaction.
+class MemoryUnion:
+    """Merges other memories into one, in one transaction: `take` each source, then `finish`.
 
-    `take` each source, then `finish`. After an error nothing of the transaction may be kept.
+    After an error, roll the transaction back.
 
     Parameters
     ----------
@@ -49,25 +48,25 @@ class Union:
     def __init__(self, here: Connection) -> None:
         self._here = here
         self._own = {entry.identity: entry for entry in ledger.entries(here)}
-        self._graves = ledger.tombstones(here)
+        self._tombstones = ledger.tombstones(here)
         self._sources: dict[int, str] = {}
         self._stale: set[LoreKey] = set()
 
     def take(self, there: Connection, source: str) -> Counts:
-        """Copy the contributions and tombstones of one source; the cache stays behind until `finish`.
+        """Copy the contributions and tombstones of one source; `finish` updates the cache.
 
         Parameters
         ----------
         there : Connection
-            The transaction to read from; may be that of this memory itself.
+            The transaction to read from; may be the transaction of this memory.
         source : str
-            Where `there` is, for messages.
+            Location of `there`, for error messages.
         """
         with one_line_refusals(source):
-            theirs, graves = ledger.entries(there), ledger.tombstones(there)
-        ledger.bury(self._here, graves - self._graves)
-        self._graves |= graves
-        plan = _plan(self._own, theirs, self._graves)
+            theirs, tombstones = ledger.entries(there), ledger.tombstones(there)
+        ledger.add_tombstones(self._here, tombstones - self._tombstones)
+        self._tombstones |= tombstones
+        plan = _plan(self._own, theirs, self._tombstones)
         self._remove(plan.remove)
         for entry in ledger.insert_many(self._here, _read(there, [entry.number for entry in plan.add], source)):
             self._own[entry.identity] = entry
@@ -75,32 +74,31 @@ class Union:
         return {"added": plan.added, "already_there": plan.already_there, "forgotten": plan.forgotten}
 
     def finish(self) -> None:
-        """Bring the cache up to date.
+        """Update the cache.
 
         Raises
         ------
         StoreError
-            A contribution that came is damaged, or merges a key differently; its source is named.
+            A copied contribution is damaged or has another merge for a key; the message names its source.
         """
         if self._stale:
             cache.rebuild(self._here, self._stale)
-        for name, part in fold(self._came()).items():
+        for name, part in fold(self._copied()).items():
             try:
                 cache.write(self._here, {name: part})
             except StoreError as error:
                 raise StoreError(f"memory {self._sources[part.mentions[0]]}: {error}") from error
 
-    def _remove(self, gone: list[Entry]) -> None:
-        numbers = [entry.number for entry in gone]
-        self._stale |= cache.mentioned(self._here, (number for number in numbers if number not in self._sources))
-        ledger.remove(self._here, numbers)
-        for entry in gone:
+    def _remove(self, removed: list[ContributionRow]) -> None:
+        # The cache does not hold copied contributions before `finish`, so `delete` finds no keys of them.
+        self._stale |= delete(self._here, [entry.number for entry in removed])
+        for entry in removed:
             del self._own[entry.identity]
 
-    def _came(self) -> Iterator[Stored]:
-        """The contributions that came and stayed, oldest first."""
-        came = [entry for entry in self._own.values() if entry.number in self._sources]
-        numbers = [entry.number for entry in sorted(came, key=lambda entry: entry.order)]
+    def _copied(self) -> Iterator[Stored]:
+        """The copied contributions that stay, oldest first."""
+        copied = [entry for entry in self._own.values() if entry.number in self._sources]
+        numbers = [entry.number for entry in sorted(copied, key=lambda entry: entry.order)]
         for stored in ledger.load(self._here, numbers):
             yield replace(stored, source=self._sources[stored.number])
 
@@ -110,28 +108,26 @@ def _read(there: Connection, numbers: list[int], source: str) -> Iterator[Contri
         yield from (stored.contribution for stored in ledger.load(there, numbers))
 
 
-def remove(conn: Connection, gone: list[Entry]) -> None:
-    """Delete contributions and fold the keys they had anew."""
-    if gone:
-        numbers = [entry.number for entry in gone]
-        stale = cache.mentioned(conn, numbers)
-        ledger.remove(conn, numbers)
-        cache.rebuild(conn, stale)
+def delete(conn: Connection, numbers: list[int]) -> set[LoreKey]:
+    """Delete contributions by row number; return the keys whose cache must be rebuilt."""
+    stale = cache.mentioned(conn, numbers)
+    ledger.remove(conn, numbers)
+    return stale
 
 
-def _plan(own: dict[Identity, Entry], theirs: list[Entry], graves: set[Identity]) -> _Plan:
-    buried = [entry for entry in own.values() if entry.identity in graves]
-    offered = [entry for entry in theirs if entry.identity not in graves]
+def _plan(own: dict[Identity, ContributionRow], theirs: list[ContributionRow], tombstones: set[Identity]) -> _Plan:
+    removed_here = [entry for entry in own.values() if entry.identity in tombstones]
+    offered = [entry for entry in theirs if entry.identity not in tombstones]
     new = [entry for entry in offered if entry.identity not in own]
     earlier = [entry for entry in offered if entry.identity in own and _earlier(entry, own[entry.identity])]
     return _Plan(
-        remove=buried + [own[entry.identity] for entry in earlier],
+        remove=removed_here + [own[entry.identity] for entry in earlier],
         add=sorted(new + earlier, key=lambda entry: entry.order),
         added=len(new),
         already_there=len(offered) - len(new),
-        forgotten=len(buried) + len(theirs) - len(offered),
+        forgotten=len(removed_here) + len(theirs) - len(offered),
     )
 
 
-def _earlier(entry: Entry, other: Entry) -> bool:
+def _earlier(entry: ContributionRow, other: ContributionRow) -> bool:
     return (entry.stamp, entry.digest) < (other.stamp, other.digest)

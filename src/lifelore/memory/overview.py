@@ -1,4 +1,4 @@
-"""What a memory holds, as plain data."""
+"""Summarises the content of a memory as JSON data: robots, records, number of tombstones."""
 
 from collections.abc import Callable, Hashable, Iterable
 from datetime import UTC, datetime
@@ -9,10 +9,10 @@ from sqlalchemy import Connection, text
 from lifelore.memory import schema
 
 FEW = 8
-"""So many entries of one sort are listed one by one; more are one entry."""
+"""Maximum number of entries of a group that are listed separately; more are joined to one entry."""
 
 _ROBOTS = text("SELECT robot, COUNT(*), MIN(stamp), MAX(stamp) FROM lifelore_contributions GROUP BY robot")
-# Sums of halves: a sum of 64-bit numbers may need more than 64 bits, and SQLite would stop there.
+# Sums of halves, because a sum of 64-bit numbers may need more than 64 bits, which is an error in SQLite.
 _LORE = text(
     "SELECT kind, key, version, merge, COUNT(slot), COALESCE(SUM(value >> 32), 0),"
     " COALESCE(SUM(value & 4294967295), 0)"
@@ -23,13 +23,13 @@ _LORE = text(
 
 def overview(conn: Connection, location: str) -> dict[str, Any]:
     """Location, schema, robots with their tasks, keys with their size, number of tombstones."""
-    graves = conn.execute(text("SELECT COUNT(*) FROM lifelore_tombstones")).scalar_one()
+    tombstones = conn.execute(text("SELECT COUNT(*) FROM lifelore_tombstones")).scalar_one()
     return {
         "location": location,
         "schema": schema.version(conn),
         "robots": robots(conn),
         "lore": _lore(conn),
-        "forgotten": int(graves),
+        "forgotten": int(tombstones),
     }
 
 
@@ -42,9 +42,9 @@ def robots(conn: Connection) -> list[dict[str, Any]]:
 
 
 def grouped_robots(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Entries of `robots`, but those named ``SORT: NAME`` as one where more than `FEW` are of a sort.
+    """Entries of `robots`, with more than `FEW` robots ``GROUP: NAME`` of a group joined to one entry.
 
-    Each entry has ``of`` too, how many it stands for; its ``robot`` is ``SORT: `` then.
+    Each entry also has ``of``, the number of its robots; the ``robot`` of a joined entry is ``GROUP: ``.
     """
     groups = _grouped(robots, lambda one: _stem(one["robot"], ": "))
     return [
@@ -58,10 +58,10 @@ def grouped_robots(robots: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 
 def grouped_lore(lore: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """Entries of `overview`'s lore, but keys ``SORT/NAME`` of a kind as one if more than `FEW` are of a sort.
+    """Records of `overview`, with more than `FEW` keys ``GROUP/NAME`` of a kind joined to one entry.
 
-    Each entry has ``of`` too, how many it stands for; its ``key`` is ``SORT/`` then, ``slots`` and ``sum`` are
-    sums.
+    Each entry also has ``of``, the number of its keys; a joined entry has the ``key`` ``GROUP/``, and sums as
+    ``slots`` and ``sum``.
     """
     groups = _grouped(lore, lambda one: (one["kind"], _stem(one["key"], "/"), one["version"], one["merge"]))
     return [
@@ -77,7 +77,7 @@ def grouped_lore(lore: list[dict[str, Any]]) -> list[dict[str, Any]]:
 def _grouped(
     entries: Iterable[dict[str, Any]], sort: Callable[[dict[str, Any]], Hashable]
 ) -> list[list[dict[str, Any]]]:
-    """Entries of the same sort together if there are more than `FEW`, else each alone; the order stays."""
+    """Lists of entries with an equal sort key if there are more than `FEW`, else lists of one; in order."""
     groups: dict[Hashable, list[dict[str, Any]]] = {}
     for entry in entries:
         groups.setdefault(sort(entry), []).append(entry)
@@ -86,7 +86,7 @@ def _grouped(
 
 
 def _stem(name: str, separator: str) -> str:
-    """Up to and with the separator; the whole name where there is none."""
+    """The name up to and with the separator; the whole name without one."""
     head, found, _ = name.partition(separator)
     return head + found if found else name
 

@@ -1,4 +1,4 @@
-"""Records as one block of bytes: a length, a JSON header, then raw little-endian int64 arrays; no pickle."""
+"""Packs records into bytes: a length, a JSON header, then raw little-endian int64 arrays, without pickle."""
 
 import json
 import struct
@@ -15,9 +15,9 @@ from lifelore.memory.record_rules import checked_records
 
 _LENGTH = struct.Struct("<I")
 _WORD = np.dtype("<i8")
-# Counts compress 8-fold at level 1 already; level 6 costs 5 times the time for a tenth of the size.
+# Level 1 compresses counts 8-fold; level 6 needs 5 times the time and saves another tenth.
 _LEVEL = 1
-# A blob from a stranger's file must not unpack to more than this; a task's records are about 100 kB.
+# Largest size of an unpacked blob, because a file may come from anyone; a task has about 100 kB.
 LARGEST_PAYLOAD = 2**30
 
 
@@ -46,7 +46,7 @@ def pack(records: Sequence[Record]) -> bytes:
 
 
 def unpack(payload: bytes) -> list[Record]:
-    """The records of `pack`; StoreError if the bytes are not such a block."""
+    """The records of `pack`; StoreError if the bytes have another format."""
     try:
         (length,) = _LENGTH.unpack_from(payload)
         header = json.loads(payload[_LENGTH.size : _LENGTH.size + length])
@@ -61,7 +61,7 @@ def _records(header: list[dict[str, Any]], words: NDArray[np.int64]) -> list[Rec
         raise ValueError("the header is not a list")
     lengths = [entry["n"] for entry in header]
     if any(n < 0 for n in lengths) or 2 * sum(lengths) != words.size:
-        raise ValueError(f"the header announces {2 * sum(lengths)} numbers, the block holds {words.size}")
+        raise ValueError(f"the header gives {2 * sum(lengths)} numbers, the block holds {words.size}")
     starts = 2 * np.cumsum([0, *lengths])[:-1]
     return [
         Record(
@@ -73,7 +73,7 @@ def _records(header: list[dict[str, Any]], words: NDArray[np.int64]) -> list[Rec
 
 
 def compress(payload: bytes) -> bytes:
-    """`payload`, smaller."""
+    """Compress the bytes."""
     return zlib.compress(payload, _LEVEL)
 
 

@@ -1,4 +1,4 @@
-"""What a record and the names around it must satisfy before memory takes them."""
+"""Checks records and names before memory stores them."""
 
 import json
 import operator
@@ -17,7 +17,7 @@ LARGEST = 2**63 - 1
 
 
 def check_name(argument: str, name: str) -> str:
-    """`name` itself, if it is printable text of 1 to 200 characters (both back ends can keep it)."""
+    """Return `name` if it is printable text of 1 to 200 characters, which both databases can store."""
     if not isinstance(name, str) or not 0 < len(name) <= LONGEST_NAME or not name.isprintable():
         raise InputError(
             f"{argument} must be 1 to {LONGEST_NAME} printable characters, got {str(name)[:60]!r}; rename it"
@@ -37,7 +37,7 @@ def check_whole(argument: str, number: Any, smallest: int = 0) -> int:
 
 
 def canonical_json(argument: str, about: Mapping[str, Any]) -> str:
-    """The one JSON text of a mapping: keys sorted, ASCII, no NaN."""
+    """The canonical JSON text of a mapping: sorted keys, ASCII, no NaN."""
     try:
         return json.dumps(dict(about), sort_keys=True, allow_nan=False, separators=(",", ":"))
     except (TypeError, ValueError) as error:
@@ -55,7 +55,7 @@ def checked_records(records: Sequence[Record]) -> list[Record]:
 
 
 def checked_record(record: Record) -> Record:
-    """One record with its rules checked and its arrays sorted by slot."""
+    """A checked record with its arrays sorted by slot."""
     where = f"record {record.kind}/{record.key}"
     check_name("record.kind", record.kind)
     check_name("record.key", record.key)

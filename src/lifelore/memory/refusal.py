@@ -1,4 +1,4 @@
-"""The one place where a database's complaint becomes a StoreError of one line."""
+"""Converts errors of databases and of the operating system to a `StoreError` of one line."""
 
 import errno
 import sqlite3
@@ -15,7 +15,7 @@ _FULL = "no space is left; nothing of this task was stored: free space, then try
 _READ_ONLY = "it is read-only, nothing was stored: make file and folder writable, or name another memory"
 _BUSY = f"another process kept it locked for {BUSY_SECONDS} s; nothing was changed, try again"
 _DAMAGED = "it is damaged: restore an export, or move the file away to begin anew"
-_CLOSED_DOOR = "it cannot be opened: check the path, and that file and folder may be read and written"
+_CANNOT_OPEN = "it cannot be opened: check the path, and that file and folder may be read and written"
 _OVERFLOW = "a value would no longer fit 64 bits; nothing was changed, contribute smaller weights"
 _NO_SERVER = "the server cannot be reached or refuses: check host, database, user and password"
 
@@ -27,8 +27,8 @@ _MEANINGS = {
     "SQLITE_LOCKED": _BUSY,
     "SQLITE_CORRUPT": _DAMAGED,
     "SQLITE_NOTADB": _DAMAGED,
-    "SQLITE_CANTOPEN": _CLOSED_DOOR,
-    "SQLITE_PERM": _CLOSED_DOOR,
+    "SQLITE_CANTOPEN": _CANNOT_OPEN,
+    "SQLITE_PERM": _CANNOT_OPEN,
     "SQLITE_IOERR": "the disk failed or is full; nothing of this task was stored: check it, then try again",
     "SQLITE_CONSTRAINT_CHECK": _OVERFLOW,
     "SQLITE_TOOBIG": "the contribution is larger than SQLite takes; nothing was changed, give it in parts",
@@ -42,20 +42,20 @@ _MEANINGS = {
     "3D": _NO_SERVER,
 }
 
-# What the system itself says of files and folders, before a database is asked.
-_OF_THE_SYSTEM = {
+# Error numbers of the operating system for files and folders.
+_SYSTEM_ERRORS = {
     errno.ENOSPC: _FULL,
     errno.EDQUOT: _FULL,
     errno.EROFS: _READ_ONLY,
     **dict.fromkeys(
-        (errno.ENOENT, errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.ENAMETOOLONG), _CLOSED_DOOR
+        (errno.ENOENT, errno.ENOTDIR, errno.EEXIST, errno.EACCES, errno.EPERM, errno.ENAMETOOLONG), _CANNOT_OPEN
     ),
 }
 
 
 @contextmanager
 def one_line_refusals(location: str) -> Iterator[None]:
-    """Turn whatever the drivers raise inside the block into one StoreError about `location`."""
+    """Convert every error of the drivers inside the block to a StoreError about `location`."""
     try:
         yield
     except SQLAlchemyError as error:
@@ -69,12 +69,12 @@ def one_line_refusals(location: str) -> Iterator[None]:
 
 
 def refusal(location: str, cause: BaseException) -> StoreError:
-    """The StoreError for a driver's exception: the memory, what it means, what to do, what was said."""
+    """The StoreError for a driver's exception: the memory, the meaning, the next step, the driver's message."""
     code = str(getattr(cause, "sqlite_errorname", None) or getattr(cause, "sqlstate", None) or "")
-    said = " ".join(str(cause).split())[:200]
+    message = " ".join(str(cause).split())[:200]
     meaning = next((text for start, text in _MEANINGS.items() if code.startswith(start)), None)
     if isinstance(cause, OSError):
-        meaning = _OF_THE_SYSTEM.get(cause.errno or 0)
-    if meaning is None and "connection" in said.lower() and not code:
+        meaning = _SYSTEM_ERRORS.get(cause.errno or 0)
+    if meaning is None and "connection" in message.lower() and not code:
         meaning = _NO_SERVER
-    return StoreError(f"memory {location}: {meaning} ({said})" if meaning else f"memory {location}: {said}")
+    return StoreError(f"memory {location}: {meaning} ({message})" if meaning else f"memory {location}: {message}")

@@ -1,6 +1,6 @@
-"""The tables, as numbered steps: a step and its note are one transaction.
+"""Tables of a memory, created by numbered migrations; a migration and its note are one transaction.
 
-Contributions and tombstones are the memory; lore, mentions and cells are a cache of them.
+Contributions and tombstones hold the content; lore, mentions and cells are a cache of them.
 """
 
 import time
@@ -43,8 +43,8 @@ CREATE TABLE lifelore_cells (
 MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST)}
 LATEST = max(MIGRATIONS)
 
-# SQLite turns an overflowing sum into a float; the check refuses it, as PostgreSQL does by itself.
-# PostgreSQL must compare names byte by byte, as SQLite and Python do, or ties would fall differently.
+# SQLite turns an overflowing sum into a float; the CHECK makes this an error, as it is in PostgreSQL.
+# PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.
 _WORDS = {
     "sqlite": {
         "int": "INTEGER", "text": "TEXT", "blob": "BLOB", "serial": "INTEGER PRIMARY KEY AUTOINCREMENT",
@@ -58,14 +58,14 @@ _WORDS = {
 
 
 def version(conn: Connection) -> int:
-    """The number of the last step taken; 0 for an empty database."""
+    """The number of the last migration; 0 for an empty database."""
     if not inspect(conn).has_table("lifelore_migrations"):
         return 0
     return int(conn.execute(text("SELECT COALESCE(MAX(number), 0) FROM lifelore_migrations")).scalar_one())
 
 
 def refuse_newer(location: str, found: int) -> None:
-    """StoreError when a later Lifelore made the memory."""
+    """Raise StoreError if a newer Lifelore made the memory."""
     if found > LATEST:
         raise StoreError(
             f"memory {location} was made by a newer Lifelore (schema {found}, this one knows {LATEST});"
@@ -74,7 +74,7 @@ def refuse_newer(location: str, found: int) -> None:
 
 
 def take_step(conn: Connection, number: int) -> None:
-    """Run step `number` and note it, within the caller's transaction; nothing if it was taken before."""
+    """Run migration `number` and note it, in the caller's transaction; do nothing if it was run before."""
     words = _WORDS[conn.dialect.name]
     conn.exec_driver_sql(_NOTES.format(**words))
     if version(conn) >= number:

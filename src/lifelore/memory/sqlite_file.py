@@ -1,4 +1,4 @@
-"""A SQLite memory as a file: is it ours and sound, and how is it opened. Refused files stay untouched."""
+"""Checks and opens the SQLite file of a memory; a file that fails a check is not changed."""
 
 import os
 import sqlite3
@@ -12,21 +12,21 @@ from lifelore.memory.schema import APPLICATION_ID, refuse_newer
 
 _MAGIC = b"SQLite format 3\0"
 _HEADER = 100
-# Every page of a file up to this size is looked at before it is opened (0.2 s for 256 MiB, warm);
-# beyond it `Memory.check` does so.
+# Largest file of which every page is checked before opening (0.2 s for 256 MiB in the cache); for larger
+# files use `Memory.check`.
 CHECKED_BYTES = 2**28
 
 Access = Literal["ro", "rw", "rwc"]
 
 
 def connect(path: Path, access: Access, *, immutable: bool = False) -> sqlite3.Connection:
-    """A plain connection; transactions are begun and ended by the caller's own statements."""
+    """A connection without implicit transactions; the caller begins and ends them by SQL statements."""
     uri = f"{path.as_uri()}?mode={access}" + ("&immutable=1" if immutable else "")
     return sqlite3.connect(uri, uri=True, timeout=BUSY_SECONDS, isolation_level=None, check_same_thread=False)
 
 
 def refuse_unless_ours(path: Path) -> None:
-    """Pass for a file that is absent, empty, or a sound memory this program can read.
+    """Check that a file is missing, empty, or a sound memory that this version can read.
 
     Raises
     ------
@@ -44,13 +44,13 @@ def refuse_unless_ours(path: Path) -> None:
 
 
 def read_header(path: Path) -> bytes:
-    """The first 100 bytes, fewer if there are no more."""
+    """The first 100 bytes of a file, or all if it is shorter."""
     with path.open("rb") as file:
         return file.read(_HEADER)
 
 
-def lived_in(header: bytes) -> bool:
-    """True for a memory that has been opened to live in (WAL), false for a fresh export."""
+def is_in_use(header: bytes) -> bool:
+    """Whether the memory has been opened for writing (WAL); false for a new export."""
     return header[18:20] != b"\x01\x01"
 
 
@@ -64,12 +64,12 @@ def _refuse_foreign(path: Path, header: bytes) -> None:
 
 
 def _refuse_damaged(path: Path) -> None:
-    """Look at the file through a connection that cannot write to it."""
+    """Check the file through a read-only connection."""
     if not _sidecar(path, "-wal"):
         try:
             return _look(path, immutable=True)
         except StoreError:
-            # Another process may have begun to write after the test above; only then look again.
+            # Check again only if another process has begun to write after the test above.
             if not _sidecar(path, "-wal"):
                 raise
     return _look(path, immutable=False)
@@ -87,16 +87,16 @@ def _look(path: Path, *, immutable: bool) -> None:
         if pages * page_bytes <= CHECKED_BYTES:
             (verdict,) = conn.execute("PRAGMA quick_check(1)").fetchone()
             if verdict != "ok":
-                said = " ".join(verdict.split())
-                raise StoreError(f"memory {path} is damaged ({said}); nothing was changed: restore an export")
+                message = " ".join(verdict.split())
+                raise StoreError(f"memory {path} is damaged ({message}); nothing was changed: restore an export")
 
 
 def connect_source(path: Path) -> sqlite3.Connection:
-    """A connection to read another memory by, which leaves that memory's content as it is."""
-    if not lived_in(read_header(path)):
+    """A connection that reads another memory and does not change its content."""
+    if not is_in_use(read_header(path)):
         return connect(path, "ro")
     if os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
-        # An ordinary connection takes SQLite's locks and tidies its side files away when it closes.
+        # An ordinary connection takes SQLite's locks and deletes its side files when it closes.
         conn = connect(path, "rw")
         conn.execute("PRAGMA query_only = ON")
         return conn

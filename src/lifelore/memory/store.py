@@ -1,4 +1,4 @@
-"""A database and its two kinds of transaction: one writer at a time, readers on a fixed snapshot."""
+"""`Store`: an open database with transactions for one writer at a time, and for readers on a snapshot."""
 
 import time
 from collections.abc import Iterator
@@ -14,12 +14,12 @@ from lifelore.memory.location import describe
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
 from lifelore.memory.sqlite_file import connect, connect_source, refuse_unless_ours
 
-# Any fixed number, the same for all that write to one database.
+# Any fixed number, the same for all processes that write to a database.
 _WRITERS_LOCK = schema.APPLICATION_ID
 
 
 class Store:
-    """An open database: `reading` and `writing` are the only doors, and no driver's error leaves them."""
+    """An open database; `reading` and `writing` give transactions and convert the driver's errors."""
 
     def __init__(self, engine: Engine, location: str) -> None:
         self._engine: Engine | None = engine
@@ -34,14 +34,14 @@ class Store:
         return self._engine
 
     def close(self) -> None:
-        """Give all connections back; harmless when done twice."""
+        """Close all connections; a second call does nothing."""
         if self._engine is not None:
             engine, self._engine = self._engine, None
             engine.dispose()
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
-        """A transaction that sees one moment of the database and never waits for writers."""
+        """A transaction on a snapshot of the database, which never waits for writers."""
         with one_line_refusals(self.location), self.engine.connect() as conn:
             if self.is_sqlite:
                 conn.exec_driver_sql("BEGIN")
@@ -52,7 +52,7 @@ class Store:
 
     @contextmanager
     def writing(self) -> Iterator[Connection]:
-        """A transaction that is alone in writing; all of it is kept or, after any error, nothing."""
+        """The only writing transaction; it is committed completely, or after an error not at all."""
         with one_line_refusals(self.location), self.engine.connect() as conn:
             if self.is_sqlite:
                 conn.exec_driver_sql("BEGIN IMMEDIATE")
@@ -63,13 +63,13 @@ class Store:
             conn.commit()
 
     def lies_at(self, place: Path | URL) -> bool:
-        """Whether `place` names this very database."""
+        """Whether `place` is the location of this database."""
         if isinstance(place, Path):
             return self.is_sqlite and place.exists() and place.samefile(self.location)
         return not self.is_sqlite and describe(place) == self.location
 
     def migrate(self) -> None:
-        """Take the steps not yet taken, each in a transaction of its own."""
+        """Run the missing migrations, each in its own transaction."""
         with self.reading() as conn:
             found = schema.version(conn)
         schema.refuse_newer(self.location, found)
@@ -78,7 +78,7 @@ class Store:
                 schema.take_step(conn, number)
 
     def require_current(self) -> None:
-        """StoreError unless all steps are taken: the source of a merge is never migrated."""
+        """Raise StoreError unless all migrations are done; the source of a merge is never migrated."""
         with self.reading() as conn:
             found = schema.version(conn)
         schema.refuse_newer(self.location, found)
@@ -91,7 +91,7 @@ class Store:
 
 
 def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DELETE"] = "WAL") -> Store:
-    """The memory in a file, created with its folders if need be."""
+    """Open the memory in a file; create it and its folders if they are missing."""
     refuse_unless_ours(path)
     with one_line_refusals(str(path)):
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -99,7 +99,7 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
     def creator():
         conn = connect(path, "rwc")
         conn.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
-        # What is forgotten is overwritten, not only unlinked; some builds of SQLite leave it otherwise.
+        # Overwrite forgotten content; some builds of SQLite would only unlink it.
         conn.execute("PRAGMA secure_delete = ON")
         return conn
 
@@ -108,12 +108,12 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
 
 
 def open_postgresql(url: URL) -> Store:
-    """The memory in a PostgreSQL database, created if there is none."""
+    """Open the memory in a PostgreSQL database; create it if there is none."""
     return _ready(_server(url), None)
 
 
 def open_source(place: Path | URL, *, checked: bool = False) -> Store:
-    """A memory to read only: never created, migrated or written to; `checked` where `check_source` passed."""
+    """Open a memory for reading only; `checked`: `check_source` has passed. It is never created or changed."""
     if isinstance(place, Path) and not checked:
         check_source(place)
     store = _source_file(place) if isinstance(place, Path) else _server(place)
@@ -126,7 +126,7 @@ def open_source(place: Path | URL, *, checked: bool = False) -> Store:
 
 
 def check_source(path: Path) -> None:
-    """StoreError unless the file is there and a sound memory."""
+    """Raise StoreError unless the file exists and is a sound memory."""
     if not path.exists():
         raise StoreError(f"memory {path} does not exist; check the path")
     refuse_unless_ours(path)
@@ -148,8 +148,8 @@ def _server(url: URL) -> Store:
 
 def _ready(store: Store, journal: str | None) -> Store:
     try:
-        # The first step is taken before WAL is switched on, so that the main file says whose it is
-        # from its first page on, and a killed beginning is not mistaken for another program's file.
+        # The first migration runs before WAL is switched on, so that the main file has its application id even
+        # if the process is killed now; otherwise it would seem another program's file.
         store.migrate()
         if journal is not None:
             _set_journal(store, journal)
@@ -160,7 +160,7 @@ def _ready(store: Store, journal: str | None) -> Store:
 
 
 def _set_journal(store: Store, journal: str) -> None:
-    """Switching to WAL needs the file alone for a moment, and SQLite does not wait for that by itself."""
+    """Set the journal mode; retry, because WAL needs the file exclusively and SQLite does not wait for it."""
     give_up = time.monotonic() + BUSY_SECONDS
     while True:
         try:

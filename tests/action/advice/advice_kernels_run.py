@@ -13,7 +13,7 @@ def all_arrays() -> dict[str, np.ndarray]:
     from lifelore.action.advice.advised_walk import advised_walk
     from lifelore.action.advice.advisor import AdviceSettings, Advisor
     from lifelore.action.advice.behaviour_models import Tabulated, Uniform
-    from lifelore.action.advice.goal_model import Purpose, Trajectory
+    from lifelore.action.advice.goal_model import GoalModel, Trajectory
     from lifelore.core.mdp import Tables
 
     random, out = np.random.default_rng(0), {}
@@ -28,7 +28,7 @@ def all_arrays() -> dict[str, np.ndarray]:
         np.arange(1, 6, dtype=np.int32),
     )
     purposes = [
-        Purpose.from_trajectories(
+        GoalModel.from_trajectories(
             [Trajectory(random.integers(0, n_states, 9), random.integers(0, n_actions, 8))],
             n_states,
             n_actions,

@@ -21,7 +21,7 @@ class NaiveAdvisor:
             total = float(self.guide.log_prior[m])
             for s, previous, a in self.history[-self.settings.window :]:
                 total += self.log_prob(m, s, previous, a)
-            weights.append(-inf if self.guide.purpose_of[m] in self.dropped else total)
+            weights.append(-inf if self.guide.goal_of_model[m] in self.dropped else total)
         best = max(weights)
         mass = [exp(w - best) for w in weights]
         return [w / sum(mass) for w in mass]
@@ -31,12 +31,12 @@ class NaiveAdvisor:
         shown = [g for g in purposes if self.guide.steps[g][s] < inf]
         if self.spending and self.target in shown and self.target not in self.dropped:
             return self.target
-        open_goals = [g for g in shown if g not in self.dropped and self.guide.goal_of[s] != g]
+        open_goals = [g for g in shown if g not in self.dropped and self.guide.goal_of_state[s] != g]
         left = len(purposes) - len(self.dropped)
         worth = {}
         for g in open_goals:
-            own = sum(p for m, p in enumerate(posterior) if self.guide.purpose_of[m] == g)
-            aimless = sum(p for m, p in enumerate(posterior) if self.guide.purpose_of[m] < 0)
+            own = sum(p for m, p in enumerate(posterior) if self.guide.goal_of_model[m] == g)
+            aimless = sum(p for m, p in enumerate(posterior) if self.guide.goal_of_model[m] < 0)
             worth[g] = (own + aimless / left) / (1 + self.guide.steps[g][s])
         return max(worth, key=worth.__getitem__) if worth else -1
 
@@ -63,8 +63,8 @@ class NaiveAdvisor:
         return told, gain, posterior
 
     def observe(self, s, a, advised) -> None:
-        if self.guide.goal_of[s] >= 0:
-            self.dropped.add(int(self.guide.goal_of[s]))
+        if self.guide.goal_of_state[s] >= 0:
+            self.dropped.add(int(self.guide.goal_of_state[s]))
         if a >= 0 and not (advised and self.settings.own_steps_only):
             self.history.append((s, self.previous, a))
         self.previous = a

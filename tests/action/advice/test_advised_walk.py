@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from lifelore.action.advice.advised_walk import advised_walk
 from lifelore.action.advice.advisor import AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Tabulated, Uniform
-from lifelore.action.advice.goal_model import Purpose, Trajectory
+from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
@@ -34,8 +34,8 @@ def corridor(length: int) -> Tables:
     return Tables(next_state.astype(np.int32), reward, event, np.ones(1), np.zeros(1, np.int32))
 
 
-def going_east(length: int) -> Purpose:
-    return Purpose.from_trajectories(
+def going_east(length: int) -> GoalModel:
+    return GoalModel.from_trajectories(
         [Trajectory(np.arange(length), np.zeros(length - 1, int))], length, 2, goals=[length - 1]
     )
 
@@ -43,7 +43,7 @@ def going_east(length: int) -> Purpose:
 def test_told_the_way_it_goes_straight_there():
     ten = corridor(10)
     west = np.tile([0.0, 1.0], (10, 1))
-    alone = advised_walk(ten, west, Advisor([going_east(10)]), np.random.default_rng(0), 50, heeds=False)
+    alone = advised_walk(ten, west, Advisor([going_east(10)]), np.random.default_rng(0), 50, follows_advice=False)
     assert (alone.reached, len(alone.states), alone.reward) == (False, 50, 0.0)
     assert not alone.advised.any()
     always = Advisor([going_east(10)], settings=AdviceSettings(kappa=0))
@@ -68,7 +68,7 @@ def test_as_it_goes_normally_advice_falls_silent():
 
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.integers(1, 3), st.booleans(), st.sampled_from([1.0, 0.4]))
-def test_as_the_naive_twin(seed, n_purposes, heeds, share):
+def test_as_the_naive_twin(seed, n_goals, follows_advice, share):
     random = np.random.default_rng(seed)
     tables = Tables(
         random.integers(0, 6, (6, 3, 1)).astype(np.int32),
@@ -78,25 +78,25 @@ def test_as_the_naive_twin(seed, n_purposes, heeds, share):
         np.arange(6, dtype=np.int32),
     )
     purposes = [
-        Purpose.from_trajectories([Trajectory(random.integers(0, 6, 9), random.integers(0, 3, 8))], 6, 3, [g])
-        for g in range(n_purposes)
+        GoalModel.from_trajectories([Trajectory(random.integers(0, 6, 9), random.integers(0, 3, 8))], 6, 3, [g])
+        for g in range(n_goals)
     ]
     policy = random.dirichlet(np.ones(3), (6, 4))
     options = AdviceSettings(kappa=0.1, window=8, slip=0.05, share=share, burst=3, own_steps_only=share < 1)
     advisor = Advisor(purposes, [Uniform(3), Tabulated(policy)], options)
-    walk = advised_walk(tables, policy, advisor, np.random.default_rng(seed), 40, heeds=heeds)
+    walk = advised_walk(tables, policy, advisor, np.random.default_rng(seed), 40, follows_advice=follows_advice)
 
     uniform = random_state(np.random.default_rng(seed))
     state, previous, total = int(next_uniform(uniform) * 6), -1, 0.0
     twin = NaiveAdvisor(advisor.guide, options)
     for t in range(len(walk.states)):
         told, gain, posterior = twin.consider(state)
-        told = told and heeds
+        told = told and follows_advice
         row = advisor.guide.theta[twin.target][state] if told else policy[state, previous + 1]
         action = int((next_uniform(uniform) >= np.cumsum(row)[:-1]).sum())
         assert (walk.states[t], walk.actions[t], walk.advised[t]) == (state, action, told)
         assert walk.gain[t] == pytest.approx(gain, abs=1e-9)
-        assert walk.p_normal[t] == pytest.approx(sum(posterior[:n_purposes]), abs=1e-9)
+        assert walk.p_normal[t] == pytest.approx(sum(posterior[:n_goals]), abs=1e-9)
         twin.observe(state, action, told)
         total += tables.reward[state, action, 0]
         ended = bool(tables.event[state, action, 0] & TERMINAL)
@@ -111,8 +111,8 @@ def test_with_and_without_advice_the_same_numbers_are_drawn():
     advisor = Advisor([going_east(20)], settings=AdviceSettings(kappa=99))
     policy = np.tile([0.5, 0.5], (20, 1))
     one, other = (
-        advised_walk(corridor(20), policy, advisor, np.random.default_rng(3), 300, heeds=heeds)
-        for heeds in (True, False)
+        advised_walk(corridor(20), policy, advisor, np.random.default_rng(3), 300, follows_advice=follows_advice)
+        for follows_advice in (True, False)
     )
     assert np.array_equal(one.states, other.states)
     assert not one.advised.any()
@@ -145,7 +145,7 @@ def test_each_broken_rule_is_one_clear_line():
     five, random = corridor(5), np.random.default_rng(0)
     unsure = five._replace(outcome_cum=np.array([0.5, 1.0]))
     for arguments, words in (
-        ((unsure, policy, advisor, random), "outcomes are certain"),
+        ((unsure, policy, advisor, random), "tables must be deterministic"),
         ((five, np.full((4, 2), 0.5), advisor, random), "must agree in states and actions"),
         ((five, np.full((5, 2), 0.6), advisor, random), "policy must hold probabilities"),
         ((five, policy, advisor, random, 0), "max_steps must be at least 1"),

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lifelore.action.advice.advisor import BETTER, TRACE, AdviceSettings, Advisor, exploration_rows
 from lifelore.action.advice.behaviour_models import Tabulated, Uniform
-from lifelore.action.advice.goal_model import Purpose, Trajectory
+from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.errors import InputError
 
 from .naive_advisor import NaiveAdvisor
@@ -17,14 +17,14 @@ from .naive_advisor import NaiveAdvisor
 
 def all_open(theta, goals=()):
     """A purpose whose experts use alike all that `theta` (n_states, n_actions) does; α⁰ is drowned in counts."""
-    purpose = Purpose.from_best_actions(np.asarray(theta) > 0, goals)
+    purpose = GoalModel.from_best_actions(np.asarray(theta) > 0, goals)
     purpose.prior.update(np.arange(len(theta)), np.asarray(theta) > 0, 1e6)
     return purpose
 
 
-def random_purposes(random, n_purposes, n_states, n_actions):
+def random_goal_models(random, n_goals, n_states, n_actions):
     return [
-        Purpose.from_trajectories(
+        GoalModel.from_trajectories(
             [
                 Trajectory(random.integers(0, n_states, 7), random.integers(-1, n_actions, 6))
                 for _ in range(random.integers(1, 4))
@@ -33,15 +33,15 @@ def random_purposes(random, n_purposes, n_states, n_actions):
             n_actions,
             goals=[g],
         )
-        for g in range(n_purposes)
+        for g in range(n_goals)
     ]
 
 
-def random_advisor(random, n_purposes, options) -> Advisor:
+def random_advisor(random, n_goals, options) -> Advisor:
     n_states, n_actions = 9, 3
     headed = Tabulated(random.dirichlet(np.ones(n_actions), (n_states, n_actions + 1)))
-    bound = [Tabulated(random.dirichlet(np.ones(n_actions), n_states)) for _ in range(n_purposes)]
-    return Advisor(random_purposes(random, n_purposes, n_states, n_actions), [Uniform(3), headed, bound], options)
+    bound = [Tabulated(random.dirichlet(np.ones(n_actions), n_states)) for _ in range(n_goals)]
+    return Advisor(random_goal_models(random, n_goals, n_states, n_actions), [Uniform(3), headed, bound], options)
 
 
 # ---- by hand ---------------------------------------------------------------------------------------
@@ -60,7 +60,7 @@ def test_gain_over_uniform_is_log_of_4_over_the_actions_in_use(used):
 
 def test_posterior_and_gain_by_hand():
     # Experts always take 0 of two actions; one count and α⁰ = 0.1: P(0 | M₁) = 1.1/1.2, P(1 | M₁) = 0.1/1.2.
-    purpose = Purpose.from_best_actions([[True, False]] * 3)
+    purpose = GoalModel.from_best_actions([[True, False]] * 3)
     advisor = Advisor([purpose], settings=AdviceSettings(kappa=0.3))
     watch = advisor.watch()
     first = advisor.consider(watch, 0)
@@ -78,7 +78,7 @@ def test_posterior_and_gain_by_hand():
 
 
 def test_silent_where_no_expert_was_and_such_steps_prove_nothing():
-    purpose = Purpose.from_best_actions([[True, False], [False, False]])
+    purpose = GoalModel.from_best_actions([[True, False], [False, False]])
     advisor = Advisor([purpose])
     watch = advisor.watch()
     for action in (0, 1, 1, 0, 1):
@@ -89,7 +89,7 @@ def test_silent_where_no_expert_was_and_such_steps_prove_nothing():
 
 
 def test_kappa_0_advises_wherever_something_was_counted():
-    purpose = Purpose.from_best_actions([[True, True], [True, False], [False, False]])
+    purpose = GoalModel.from_best_actions([[True, True], [True, False], [False, False]])
     found = Advisor([purpose], settings=AdviceSettings(kappa=0)).assess([0, 1, 2, 0], [0, 0, 1, 1])
     assert found.advise.tolist() == [True, True, False, True]
 
@@ -97,7 +97,7 @@ def test_kappa_0_advises_wherever_something_was_counted():
 def test_one_step_never_proves_a_model_wrong_for_good():
     # A model that excludes what was done keeps TRACE; without it log 0 - log 0 would follow.
     sure = Tabulated([[1.0, 0.0]])
-    advisor = Advisor([Purpose.from_best_actions([[True, False]])], [sure], AdviceSettings(window=2))
+    advisor = Advisor([GoalModel.from_best_actions([[True, False]])], [sure], AdviceSettings(window=2))
     found = advisor.assess([0] * 6, [1, 0, 0, 0, 0, 0])
     assert found.posterior[1, 1] == pytest.approx(TRACE / (TRACE + 0.1 / 1.2))
     assert np.isfinite(found.gain).all()
@@ -106,7 +106,7 @@ def test_one_step_never_proves_a_model_wrong_for_good():
 
 
 def test_thousands_of_steps_do_not_underflow():
-    purpose = Purpose.from_best_actions([[True, False, False, False]])
+    purpose = GoalModel.from_best_actions([[True, False, False, False]])
     advisor = Advisor([purpose], settings=AdviceSettings(window=100_000))
     lost = np.tile([0, 1, 2, 3], 5000)
     assert advisor.assess(np.zeros(20_000, int), lost).p_normal[-1] < 1e-300
@@ -118,17 +118,17 @@ def test_a_goal_left_again_is_dropped_and_the_nearest_of_the_rest_comes_next():
     def line(states, action):
         return Trajectory(np.array(states), np.full(len(states) - 1, action))
 
-    west = Purpose.from_trajectories([line([3, 2, 1, 0], 1)], 5, 2, [0])
-    east = Purpose.from_trajectories([line([0, 1, 2, 3, 4], 0)], 5, 2, [4])
+    west = GoalModel.from_trajectories([line([3, 2, 1, 0], 1)], 5, 2, [0])
+    east = GoalModel.from_trajectories([line([0, 1, 2, 3, 4], 0)], 5, 2, [4])
     advisor = Advisor([west, east], settings=AdviceSettings(slip=0.05))
     watch = advisor.watch()
-    assert [advisor.consider(watch, s).purpose for s in (1, 3)] == [0, 1]
+    assert [advisor.consider(watch, s).goal for s in (1, 3)] == [0, 1]
     advisor.observe(watch, 0, 0)
-    assert [advisor.consider(watch, s).purpose for s in (1, 2, 3)] == [1, 1, 1]
+    assert [advisor.consider(watch, s).goal for s in (1, 2, 3)] == [1, 1, 1]
     assert advisor.consider(watch, 1).theta.tolist() == [1, 0]
     # Both seen and still under way: it begins again.
     advisor.observe(watch, 4, 1)
-    assert advisor.consider(watch, 1).purpose == 0
+    assert advisor.consider(watch, 1).goal == 0
 
 
 def test_the_agents_own_steps_tell_its_goal():
@@ -138,11 +138,11 @@ def test_the_agents_own_steps_tell_its_goal():
     watch = advisor.watch()
     for _ in range(3):
         advisor.observe(watch, 2, 0)
-    assert advisor.consider(watch, 2).purpose == 1
+    assert advisor.consider(watch, 2).goal == 1
 
 
 def test_steps_that_followed_advice_make_any_agent_seem_an_expert_unless_they_are_left_out():
-    purpose = Purpose.from_best_actions([[True, False]])
+    purpose = GoalModel.from_best_actions([[True, False]])
     for own_steps_only in (False, True):
         advisor = Advisor([purpose], settings=AdviceSettings(own_steps_only=own_steps_only))
         watch = advisor.watch()
@@ -154,9 +154,9 @@ def test_steps_that_followed_advice_make_any_agent_seem_an_expert_unless_they_ar
 
 def test_goals_pooled_lead_nowhere_where_goals_apart_lead_straight():
     # A corridor with a goal at each end: the optimal policies are opposite in every place between.
-    to_west = Purpose.from_best_actions([[False, False], *[[False, True]] * 5, [False, True]], [0])
-    to_east = Purpose.from_best_actions([[True, False], *[[True, False]] * 5, [False, False]], [6])
-    pooled = Purpose.pooled([to_west, to_east])
+    to_west = GoalModel.from_best_actions([[False, False], *[[False, True]] * 5, [False, True]], [0])
+    to_east = GoalModel.from_best_actions([[True, False], *[[True, False]] * 5, [False, False]], [6])
+    pooled = GoalModel.pooled([to_west, to_east])
     assert pooled.theta[1:6].tolist() == [[0.5, 0.5]] * 5
     always = Advisor.of_thesis([to_west, to_east], AdviceSettings(kappa=0))
     assert always.consider(always.watch(), 3).gain == pytest.approx(0)
@@ -182,17 +182,17 @@ OPTIONS = st.builds(
 
 @settings(max_examples=60)
 @given(st.integers(0, 10**6), st.integers(1, 4), OPTIONS)
-def test_step_by_step_as_the_naive_twin(seed, n_purposes, options):
+def test_step_by_step_as_the_naive_twin(seed, n_goals, options):
     random = np.random.default_rng(seed)
-    advisor = random_advisor(random, n_purposes, options)
+    advisor = random_advisor(random, n_goals, options)
     watch, twin = advisor.watch(), NaiveAdvisor(advisor.guide, options)
     state = int(random.integers(9))
     for _ in range(40):
         advice = advisor.consider(watch, state)
         told, gain, posterior = twin.consider(state)
         # Chosen among goals of equal worth, rounding decides; then both go on as the first has.
-        twin.target = advice.purpose if twin.target != advice.purpose and worth_ties(twin, state) else twin.target
-        assert advice.purpose == twin.target
+        twin.target = advice.goal if twin.target != advice.goal and worth_ties(twin, state) else twin.target
+        assert advice.goal == twin.target
         assert watch.posterior == pytest.approx(posterior, abs=1e-9)
         assert advice.gain == pytest.approx(gain, abs=1e-9)
         assert advice.advise == told
@@ -237,9 +237,9 @@ def test_at_once_is_step_by_step(seed):
 
 def test_exploration_rows_by_hand():
     best = np.array([[1, 0, 0, 0], [1, 1, 0, 0], [1, 1, 1, 0], [0, 0, 0, 0]], bool)
-    rows = exploration_rows(Purpose.from_best_actions(best), 0.5)
+    rows = exploration_rows(GoalModel.from_best_actions(best), 0.5)
     assert rows.tolist() == [[1, 0, 0, 0], [0.5, 0.5, 0, 0], [0.25] * 4, [0.25] * 4]
-    assert exploration_rows(Purpose.from_best_actions(best), 0)[2] == pytest.approx([1 / 3, 1 / 3, 1 / 3, 0])
+    assert exploration_rows(GoalModel.from_best_actions(best), 0)[2] == pytest.approx([1 / 3, 1 / 3, 1 / 3, 0])
 
 
 @pytest.mark.parametrize(
@@ -259,12 +259,12 @@ def test_settings_that_break_a_rule(options, words):
 
 
 def test_advisors_that_cannot_be():
-    one = Purpose.from_best_actions([[True, False]])
-    other = Purpose.from_best_actions([[True, False], [True, True]])
+    one = GoalModel.from_best_actions([[True, False]])
+    other = GoalModel.from_best_actions([[True, False], [True, True]])
     for arguments, words in (
-        (([],), "purposes must be at least one"),
-        (([one, other],), "purposes must agree"),
-        (([one, one], [[Uniform(2)]]), "needs 2 of them, got 1"),
+        (([],), "goal_models must have at least one model"),
+        (([one, other],), "goal_models must agree"),
+        (([one, one], [[Uniform(2)]]), "one model for each of the 2 goals, got 1"),
         (([one], [Uniform(3)]), "non-negative probabilities of shape"),
         (([one], None, None, [1.0]), "weights must be 2 positive numbers"),
     ):

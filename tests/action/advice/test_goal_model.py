@@ -1,9 +1,9 @@
-"""Experts' ways to goals: counts, steps to go, and ways stitched together."""
+"""Experts' ways to goals: counts, steps to go, and ways extend_goal_models together."""
 
 import numpy as np
 import pytest
 
-from lifelore.action.advice.goal_model import Purpose, Trajectory, stitched
+from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.core.errors import InputError
 
 EAST, WEST = 0, 1
@@ -17,7 +17,7 @@ def walk(states, actions):
 
 def test_counts_and_steps_by_hand():
     ways = [walk([0, 1, 2], [EAST, EAST]), walk([1, 1, 1, 2], [WEST, -1, EAST])]
-    purpose = Purpose.from_trajectories(ways, 5, 2, goals=[2])
+    purpose = GoalModel.from_trajectories(ways, 5, 2, goals=[2])
     # State 1: east with 1 step to go, west with 3, east with 1; the song (-1) on the way counts for nothing.
     assert purpose.prior.counts([0, 1, 2]).tolist() == [[1, 0], [2, 1], [0, 0]]
     assert purpose.steps.tolist() == [2, 5 / 3, np.inf, np.inf, np.inf]
@@ -27,7 +27,7 @@ def test_counts_and_steps_by_hand():
 def test_the_prior_of_figure_3_18():
     # Three experts pass the centre cell (state 4 of 3 × 3): two go on north, one east.
     ways = [walk([7, 4, 1], [0, 0]), walk([3, 4, 1], [2, 0]), walk([3, 4, 5], [2, 2])]
-    theta = Purpose.from_trajectories(ways, 9, 4).theta
+    theta = GoalModel.from_trajectories(ways, 9, 4).theta
     assert theta[4] == pytest.approx([2 / 3, 0, 1 / 3, 0])
     assert theta[3].tolist() == [0, 0, 1, 0]
     assert not theta[0].any()
@@ -35,15 +35,15 @@ def test_the_prior_of_figure_3_18():
 
 def test_policies_count_their_tied_best_actions_but_no_goal_row():
     best = np.array([[True, False], [True, True], [False, False]])
-    purpose = Purpose.from_best_actions(best, goals=[2])
+    purpose = GoalModel.from_best_actions(best, goals=[2])
     assert purpose.theta.tolist() == [[1, 0], [0.5, 0.5], [0, 0]]
     assert purpose.steps.tolist() == [0, 0, np.inf]
 
 
 def test_pooled_is_the_sum():
-    east = Purpose.from_trajectories([walk([1, 2, 3], [EAST, EAST])], 5, 2, [3])
-    west = Purpose.from_trajectories([walk([1, 0], [WEST])], 5, 2, [0])
-    both = Purpose.pooled([east, west])
+    east = GoalModel.from_trajectories([walk([1, 2, 3], [EAST, EAST])], 5, 2, [3])
+    west = GoalModel.from_trajectories([walk([1, 0], [WEST])], 5, 2, [0])
+    both = GoalModel.pooled([east, west])
     assert both.goals == ()
     assert both.theta[:3].tolist() == [[0, 0], [0.5, 0.5], [1, 0]]
     assert np.isfinite(both.steps).tolist() == [False, True, True, False, False]
@@ -51,9 +51,9 @@ def test_pooled_is_the_sum():
 
 def test_stitched_leads_on_over_others_ways_and_no_farther():
     # Experts went 1 → 2 → 3 and 1 → 0; place 4 nobody knows.
-    east = Purpose.from_trajectories([walk([1, 2, 3], [EAST, EAST])], 5, 2, [3])
-    west = Purpose.from_trajectories([walk([1, 0], [WEST])], 5, 2, [0])
-    to_east, to_west = stitched([east, west], LINE)
+    east = GoalModel.from_trajectories([walk([1, 2, 3], [EAST, EAST])], 5, 2, [3])
+    west = GoalModel.from_trajectories([walk([1, 0], [WEST])], 5, 2, [0])
+    to_east, to_west = extend_goal_models([east, west], LINE)
     assert to_east.theta.tolist() == [[1, 0], [1, 0], [1, 0], [0, 0], [0, 0]]
     assert to_east.steps.tolist() == [3, 2, 1, np.inf, np.inf]
     assert to_west.theta.tolist() == [[0, 0], [0, 1], [0, 1], [0, 1], [0, 0]]
@@ -72,4 +72,4 @@ def test_stitched_leads_on_over_others_ways_and_no_farther():
 )
 def test_each_broken_rule_is_one_clear_line(states, actions, words):
     with pytest.raises(InputError, match=words):
-        Purpose.from_trajectories([walk(states, actions)], 5, 2)
+        GoalModel.from_trajectories([walk(states, actions)], 5, 2)

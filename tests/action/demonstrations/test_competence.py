@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_ways
+from lifelore.action.demonstrations.competence import competence_by_paths, competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration
-from lifelore.action.demonstrations.simulated_person import person_policy, shown_by_person
+from lifelore.action.demonstrations.simulated_person import person_policy, simulated_demonstration
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.streams import stream
@@ -69,7 +69,7 @@ def test_by_steps_recovers_the_skill_of_simulated_people(skill):
     random = stream(0, "skill")
     told = []
     while sum(len(one.states) for one in told) < 4000:
-        one = shown_by_person(tables, best, skill, random, task="t", agent="ann", most_steps=10**5)
+        one = simulated_demonstration(tables, best, skill, random, task="t", agent="ann", most_steps=10**5)
         assert one is not None
         told.append(one)
     n = sum(len(one.states) for one in told)
@@ -83,22 +83,22 @@ def test_by_ways_by_hand():
     # Ann goes 0 1 2 and out: three steps. Bob goes 0 5 1 4 1 2 and out: six, though he could have gone her way.
     ann = demonstration("ann", [(0, 0), (1, 0), (2, 0)])
     bob = demonstration("bob", [(0, 1), (5, 0), (1, 1), (4, 0), (1, 0), (2, 0)])
-    assert competence_by_ways([ann, bob]) == {"ann": 1.0, "bob": 0.5}
+    assert competence_by_paths([ann, bob]) == {"ann": 1.0, "bob": 0.5}
     # Alone he is only charged for his circle 1 4 1: nothing shorter is known.
-    assert competence_by_ways([bob]) == {"bob": pytest.approx(4 / 6)}
+    assert competence_by_paths([bob]) == {"bob": pytest.approx(4 / 6)}
     elsewhere = demonstration("ann", [(9, 0)] * 4, "u")  # one step would have done
-    assert competence_by_ways([ann, bob, elsewhere])["ann"] == pytest.approx((1 + 1 / 4) / 2)
+    assert competence_by_paths([ann, bob, elsewhere])["ann"] == pytest.approx((1 + 1 / 4) / 2)
 
 
 def test_both_estimators_rank_people_alike():
     tables, best = grid(8)
     told = [
-        shown_by_person(tables, best, skill, stream(1, i), task="t", agent=str(skill), most_steps=10**5)
+        simulated_demonstration(tables, best, skill, stream(1, i), task="t", agent=str(skill), most_steps=10**5)
         for i in range(10)
         for skill in (0.1, 0.5, 0.95)
     ]
     told = [one for one in told if one is not None]
-    for found in (competence_by_steps(told, lambda task: best), competence_by_ways(told)):
+    for found in (competence_by_steps(told, lambda task: best), competence_by_paths(told)):
         assert found["0.1"] < found["0.5"] < found["0.95"] <= 1.0
 
 
@@ -114,21 +114,21 @@ def test_a_persons_policy_by_hand():
 
 def test_an_expert_takes_a_shortest_way():
     tables, best = grid(6)
-    one = shown_by_person(tables, best, 1.0, stream(2), task="t", agent="ann")
+    one = simulated_demonstration(tables, best, 1.0, stream(2), task="t", agent="ann")
     assert one is not None
     assert (one.task, one.agent, len(one.states), one.states[0]) == ("t", "ann", 10, 0)
     assert best[one.states, one.actions].all()
     followed = tables.next_state[one.states, one.actions, 0]
     assert np.array_equal(followed[:-1], one.states[1:])
     assert followed[-1] == 35
-    from_there = shown_by_person(tables, best, 1.0, stream(2), task="t", agent="ann", start=34)
+    from_there = simulated_demonstration(tables, best, 1.0, stream(2), task="t", agent="ann", start=34)
     assert from_there is not None
     assert from_there.actions.tolist() == [2]
 
 
 def test_people_give_up():
     tables, best = grid(6)
-    assert shown_by_person(tables, best, 1.0, stream(3), task="t", agent="ann", most_steps=9) is None
+    assert simulated_demonstration(tables, best, 1.0, stream(3), task="t", agent="ann", most_steps=9) is None
 
 
 def test_uncertain_outcomes_follow_their_probabilities():
@@ -138,7 +138,7 @@ def test_uncertain_outcomes_follow_their_probabilities():
         np.array([0.75, 1.0]), np.zeros(1, np.int32),
     )  # fmt: skip
     random = stream(4)
-    told = [shown_by_person(tables, [[True]], 1.0, random, task="t", agent="a") for _ in range(2000)]
+    told = [simulated_demonstration(tables, [[True]], 1.0, random, task="t", agent="a") for _ in range(2000)]
     steps = [len(one.states) for one in told if one is not None]
     assert np.mean(steps) == pytest.approx(4.0, abs=4 * np.sqrt(12 / 2000))
 
@@ -148,4 +148,4 @@ def test_broken_rules():
     with pytest.raises(InputError, match=r"skill must lie in \[0, 1\], got 1.1"):
         person_policy(best, 1.1)
     with pytest.raises(InputError, match="most_steps must be at least 1, got 0"):
-        shown_by_person(tables, best, 1.0, stream(0), task="t", agent="a", most_steps=0)
+        simulated_demonstration(tables, best, 1.0, stream(0), task="t", agent="a", most_steps=0)

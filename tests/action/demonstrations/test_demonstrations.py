@@ -73,8 +73,8 @@ GOOD = '{"task": "t", "agent": "a", "state": 1, "action": 0}'
 @pytest.mark.parametrize(
     ("line", "reason"),
     [
-        ("not JSON", "is no JSON"),
-        ("[" * 100_000, "is no JSON"),
+        ("not JSON", "must be JSON, got other text"),
+        ("[" * 100_000, "must be JSON, got other text"),
         ("[1, 2]", "must be an object with task, agent, state, action, got list"),
         ('{"task": "t", "agent": "a", "state": 1}', "field 'action' is missing"),
         (

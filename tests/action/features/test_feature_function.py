@@ -38,7 +38,7 @@ def test_all_four_side_by_side_by_hand():
 def test_one_reward_for_all_states():
     told = context_codes(joined(), [0, 1, 2], {"colour": 0})
     assert np.array_equal(told, context_codes(joined(), [0, 1, 2], {"colour": 0}, [0.0] * 3))
-    with pytest.raises(InputError, match="last_rewards must be one or one for each of 3 states, got 2"):
+    with pytest.raises(InputError, match="last_rewards must be one number or 3, a number for each state, got 2"):
         context_codes(joined(), [0, 1, 2], {"colour": 0}, [0.0, 1.0])
 
 
@@ -61,7 +61,7 @@ def test_reward_classes_begin_at_their_edges():
 
 
 def test_broken_rules():
-    with pytest.raises(InputError, match="edges must be finite and rise"):
+    with pytest.raises(InputError, match="edges must be finite and ascending"):
         LastReward((1.0, 1.0))
     with pytest.raises(NotFoundError, match="agent class must be one of walker, wheels, got 'bird'"):
         AgentClass(CLASSES, "bird")

@@ -12,7 +12,7 @@ from lifelore.action.features.counted_features import CountedFeatures, action_se
 from lifelore.action.features.feature_selection import (
     OnlineFeatureSelection,
     best_feature_set,
-    features_left_by_removal,
+    features_by_removal,
     independent_features,
 )
 from lifelore.action.features.feature_set import FeatureSet
@@ -203,9 +203,9 @@ def test_two_copies_of_a_feature_are_both_dropped_by_alg_5_alone():
     assert independent_features(case).names == ("f2",)
     assert independent_features(case).increase["f0"] == pytest.approx(0.0)
     assert case.entropy(["f2"]) > 0.9
-    assert len(features_left_by_removal(case, 0.2)) == 1
-    assert features_left_by_removal(case, 0.2) in (("f0",), ("f1",))
-    assert case.entropy(features_left_by_removal(case, 0.2)) < 0.5
+    assert len(features_by_removal(case, 0.2)) == 1
+    assert features_by_removal(case, 0.2) in (("f0",), ("f1",))
+    assert case.entropy(features_by_removal(case, 0.2)) < 0.5
     assert best_feature_set(case, 0.2).names == ("f0",)
 
 
@@ -213,7 +213,7 @@ def test_where_nothing_matters_the_mean_threshold_keeps_everything():
     # Δ = 0 for all, so ω = 0 and Δ ≥ ω for all.
     rows = [((i, j, k), [1.0, 1.0]) for i, j, k in product(range(2), repeat=3)]
     assert independent_features(counted(rows, (2, 2, 2))).names == ("f0", "f1", "f2")
-    assert features_left_by_removal(counted(rows, (2, 2, 2)), 0.0) == ()
+    assert features_by_removal(counted(rows, (2, 2, 2)), 0.0) == ()
 
 
 # ---- Alg. 6 ------------------------------------------------------------------------------------------------
@@ -309,7 +309,7 @@ def test_ties_of_a_single_task_leave_entropy_without_any_disagreement():
         (lambda: CountedFeatures.from_columns([[0]], [[1.0], [2.0]]), "must have a row a context"),
         (lambda: CountedFeatures.from_columns([[0]], [[-1.0]]), "counts must be finite and at least 0"),
         (lambda: best_feature_set(counted([]), -1.0), "penalty must be finite and at least 0, got -1.0"),
-        (lambda: features_left_by_removal(counted([]), math.inf), "penalty must be finite"),
+        (lambda: features_by_removal(counted([]), math.inf), "penalty must be finite"),
     ],
 )
 def test_broken_rules(call, message):

@@ -48,5 +48,5 @@ def test_of_nothing():
     assert (told["contexts"], told["counted"]) == (0, 0.0)
     assert {told[name] for name in ("unseen_rate", "entropy", "entropy_by_counts", "sure_rate")} == {None}
     assert prior_report(ActionPrior(3), [1, 2])["unseen_rate"] == 1.0
-    with pytest.raises(InputError, match="best needs the contexts it belongs to"):
+    with pytest.raises(InputError, match="best needs contexts, got none"):
         prior_report(ActionPrior(3), best=[[True, False, False]])

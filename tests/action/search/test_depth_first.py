@@ -50,27 +50,27 @@ def test_pruned_actions_may_miss_the_way():
 
 
 def test_preferences_by_hand():
-    liked = preferences(np.array([[0.1, 0.7, 0.2], [0.5, 0.0, 0.5]]), np.random.default_rng(0), prune=0.15)
-    assert liked.order[0].tolist() == [1, 2, 0]
-    assert sorted(liked.order[1, :2].tolist()) == [0, 2]
-    assert liked.n_tried.tolist() == [2, 2]
+    preferred = preferences(np.array([[0.1, 0.7, 0.2], [0.5, 0.0, 0.5]]), np.random.default_rng(0), prune=0.15)
+    assert preferred.order[0].tolist() == [1, 2, 0]
+    assert sorted(preferred.order[1, :2].tolist()) == [0, 2]
+    assert preferred.n_tried.tolist() == [2, 2]
     assert preferences(np.full((1, 3), 1 / 3), np.random.default_rng(0), prune=1.0).n_tried.tolist() == [1]
 
 
 def test_equals_come_in_every_order():
-    liked = preferences(np.full((6000, 3), 1 / 3), np.random.default_rng(0))
+    preferred = preferences(np.full((6000, 3), 1 / 3), np.random.default_rng(0))
     # Each of six orders 1000 times on average, deviation 29: five of them are 145.
-    counts = np.unique(liked.order, axis=0, return_counts=True)[1]
+    counts = np.unique(preferred.order, axis=0, return_counts=True)[1]
     assert len(counts) == 6
     assert np.abs(counts - 1000).max() < 145
 
 
-def naive_depth_first(tables, start, liked):
+def naive_depth_first(tables, start, preferred):
     seen, count = {start}, SimpleNamespace(expanded=0)
 
     def beyond(state):
         count.expanded += 1
-        for action in liked.order[state, : liked.n_tried[state]].tolist():
+        for action in preferred.order[state, : preferred.n_tried[state]].tolist():
             after = int(tables.next_state[state, action, 0])
             if tables.event[state, action, 0] & TERMINAL:
                 return [action]
@@ -88,10 +88,10 @@ def naive_depth_first(tables, start, liked):
 def test_it_is_the_recursive_twin(seed, n_states, prune):
     random = np.random.default_rng(seed)
     tables = tables_of(random.integers(0, n_states, (n_states, 3)), goal=0)
-    liked = preferences(random.dirichlet(np.ones(3), n_states), random, prune)
+    preferred = preferences(random.dirichlet(np.ones(3), n_states), random, prune)
     start = int(random.integers(n_states))
-    way, expanded = naive_depth_first(tables, start, liked)
-    found = depth_first(tables, start, liked)
+    way, expanded = naive_depth_first(tables, start, preferred)
+    found = depth_first(tables, start, preferred)
     assert found.reached == (way is not None)
     assert found.actions.tolist() == (way or [])
     assert found.expanded == expanded <= n_states
@@ -117,13 +117,13 @@ def test_deepening_finds_a_shortest_way_where_there_is_one(seed, n_states):
 
 
 def test_each_broken_rule_is_one_clear_line():
-    liked, random = listed([[0, 1]] * 6), np.random.default_rng(0)
+    preferred, random = listed([[0, 1]] * 6), np.random.default_rng(0)
     chance = FORK._replace(outcome_cum=np.array([0.5, 1.0]))
     for call, words in (
-        (lambda: depth_first(chance, 0, liked), "needs a deterministic world"),
-        (lambda: depth_first(FORK, 6, liked), "start must lie in"),
-        (lambda: depth_first(FORK, 0, listed([[0, 1]])), "liked must have an order of shape"),
-        (lambda: iterative_deepening(FORK, 0, liked, max_depth=0), "max_depth must be at least 1"),
+        (lambda: depth_first(chance, 0, preferred), "needs a deterministic world"),
+        (lambda: depth_first(FORK, 6, preferred), "start must lie in"),
+        (lambda: depth_first(FORK, 0, listed([[0, 1]])), "preferred must have an order of shape"),
+        (lambda: iterative_deepening(FORK, 0, preferred, max_depth=0), "max_depth must be at least 1"),
         (lambda: preferences(np.ones(3), random), "probs must be"),
         (lambda: preferences(np.ones((1, 3)), random, prune=2.0), "prune must lie in"),
     ):

@@ -9,7 +9,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.action.search.tree_search import Guidance, Played, SearchSettings, guidance, play, search
+from lifelore.action.search.tree_search import (
+    EpisodeResult,
+    SearchGuidance,
+    SearchSettings,
+    play,
+    search,
+    search_guidance,
+)
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
@@ -138,7 +145,7 @@ def naive_search(tables, guide, state, settings, random):
 )
 def test_the_kernel_is_the_plain_twin_to_the_bit(seed, n_outcomes, simulations, depth, rollout, by_mean):
     tables, random = random_world(seed, n_outcomes), np.random.default_rng(seed)
-    guide = guidance(tables, random.dirichlet(np.ones(3), 4), random.integers(0, 4, 7), rollout)
+    guide = search_guidance(tables, random.dirichlet(np.ones(3), 4), random.integers(0, 4, 7), rollout)
     settings = SearchSettings(simulations, depth, 1.5, 0.9, by_mean)
     found = search(tables, guide, 3, settings, np.random.default_rng(seed))
     state = random_state(np.random.default_rng(seed))
@@ -150,7 +157,7 @@ def test_the_kernel_is_the_plain_twin_to_the_bit(seed, n_outcomes, simulations, 
 
 def test_by_hand_one_simulation_takes_the_likeliest_action():
     tables = corridor(4)
-    guide = guidance(tables, [[0.2, 0.8]])
+    guide = search_guidance(tables, [[0.2, 0.8]])
     found = search(tables, guide, 2, SearchSettings(1, 1, discount=0.5), np.random.default_rng(0))
     assert found.visits.tolist() == [0, 1]
     assert found.means.tolist() == [0.0, 1.0]
@@ -166,7 +173,7 @@ def test_by_hand_puct_visits():
         np.ones(1),
         np.zeros(1, np.int32),
     )
-    guide = guidance(tables, [[0.9, 0.1]])
+    guide = search_guidance(tables, [[0.9, 0.1]])
 
     def visits(n):
         settings = SearchSettings(n, 3, exploration=1.0)
@@ -185,7 +192,7 @@ def test_by_hand_puct_visits():
 def test_many_simulations_find_the_best_move(by_mean):
     tables = corridor(9, goal=6)
     best = best_actions(optimal_q(tables, 0.95))
-    guide = guidance(tables)
+    guide = search_guidance(tables)
     for state in (3, 5, 7, 8):
         settings = SearchSettings(800, 30, by_mean=by_mean)
         found = search(tables, guide, state, settings, np.random.default_rng(state))
@@ -196,7 +203,7 @@ def test_a_prior_towards_the_goal_saves_simulations_and_one_away_from_it_costs_t
     tables = corridor(30, goal=29)
 
     def reached(probs):
-        guide = guidance(tables, [probs])
+        guide = search_guidance(tables, [probs])
         episodes = [
             play(tables, guide, 15, ENDS, 25, np.random.default_rng(0), np.random.default_rng(i))
             for i in range(20)
@@ -211,30 +218,36 @@ def test_a_uniform_prior_is_no_prior():
     tables = random_world(1, 2)
     one, other = (
         search(tables, guide, 0, ENDS, np.random.default_rng(5))
-        for guide in (guidance(tables), guidance(tables, np.full((7, 3), 1 / 3), rollout="uniform"))
+        for guide in (search_guidance(tables), search_guidance(tables, np.full((7, 3), 1 / 3), rollout="uniform"))
     )
     assert one.visits.tolist() == other.visits.tolist()
 
 
 def test_rollouts_are_drawn_as_told():
     tables, probs = random_world(1, 1), [[0.7, 0.2, 0.1]]
-    np.testing.assert_allclose(guidance(tables, probs).rollout_cum, [[0.7, 0.9, 1.0]])
-    np.testing.assert_allclose(guidance(tables, probs, rollout="uniform").rollout_cum, [[1 / 3, 2 / 3, 1.0]])
+    np.testing.assert_allclose(search_guidance(tables, probs).rollout_cum, [[0.7, 0.9, 1.0]])
+    np.testing.assert_allclose(
+        search_guidance(tables, probs, rollout="uniform").rollout_cum, [[1 / 3, 2 / 3, 1.0]]
+    )
 
 
 def test_an_episode_by_hand():
     # Two moves to the right of a corridor: 0.9 · 1, and no wall is met.
     tables = corridor(4, goal=3)
     settings = SearchSettings(200, 10, discount=0.9)
-    played = play(tables, guidance(tables), 1, settings, 10, np.random.default_rng(0), np.random.default_rng(1))
-    assert played == Played(2, True, 0.9, 0)
-    short = play(tables, guidance(tables), 1, settings, 1, np.random.default_rng(0), np.random.default_rng(1))
-    assert short == Played(1, False, 0.0, 0)
+    played = play(
+        tables, search_guidance(tables), 1, settings, 10, np.random.default_rng(0), np.random.default_rng(1)
+    )
+    assert played == EpisodeResult(2, True, 0.9, 0)
+    short = play(
+        tables, search_guidance(tables), 1, settings, 1, np.random.default_rng(0), np.random.default_rng(1)
+    )
+    assert short == EpisodeResult(1, False, 0.0, 0)
 
 
 def test_an_episode_counts_walls():
     tables = corridor(5, goal=4)
-    leftwards = Guidance(np.array([[1.0, 0.0]]), np.array([[1.0, 1.0]]), np.zeros(5, np.int32))
+    leftwards = SearchGuidance(np.array([[1.0, 0.0]]), np.array([[1.0, 1.0]]), np.zeros(5, np.int32))
     randoms = np.random.default_rng(0), np.random.default_rng(1)
     played = play(tables, leftwards, 1, SearchSettings(3, 3, 100.0, 0.5), 3, *randoms)
     assert played.collisions == 2
@@ -244,7 +257,7 @@ def test_an_episode_counts_walls():
 def test_the_same_generators_give_the_same_episode():
     tables = random_world(3, 3)
     one, other = (
-        play(tables, guidance(tables), 0, ENDS, 30, np.random.default_rng(1), np.random.default_rng(2))
+        play(tables, search_guidance(tables), 0, ENDS, 30, np.random.default_rng(1), np.random.default_rng(2))
         for _ in range(2)
     )
     assert one == other
@@ -256,7 +269,7 @@ sys.path.insert(0, sys.argv[1])
 from test_tree_search import *
 for seed in range(6):
     tables, random = random_world(seed, 1 + seed % 3), np.random.default_rng(seed)
-    guide = guidance(tables, random.dirichlet(np.ones(3), 7))
+    guide = search_guidance(tables, random.dirichlet(np.ones(3), 7))
     settings = SearchSettings(20, 5, by_mean=bool(seed % 2))
     print(play(tables, guide, 0, settings, 6, np.random.default_rng(1), np.random.default_rng(2)))
     print(search(tables, guide, 0, settings, np.random.default_rng(3)))
@@ -272,19 +285,19 @@ def test_compiled_and_plain_python_agree():
         return done.stdout
 
     compiled = said("0")
-    assert compiled.count("Played") == 6
+    assert compiled.count("EpisodeResult") == 6
     assert compiled == said("1")
 
 
 def test_each_broken_rule_is_one_clear_line():
     tables, random = corridor(4), np.random.default_rng(0)
-    guide = guidance(tables)
+    guide = search_guidance(tables)
     for call, words in (
-        (lambda: guidance(tables, rollout="greedy"), "rollout must be one of uniform, prior"),
-        (lambda: guidance(tables, [[1.0]]), "probs must have 2 columns"),
-        (lambda: guidance(tables, [[0.5, 0.6]]), "probs must hold probabilities"),
-        (lambda: guidance(tables, [[0.5, 0.5]] * 3), "row must give each of 4 states a row in"),
-        (lambda: guidance(tables, [[0.5, 0.5]], [0, 0, 0, 1]), "row must give each of 4 states a row in"),
+        (lambda: search_guidance(tables, rollout="greedy"), "rollout must be one of uniform, prior"),
+        (lambda: search_guidance(tables, [[1.0]]), "probs must have 2 columns"),
+        (lambda: search_guidance(tables, [[0.5, 0.6]]), "probs must hold probabilities"),
+        (lambda: search_guidance(tables, [[0.5, 0.5]] * 3), "row must give each of 4 states a row in"),
+        (lambda: search_guidance(tables, [[0.5, 0.5]], [0, 0, 0, 1]), "row must give each of 4 states a row in"),
         (lambda: search(tables, guide, 4, ENDS, random), "state must lie in"),
         (lambda: search(tables, guide, 0, SearchSettings(0), random), "simulations and depth must be at least 1"),
         (lambda: search(tables, guide, 0, SearchSettings(discount=1.1), random), "discount must lie in"),

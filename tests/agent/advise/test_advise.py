@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.agent.advise.advise import AdviceDesk, AdviseSettings, advise, world_of
-from lifelore.agent.advise.expert_trajectories import after, goals_of_ends, purposes, trajectories
+from lifelore.agent.advise.advise import AdviceSession, AdviseSettings, advise, world_of
+from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
 from lifelore.agent.advise.step_lines import NO_ACTION, StepLine, read_steps
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.planning.planning import optimal_q
@@ -82,7 +82,7 @@ def test_a_bad_line_is_named_by_file_and_number(bad, words):
 
 
 def test_where_a_step_leads():
-    assert [after(ROW, StepLine("a", 3, a)) for a in (EAST, WEST, NORTH, NO_ACTION)] == [4, 2, 3, 3]
+    assert [state_after(ROW, StepLine("a", 3, a)) for a in (EAST, WEST, NORTH, NO_ACTION)] == [4, 2, 3, 3]
 
 
 def test_walks_end_at_a_line_without_action_and_where_the_next_begins_elsewhere():
@@ -109,15 +109,15 @@ def test_ends_near_one_another_are_one_goal_the_commonest_of_them():
 
 def test_walks_belong_to_goals_within_two_moves():
     walks = trajectories([StepLine(i, end, NORTH) for i, end in enumerate([0, 2, 7])], ROW)
-    (near,) = purposes(walks, [1, 11], ROW)
+    (near,) = goal_models(walks, [1, 11], ROW)
     assert near.goals == (1,)
     assert np.flatnonzero(np.isfinite(near.steps)).tolist() == [0, 2]
     with pytest.raises(InputError, match="experts must end at one of the 1 goals at least once, got none of 3"):
-        purposes(walks, [11], ROW)
+        goal_models(walks, [11], ROW)
 
 
 def test_the_goals_of_the_maze_are_found_from_where_experts_ended(maze, experts):
-    desk = AdviceDesk(AdviseSettings(MAZE, experts))
+    desk = AdviceSession(AdviseSettings(MAZE, experts))
     assert desk.goals == sorted(maze_goals(maze).tolist())
     assert desk.n_experts == 48
 
@@ -135,7 +135,7 @@ def walk_of_a_lost_agent(desk, goal, seed, obey, max_steps=5000):
         action = int(random.choice(4, p=answer["theta"] if told else None))
         advised += told
         step = StepLine(seed, state, action)
-        state = after(world, step)
+        state = state_after(world, step)
         if state == goal:
             return True, advised, t + 1
         answer = desk.answer(step)
@@ -144,7 +144,7 @@ def walk_of_a_lost_agent(desk, goal, seed, obey, max_steps=5000):
 
 def test_lost_agents_find_the_goal_they_never_told(maze, experts):
     goals = maze_goals(maze).tolist()
-    better = AdviceDesk(AdviseSettings(MAZE, experts))
+    better = AdviceSession(AdviseSettings(MAZE, experts))
     told = [walk_of_a_lost_agent(better, goals[i], i, obey=True) for i in range(8)]
     alone = [walk_of_a_lost_agent(better, goals[i], i + 100, obey=False) for i in range(8)]
     assert sum(reached for reached, *_ in told) >= 7
@@ -178,14 +178,14 @@ def test_agents_are_told_apart(maze, experts):
 def test_goals_from_a_file(maze, experts, tmp_path):
     wanted = maze_goals(maze)[:2].tolist()
     (tmp_path / "goals.jsonl").write_text("".join(json.dumps({"state": goal}) + "\n" for goal in wanted))
-    desk = AdviceDesk(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
+    desk = AdviceSession(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
     assert desk.goals == sorted(wanted)
     (tmp_path / "goals.jsonl").write_text('{"state": 0}\n{"state": -1}\n')
     with pytest.raises(InputError, match=r"goals.jsonl line 2: state must be"):
-        AdviceDesk(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
+        AdviceSession(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
     (tmp_path / "goals.jsonl").write_text("\n")
     with pytest.raises(InputError, match="must name at least one goal"):
-        AdviceDesk(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
+        AdviceSession(AdviseSettings(MAZE, experts, str(tmp_path / "goals.jsonl")))
 
 
 def test_worlds_by_name_and_seed_or_by_map(tmp_path):
@@ -202,13 +202,13 @@ def test_mistakes_are_one_clear_line(experts, tmp_path):
     with pytest.raises(NotFoundError, match="method must be one of better, thesis, got 'best'"):
         AdviseSettings(MAZE, experts, method="best")
     with pytest.raises(NotFoundError, match="file 'none' does not exist"):
-        AdviceDesk(AdviseSettings(MAZE, "none"))
+        AdviceSession(AdviseSettings(MAZE, "none"))
     (tmp_path / "empty.jsonl").write_text(line("a", 1, None))
     with pytest.raises(InputError, match="must hold at least one step with an action"):
-        AdviceDesk(AdviseSettings(MAZE, str(tmp_path / "empty.jsonl")))
+        AdviceSession(AdviseSettings(MAZE, str(tmp_path / "empty.jsonl")))
     (tmp_path / "bytes.jsonl").write_bytes(b"\xff\xfe\n")
     with pytest.raises(InputError, match="must be JSON lines in UTF-8"):
-        AdviceDesk(AdviseSettings(MAZE, str(tmp_path / "bytes.jsonl")))
+        AdviceSession(AdviseSettings(MAZE, str(tmp_path / "bytes.jsonl")))
     for share in (0.0, 1.5):
         with pytest.raises(InputError, match="share must be a share"):
-            AdviceDesk(AdviseSettings(MAZE, experts, share=share))
+            AdviceSession(AdviseSettings(MAZE, experts, share=share))

@@ -220,7 +220,7 @@ def test_lore_is_shared_by_key_and_number_of_actions_only(tmp_path):
 
 
 def test_a_memory_needs_to_know_what_contexts_mean(tmp_path):
-    with pytest.raises(InputError, match="key must say what the contexts of Doors mean"):
+    with pytest.raises(InputError, match="key must name the meaning of the contexts of Doors"):
         live_in(Doors(), memory=tmp_path / "m.db")
     assert not (tmp_path / "m.db").exists()
 
@@ -321,7 +321,7 @@ def test_a_worlds_own_exception_passes_and_finished_tasks_stay(tmp_path):
         ({"form": "best"}, "form must be one of proportion"),
         ({"ties": "none"}, "ties must be one of uniform, prior"),
         ({"robot": " "}, "robot must have a name"),
-        ({"key": ""}, "key must say what the contexts mean, got an empty one"),
+        ({"key": ""}, "key must name the meaning of the contexts, got an empty text"),
     ],
 )
 def test_settings_that_break_their_rule(settings, said):

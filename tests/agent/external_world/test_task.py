@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import ContextCodes
-from lifelore.agent.external_world.task import LOOK_EVERY, ForeignLearner, ForeignTask, Guidance
+from lifelore.agent.external_world.task import STOP_CHECK, ExternalLearner, ExternalTask, GuidanceSettings
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
@@ -61,9 +61,9 @@ class Countdown:
 
 def lived(world, method, stop=None, seeds=None):
     """The learner and its numbers, of one task without a prior."""
-    learner = ForeignLearner(world.n_actions, None, Guidance(), stream(0, "own"))
+    learner = ExternalLearner(world.n_actions, None, GuidanceSettings(), stream(0, "own"))
     seeds = seeds or list(range(method.episodes))
-    task = ForeignTask(world, ContextCodes(), method, 0.95, 7, seeds, stop or Event())
+    task = ExternalTask(world, ContextCodes(), method, 0.95, 7, seeds, stop or Event())
     return learner, task.live(learner)
 
 
@@ -81,8 +81,8 @@ def test_learning_is_the_kernels(guided, ties):
     rows = uniform_rows(tables, probs, probs if guided and ties == "prior" else None, context)
     expected, curve = method.learn(tables, 0.9, world=stream(1, "w"), own=stream(1, "own"), rows=rows)
 
-    learner = ForeignLearner(4, prior if guided else None, Guidance(ties=ties), stream(1, "own"))
-    result = ForeignTask(Tabled(tables), codes, method, 0.9, 0, [0] * 60, Event()).live(learner)
+    learner = ExternalLearner(4, prior if guided else None, GuidanceSettings(ties=ties), stream(1, "own"))
+    result = ExternalTask(Tabled(tables), codes, method, 0.9, 0, [0] * 60, Event()).live(learner)
     visited = np.flatnonzero(expected.visits.any(axis=1))
     assert len(visited) > 64
     for state in visited:
@@ -125,7 +125,7 @@ def test_episodes_have_the_seeds_given():
 
 
 def test_best_actions_count_where_a_state_is_worth_something():
-    learner = ForeignLearner(3, None, Guidance(), stream(0, "own"))
+    learner = ExternalLearner(3, None, GuidanceSettings(), stream(0, "own"))
     assert [part.shape for part in learner.best()] == [(0,), (0, 3)]
     for state, code in (("tie", 4), ("bad", 9), ("new", 4), ("tie", 5)):
         learner.act(state, code, 0.0)
@@ -150,7 +150,7 @@ def test_stop_is_heard_within_an_episode():
     world = Endless()
     with pytest.raises(Stopped):
         lived(world, QLearning(1, 10**6), stop)
-    assert world.steps == LOOK_EVERY
+    assert world.steps == STOP_CHECK
 
 
 @pytest.mark.parametrize("reward", [float("nan"), float("inf")])
@@ -170,4 +170,4 @@ def test_rewards_must_be_finite(reward):
 )
 def test_guidance_that_breaks_its_rule(settings, said):
     with pytest.raises(InputError, match=said):
-        Guidance(**settings)
+        GuidanceSettings(**settings)

@@ -1,30 +1,32 @@
-"""Who lives beside whom."""
+"""Which agents live together."""
 
 import pytest
 
-from lifelore.agent.live.baselines import ROSTER, companions
+from lifelore.agent.live.baselines import AGENTS, agents_for, baselines_for
 from lifelore.core.errors import InputError, NotFoundError
 
 
-def test_companions():
-    assert companions("lore", "model") == ["lore", "scratch"]
-    assert companions("prior", "model") == ["prior", "scratch"]
-    assert companions("scratch", "model") == ["scratch"]
-    assert companions("all", "model") == list(ROSTER)
-    assert companions("all", "q") == ["lore", "scratch"]
-    assert companions("prior", "q") == ["prior", "scratch"]
-    assert companions("scratch", "q") == ["scratch"]
+def test_agents_and_their_baselines():
+    assert baselines_for("lore", "model") == baselines_for("all", "q") == ["scratch"]
+    assert baselines_for("scratch", "model") == []
+    assert agents_for("lore", "model") == ["lore", "scratch"]
+    assert agents_for("prior", "model") == ["prior", "scratch"]
+    assert agents_for("scratch", "model") == ["scratch"]
+    assert agents_for("all", "model") == list(AGENTS)
+    assert agents_for("all", "q") == ["lore", "scratch"]
+    assert agents_for("prior", "q") == ["prior", "scratch"]
+    assert agents_for("scratch", "q") == ["scratch"]
 
 
 def test_refusals():
     with pytest.raises(NotFoundError, match="agent must be one of"):
-        companions("nobody", "model")
+        agents_for("nobody", "model")
     with pytest.raises(InputError, match="use learner 'model'"):
-        companions("rmax", "q")
+        agents_for("rmax", "q")
 
 
 def test_the_four_are_a_factorial():
-    assert {(ROSTER[n].uses_prior, ROSTER[n].remembers) for n in ("lore", "model", "prior", "scratch")} == {
+    assert {(AGENTS[n].uses_prior, AGENTS[n].remembers) for n in ("lore", "model", "prior", "scratch")} == {
         (True, True), (False, True), (True, False), (False, False),
     }  # fmt: skip
-    assert len({ROSTER[n].manner for n in ("lore", "model", "prior", "scratch")}) == 1
+    assert len({AGENTS[n].exploration_strategy for n in ("lore", "model", "prior", "scratch")}) == 1

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.live.greedy_paths import greedy_path, path_lengths, ways_of
+from lifelore.agent.live.greedy_paths import greedy_path, greedy_paths_of, path_lengths
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.domains import make_world
 from lifelore.domains.grids.grid_world import GridWorld
@@ -53,7 +53,7 @@ def test_lengths_agree_with_paths_under_any_policy():
 def test_ways_start_apart_and_arrive():
     world = make_world("lattice", size=9)
     policy = greedy_policy(optimal_q(world.task(0).tables(), world.discount))
-    ways = ways_of(world, policy, 5, 0)
+    ways = greedy_paths_of(world, policy, 5, 0)
     assert (ways.task, ways.goal, ways.arriving, len(ways.paths)) == (5, 0, 1.0, 3)
     assert len({int(path[0]) for path in ways.paths}) == 3
     assert all(path[-1] == 0 for path in ways.paths)
@@ -61,12 +61,12 @@ def test_ways_start_apart_and_arrive():
 
 
 def test_ways_where_few_or_none_arrive(corridor):
-    some = ways_of(corridor, [WEST, WEST, EAST, -1], 0, 3)
+    some = greedy_paths_of(corridor, [WEST, WEST, EAST, -1], 0, 3)
     assert ([path.tolist() for path in some.paths], some.arriving) == ([[2, 3]], pytest.approx(1 / 3))
-    none = ways_of(corridor, [-1] * 4, 0, 3)
+    none = greedy_paths_of(corridor, [-1] * 4, 0, 3)
     assert (none.paths, none.arriving) == ([], 0.0)
 
 
 def test_a_fixed_start_is_the_only_one(corridor):
-    ways = ways_of(corridor, [EAST] * 4, 0, 3, start=1)
+    ways = greedy_paths_of(corridor, [EAST] * 4, 0, 3, start=1)
     assert ([path.tolist() for path in ways.paths], ways.arriving) == ([[1, 2, 3]], 1.0)

@@ -11,8 +11,9 @@ import pytest
 
 from lifelore.agent.live.l2_log import L2Log, LifeLog
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.core.errors import InputError, StoreError
+
+from .flat_settings import flat_settings
 
 STANDARD = [
     "block_num", "exp_num", "worker_id", "block_type", "block_subtype", "task_name", "task_params", "exp_status",
@@ -81,17 +82,17 @@ def test_blocks_begin_where_the_type_changes(tmp_path):
 
 @pytest.mark.parametrize("learner", ["model", "q"])
 def test_a_life_is_logged_episode_by_episode(learner, tmp_path):
-    told = LifeSettings(
-        domain="lattice", tasks=3, episodes=40, max_steps=300, learner=learner, memory=str(tmp_path / "life.db")
+    settings = flat_settings(
+        tasks=3, episodes=40, max_steps=300, learner=learner, memory=str(tmp_path / "life.db")
     )
     kept = []
-    log = LifeLog(tmp_path / "logs", told.domain)
+    log = LifeLog(tmp_path / "logs", settings.world.domain)
 
     def watch(task, results):
         log.add(task, results)
         kept.append((task, dict(results)))
 
-    life = live(told, watch=watch)
+    life = live(settings, watch=watch)
     assert [task for task, _ in kept] == life.report["tasks"]
     scenarios = {path.name.rsplit("-", 2)[0]: path for path in (tmp_path / "logs").iterdir()}
     assert sorted(scenarios) == ["lore", "scratch-task0", "scratch-task1", "scratch-task2"]
@@ -114,9 +115,9 @@ def test_a_life_is_logged_episode_by_episode(learner, tmp_path):
 
 
 def test_a_watched_life_is_the_life(tmp_path):
-    told = [LifeSettings(domain="lattice", tasks=2, memory=str(tmp_path / f"{i}.db")) for i in range(2)]
+    settings = [flat_settings(tasks=2, memory=str(tmp_path / f"{i}.db")) for i in range(2)]
     seen = []
-    plain, watched = live(told[0]), live(told[1], watch=lambda task, results: seen.append(set(results)))
+    plain, watched = live(settings[0]), live(settings[1], watch=lambda task, results: seen.append(set(results)))
     assert plain.report["tasks"] == watched.report["tasks"]
     assert seen == [{"lore", "scratch"}] * 2
 
@@ -148,13 +149,13 @@ def test_columns_stay(tmp_path):
 
 def test_logs_that_cannot_be(tmp_path):
     (tmp_path / "file").write_text("")
-    with pytest.raises(InputError, match="folder must be one to write into"):
+    with pytest.raises(InputError, match="folder must be a folder, but"):
         L2Log(tmp_path / "file", "life", ["reward"])
-    with pytest.raises(InputError, match="folder must be one to write into"):
+    with pytest.raises(InputError, match="folder must be a folder, but"):
         LifeLog(tmp_path / "file", "lattice")
     with pytest.raises(InputError, match="scenario must be of letters, digits"):
         L2Log(tmp_path, "a/b", ["reward"])
-    with pytest.raises(InputError, match="at least one column beside the standard ones"):
+    with pytest.raises(InputError, match="at least one column that is not standard"):
         L2Log(tmp_path, "life", [])
     log = L2Log(tmp_path, "life", ["reward"])
     (log.path / "worker-0" / "0-train" / "data-log.tsv").mkdir(parents=True)

@@ -1,7 +1,6 @@
 """Lives: reproducible, continued, stopped, carried to other buildings, and better with time."""
 
 import os
-from dataclasses import replace
 from pathlib import Path
 from threading import Event
 
@@ -15,10 +14,12 @@ from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupan
 from lifelore.domains.grids.grid_world import MOVE_BITS
 from lifelore.memory import open_memory
 
+from .flat_settings import flat_settings
+
 
 def settings(tmp_path: Path, **changes) -> LifeSettings:
-    defaults = {"domain": "lattice", "tasks": 4, "memory": str(tmp_path / "life.db"), "seed": 3}
-    return LifeSettings(**(defaults | changes))
+    defaults = {"tasks": 4, "memory": str(tmp_path / "life.db"), "seed": 3}
+    return flat_settings(**defaults | changes)
 
 
 def without_time(report: dict) -> dict:
@@ -190,12 +191,12 @@ def test_fixed_start_and_destinations(tmp_path):
     ],
 )
 def test_settings_that_break_a_rule(tmp_path, changes, message):
-    told = settings(tmp_path, tasks=1, **changes)
+    changed = settings(tmp_path, tasks=1, **changes)
     if message is None:
-        assert len(live(told).report["tasks"]) == 1
+        assert len(live(changed).report["tasks"]) == 1
     else:
         with pytest.raises(InputError, match=message):
-            live(told)
+            live(changed)
 
 
 @pytest.mark.parametrize(
@@ -208,7 +209,7 @@ def test_settings_that_break_a_rule(tmp_path, changes, message):
 )  # fmt: skip
 def test_settings_are_checked_at_once(changes):
     with pytest.raises(InputError):
-        replace(LifeSettings(), **changes)
+        flat_settings(**changes)
 
 
 def test_unknown_agents_and_domains(tmp_path):

@@ -8,21 +8,22 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.live.baselines import ROSTER
+from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.life import Life, live
-from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.report import FILES, PRIOR_FILES, check_folder, write_portfolio
 from lifelore.core.errors import InputError, StoreError
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.figures.style import colour_of
 
+from .flat_settings import flat_settings
+
 PNG = b"\x89PNG\r\n\x1a\n"
-_QUICK = {"domain": "lattice", "tasks": 3, "jobs": 1}
+_QUICK = {"tasks": 3, "jobs": 1}
 
 
 @pytest.fixture(scope="module")
 def life(tmp_path_factory) -> Life:
-    return live(LifeSettings(**_QUICK, memory=str(tmp_path_factory.mktemp("life") / "memory.db")))
+    return live(flat_settings(**_QUICK, memory=str(tmp_path_factory.mktemp("life") / "memory.db")))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +35,7 @@ def folder(life, tmp_path_factory) -> Path:
 
 
 def _life(tmp_path: Path, **settings) -> Life:
-    return live(LifeSettings(**_QUICK | settings, memory=str(tmp_path / "memory.db")))
+    return live(flat_settings(**_QUICK | settings, memory=str(tmp_path / "memory.db")))
 
 
 def _no_constant(name: str):
@@ -116,7 +117,7 @@ def test_a_report_that_is_not_json_leaves_the_folder_as_it_was(life, tmp_path):
 
 
 def test_every_agent_has_its_colour():
-    assert len({colour_of(name) for name in ROSTER}) == len(ROSTER)
+    assert len({colour_of(name) for name in AGENTS}) == len(AGENTS)
 
 
 def test_check_folder_makes_it_and_leaves_it_empty(tmp_path):

@@ -2,15 +2,16 @@
 
 import numpy as np
 
-from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.task_stream import TaskStream
 from lifelore.domains.worlds import make_world
+
+from .flat_settings import flat_settings
 
 LATTICE = make_world("lattice")
 
 
 def stream_of(**settings) -> TaskStream:
-    return TaskStream(LATTICE, LifeSettings(domain="lattice", **settings))
+    return TaskStream(LATTICE, flat_settings(**settings))
 
 
 def test_goals_depend_on_seed_and_number_alone():
@@ -27,7 +28,7 @@ def test_destinations_recur():
     assert len(goals) == 3
 
 
-def test_starts_are_anywhere_but_the_goal_or_the_one_told():
+def test_starts_are_anywhere_but_the_goal_or_the_given_start():
     task = stream_of().task(0)
     assert set(task.starts) == set(range(LATTICE.n_states)) - {task.goal}
     assert stream_of(start=(1, 3)).task(0).starts.tolist() == [2]

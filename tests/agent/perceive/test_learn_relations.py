@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.agent.perceive.learn_relations import (
-    RelationLesson,
+    LearnRelationsSettings,
     as_bytes,
     as_words,
     learn_relations,
@@ -51,7 +51,7 @@ def folder(tmp_path):
 
 
 def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
-    lesson = RelationLesson(str(folder), str(folder / "truth.csv"), "kitchen")
+    lesson = LearnRelationsSettings(str(folder), str(folder / "truth.csv"), "kitchen")
     steps = []
     report = learn_relations(lesson, str(folder / "m.db"), str(folder / "m.npz"), lambda *step: steps.append(step))
     assert report["scenes"] == 3
@@ -63,7 +63,7 @@ def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
     one = cloud(PLACES["stack"])
     assert recalled.beliefs(one) == written.beliefs(one)
     assert {(r.a, r.b, r.relation) for r in recalled.predict(one)} >= {(3, 2, "on"), (2, TABLE, "on")}
-    shorter = RelationLesson(str(folder), str(folder / "truth.csv"), "kitchen", method="displacement")
+    shorter = LearnRelationsSettings(str(folder), str(folder / "truth.csv"), "kitchen", method="displacement")
     learn_relations(shorter, str(folder / "m.db"))
     with open_memory(folder / "m.db") as memory:
         assert recall_relations(memory, "kitchen").method == "displacement"
@@ -73,7 +73,9 @@ def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
 
 def test_without_memory_a_file_alone_is_written(folder, monkeypatch):
     monkeypatch.setattr("lifelore.agent.perceive.learn_relations.open_memory", None)
-    report = learn_relations(RelationLesson(str(folder), str(folder / "truth.csv")), out=str(folder / "m.npz"))
+    report = learn_relations(
+        LearnRelationsSettings(str(folder), str(folder / "truth.csv")), out=str(folder / "m.npz")
+    )
     assert report["memory"] is None
     assert (folder / "m.npz").is_file()
 
@@ -89,7 +91,7 @@ def test_without_memory_a_file_alone_is_written(folder, monkeypatch):
 def test_a_truth_that_does_not_fit_the_clouds_is_refused(folder, row, said):
     (folder / "wrong.csv").write_text(f"scene,a,b,relation,confidence\n{row}\n")
     with pytest.raises(InputError, match=said):
-        learn_relations(RelationLesson(str(folder), str(folder / "wrong.csv")), str(folder / "m.db"))
+        learn_relations(LearnRelationsSettings(str(folder), str(folder / "wrong.csv")), str(folder / "m.db"))
 
 
 def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
@@ -97,7 +99,9 @@ def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
     np.savez(folder / "away.npz", points=away.points, labels=away.labels)
     more = "away,2,3,none,3\naway,3,2,beyond,2\naway,2,1,on,1\n"
     (folder / "more.csv").write_text(TRUTH + more)
-    report = learn_relations(RelationLesson(str(folder), str(folder / "more.csv")), out=str(folder / "m.npz"))
+    report = learn_relations(
+        LearnRelationsSettings(str(folder), str(folder / "more.csv")), out=str(folder / "m.npz")
+    )
     assert report["pairs"] == {"adjacent": 1, "none": 2, "on": 2}
     assert report["not_near"] == {"beyond": 1, "none": 1}
 
@@ -114,7 +118,7 @@ def test_clouds_in_millimetres_with_parts_and_no_table(folder):
     (folder / "planes.csv").write_text("scene,nx,ny,nz,d\nstack,1,0,0,0\n")
     told = []
     fits = {"units": "mm", "up": (0, 0, 1), "labels": "parts"}
-    lesson = RelationLesson(str(folder), str(folder / "truth.csv"), **fits)
+    lesson = LearnRelationsSettings(str(folder), str(folder / "truth.csv"), **fits)
     assert learn_relations(lesson, out=str(folder / "m.npz"), notice=told.append)["pairs"]["on"] == 1
     assert told == []
     model = RelationClassifier.load(folder / "m.npz")
@@ -133,13 +137,13 @@ def test_clouds_in_millimetres_with_parts_and_no_table(folder):
 
 def test_what_perceive_could_not_name_is_refused(folder):
     with pytest.raises(InputError, match=r"name must not end in \.npz"):
-        RelationLesson(str(folder), str(folder / "truth.csv"), "m.npz")
+        LearnRelationsSettings(str(folder), str(folder / "truth.csv"), "m.npz")
     with pytest.raises(InputError, match=r"out must end in \.npz"):
-        learn_relations(RelationLesson(str(folder), str(folder / "truth.csv")), out=str(folder / "m.foo"))
+        learn_relations(LearnRelationsSettings(str(folder), str(folder / "truth.csv")), out=str(folder / "m.foo"))
 
 
 def test_a_place_that_cannot_be_written_is_refused_before_the_work(folder):
-    lesson = RelationLesson(str(folder), str(folder / "truth.csv"))
+    lesson = LearnRelationsSettings(str(folder), str(folder / "truth.csv"))
     (folder / "d.npz").mkdir()
     for out in (folder / "d.npz", folder / "none" / "m.npz"):
         with pytest.raises(InputError, match="out must be a file"):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.perceive.learn_relations import remember
+from lifelore.agent.perceive.learn_relations import store_model
 from lifelore.agent.perceive.perceive import STAGES, PerceiveSettings, perceive
 from lifelore.agent.perceive.scene_files import domain_path
 from lifelore.core.errors import InputError, NotFoundError
@@ -92,7 +92,7 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
     assert said(perceive(pile, PerceiveSettings(up="z", model=str(SHIPPED)))) == said(document)
     place = str(tmp_path / "lore.db")
     with open_memory(place) as memory:
-        remember(memory, "mine", shipped_model(), {"name": "mine"})
+        store_model(memory, "mine", shipped_model(), {"name": "mine"})
     assert said(perceive(pile, PerceiveSettings(up="z", model="mine", memory=place))) == said(document)
     with pytest.raises(NotFoundError, match="mine"):
         perceive(pile, PerceiveSettings(model="other", memory=place))

@@ -89,8 +89,8 @@ def test_mistakes_are_told_before_any_cloud_is_read(clouds, tmp_path):
     named = str(tmp_path / "{name}.dot")
     refused("dot names one file for many clouds", lambda: perceive_many(clouds, UPRIGHT, dot="a.dot"))
     refused("'on'.*rename one of them", lambda: perceive_many([*clouds, twin], UPRIGHT, dot=named))
-    refused("would be written over", lambda: perceive_many([clouds[0]] * 2, UPRIGHT, dot=named))
-    refused("would be written over", lambda: perceive_many(clouds, UPRIGHT, dot=str(tmp_path / "{name}.npz")))
+    refused("would be overwritten", lambda: perceive_many([clouds[0]] * 2, UPRIGHT, dot=named))
+    refused("would be overwritten", lambda: perceive_many(clouds, UPRIGHT, dot=str(tmp_path / "{name}.npz")))
     refused("folder must exist", lambda: perceive_many(clouds, UPRIGHT, dot=str(tmp_path / "no/{name}.dot")))
     refused("plot must name a PNG", lambda: perceive_many(clouds, UPRIGHT, plot=str(tmp_path / "{name}.svg")))
     refused("units must be", lambda: perceive_many(clouds, PerceiveSettings(units="inch")))
@@ -131,7 +131,7 @@ def test_each_new_cloud_of_a_folder(clouds, tmp_path):
     np.save(folder / "a.npy", CUBE)
     twin = next(entries)
     assert twin["source"] == str(folder / "a.npy")
-    assert "would write over" in twin["error"]
+    assert "would overwrite" in twin["error"]
     stop.set()
     assert list(entries) == []
 
@@ -144,7 +144,7 @@ def test_a_watched_cloud_never_writes_over_the_files_of_another(clouds, tmp_path
     assert "error" not in next(entries)
     domain = (tmp_path / "cup-domain.pddl").read_text()
     (folder / "cup-domain.npz").write_bytes(Path(clouds[0]).read_bytes())
-    assert "would write over" in next(entries)["error"]
+    assert "would overwrite" in next(entries)["error"]
     assert (tmp_path / "cup-domain.pddl").read_text() == domain
     stop.set()
 

@@ -23,11 +23,11 @@ def test_files_that_differ_pass_and_none_is_made(tmp_path):
 @pytest.mark.parametrize(
     ("files", "said"),
     [
-        (SceneFiles(dot="a.png", plot="a.png"), "'a.png' would be written over"),
-        (SceneFiles(pddl="a", dot="./a"), "'./a' would be written over"),
-        (SceneFiles(pddl="a.pddl", dot="a-domain.pddl"), "'a-domain.pddl' would be written over"),
-        (SceneFiles(dot="cloud.pcd"), "'cloud.pcd' would be written over"),
-        (SceneFiles(dot="link.pcd"), "'link.pcd' would be written over"),
+        (SceneFiles(dot="a.png", plot="a.png"), "'a.png' would be overwritten"),
+        (SceneFiles(pddl="a", dot="./a"), "'./a' would be overwritten"),
+        (SceneFiles(pddl="a.pddl", dot="a-domain.pddl"), "'a-domain.pddl' would be overwritten"),
+        (SceneFiles(dot="cloud.pcd"), "'cloud.pcd' would be overwritten"),
+        (SceneFiles(dot="link.pcd"), "'link.pcd' would be overwritten"),
         (SceneFiles(plot="a.svg"), "plot must name a PNG file, such as scene.png, got 'a.svg'"),
         (SceneFiles(plot="png"), "plot must name a PNG file"),
         (SceneFiles(pddl="b.pddl"), "'b-domain.pddl', which is a folder"),

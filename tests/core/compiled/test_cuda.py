@@ -1,9 +1,6 @@
 """CUDA form of `step`: the processor's results on a simulated GPU, and code for a real one."""
 
 import importlib.util
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -11,23 +8,12 @@ import pytest
 
 import lifelore
 
+from .fresh_python import run
+
 RUN = Path(__file__).with_name("cuda_run.py")
 PACKAGE = Path(lifelore.__file__).parent
 SIMULATED = {"NUMBA_ENABLE_CUDASIM": "1"}
 REAL = {"NUMBA_ENABLE_CUDASIM": "0", "NUMBA_CUDA_LOW_OCCUPANCY_WARNINGS": "0"}
-
-
-def run(*arguments: object, **environment: str) -> str:
-    """What a fresh Python prints, warnings being errors."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", *map(str, arguments)],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
 
 
 def check_all_moves(path: Path) -> None:

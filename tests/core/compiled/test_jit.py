@@ -15,6 +15,8 @@ import lifelore
 from lifelore.core.compiled.kernel_cache import STALE_DAYS, kernel_cache_dir, kernel_sources, remove_stale
 from lifelore.core.compiled.numba_internals import quick_cache
 
+from .fresh_python import run
+
 KERNELS_RUN = Path(__file__).parents[1] / "kernels_run.py"
 PACKAGE = Path(lifelore.__file__).parent
 
@@ -36,19 +38,6 @@ print(who.visits[0, 0], who.own_random[0])
 """
 
 
-def run(*arguments, **environment) -> str:
-    """What a fresh Python prints, warnings being errors."""
-    done = subprocess.run(
-        [sys.executable, "-W", "error", *arguments],
-        env=os.environ | environment,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
 def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
     run(str(KERNELS_RUN), str(tmp_path / "compiled.npz"), NUMBA_DISABLE_JIT="0")
     run(str(KERNELS_RUN), str(tmp_path / "plain.npz"), NUMBA_DISABLE_JIT="1")
@@ -58,7 +47,7 @@ def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
         for name in compiled:
             assert compiled[name].dtype == plain[name].dtype, name
             assert np.array_equal(compiled[name], plain[name]), name
-        assert any(compiled[name].any() for name in compiled if name.startswith("Manner"))
+        assert any(compiled[name].any() for name in compiled if name.startswith("ExplorationStrategy"))
 
 
 @pytest.fixture
@@ -167,6 +156,8 @@ import sys
 import numba.core.caching
 del numba.core.caching.CompileResultCacheImpl
 from lifelore.core.compiled.numba_internals import quick_cache
+
+from .fresh_python import run
 assert quick_cache() is None
 """
 

@@ -17,7 +17,14 @@ from lifelore.core.learning.known_world import (
     find_ways,
     goal_distances,
 )
-from lifelore.core.learning.model_learning import ALL_NEW, MOST_NEWS, Manner, Perceived, explore, new_explorer
+from lifelore.core.learning.model_learning import (
+    ALL_NEW,
+    MOST_NEWS,
+    ExplorationStrategy,
+    Perceived,
+    explore,
+    new_explorer,
+)
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.streams import stream
 
@@ -39,14 +46,14 @@ def maze(seed: int, n=40, n_actions=4, goals=1) -> Tables:
     return Tables(*(table[:, :, None] for table in tables), np.ones(1), np.arange(goals, n, dtype=np.int32))
 
 
-def follow(tables, model, manner=Manner(), seed=0, chunk=7, chunks=150):  # noqa: B008 — a frozen tuple
+def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunks=150):  # noqa: B008 — a frozen tuple
     """`KnownValue.update` and `exact` after every `chunk` steps; the follower too."""
     n = tables.n_states
     explorer = new_explorer(n, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
     seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, tables.n_actions)))
     known, curve, values = KnownValue(tables, model, explorer, 0.95), new_curve(chunks * chunk), []
     for _ in range(chunks):
-        explore(tables, model, seen, manner, explorer, curve, 60, 0.95, chunk)
+        explore(tables, model, seen, strategy, explorer, curve, 60, 0.95, chunk)
         values.append((known.update(), known.exact()))
     return known, np.array(values)
 
@@ -54,16 +61,23 @@ def follow(tables, model, manner=Manner(), seed=0, chunk=7, chunks=150):  # noqa
 @settings(max_examples=60)
 @given(
     seeds,
-    st.sampled_from([Manner(), Manner(exhaustive=True), Manner(senses=True), Manner(planned=False)]),
+    st.sampled_from(
+        [
+            ExplorationStrategy(),
+            ExplorationStrategy(exhaustive=True),
+            ExplorationStrategy(senses=True),
+            ExplorationStrategy(planned=False),
+        ]
+    ),
     st.integers(1, 3),
     st.sampled_from([0.0, 0.5, 1.0]),
 )
-def test_kept_up_to_date_equals_evaluating_every_state(seed, manner, goals, remembered):
+def test_kept_up_to_date_equals_evaluating_every_state(seed, strategy, goals, remembered):
     """With nothing, half or all of the world remembered; with several goals a way may end at an unmet one."""
     tables, model = maze(seed, goals=goals), blank_model(40, 4)
     kept = np.random.default_rng(seed).random((40, 4)) < remembered
     model.target[kept] = tables.next_state[:, :, 0][kept]
-    known, values = follow(tables, model, manner, seed)
+    known, values = follow(tables, model, strategy, seed)
     assert goals > 1 or known._by_distance is not None  # the quick way is among what is tested
     assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
 
@@ -125,7 +139,7 @@ def test_more_news_than_are_listed_are_all_found():
     known = KnownValue(tables, model, explorer, 0.999)
     seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 2)))
     assert known.update() == 0
-    explore(tables, model, seen, Manner(), explorer, new_curve(1), 10**6, 0.999, 10**6)
+    explore(tables, model, seen, ExplorationStrategy(), explorer, new_curve(1), 10**6, 0.999, 10**6)
     assert explorer.cursor[NEWS] == ALL_NEW
     assert known.update() == pytest.approx(100 * 0.999 ** (n - 2))
     assert explorer.cursor[NEWS] == 0

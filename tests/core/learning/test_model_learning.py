@@ -19,13 +19,19 @@ from lifelore.core.learning.known_world import (
     blank_model,
     known_policy,
 )
-from lifelore.core.learning.model_learning import Manner, Perceived, check_deterministic, explore, new_explorer
+from lifelore.core.learning.model_learning import (
+    ExplorationStrategy,
+    Perceived,
+    check_deterministic,
+    explore,
+    new_explorer,
+)
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.planning import mean_start_value, optimal_q, policy_values
 from lifelore.core.streams import stream
 
 ALL = 10**9
-PLANNED = Manner()
+PLANNED = ExplorationStrategy()
 LEFT, RIGHT = 0, 1
 
 
@@ -61,11 +67,11 @@ def new(tables, seed=0):
     return new_explorer(tables.n_states, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
 
 
-def lived(tables, model, seen=None, manner=PLANNED, episodes=3, max_steps=100, budget=ALL, seed=0):
+def lived(tables, model, seen=None, strategy=PLANNED, episodes=3, max_steps=100, budget=ALL, seed=0):
     """The explorer and its curve after all episodes; `model` learns in place."""
     explorer, curve = new(tables, seed), new_curve(episodes)
     seen = perceived(tables) if seen is None else seen
-    while explore(tables, model, seen, manner, explorer, curve, max_steps, 0.9, budget):
+    while explore(tables, model, seen, strategy, explorer, curve, max_steps, 0.9, budget):
         pass
     return explorer, curve
 
@@ -121,7 +127,9 @@ def test_a_bad_end_is_avoided_thereafter():
 
 def test_least_tried_keeps_the_moves_of_a_place_even():
     tables = corridor(start=2, n=4, goal=-1)
-    explorer, _ = lived(tables, blank_model(4, 2), manner=Manner(planned=False), episodes=1, max_steps=1001)
+    explorer, _ = lived(
+        tables, blank_model(4, 2), strategy=ExplorationStrategy(planned=False), episodes=1, max_steps=1001
+    )
     spread = explorer.tried.max(axis=1) - explorer.tried.min(axis=1)
     assert (spread <= 1).all()
     assert explorer.tried.sum() == 1001
@@ -130,7 +138,7 @@ def test_least_tried_keeps_the_moves_of_a_place_even():
 def test_senses_show_every_move_of_a_place_without_trying_it():
     tables = corridor(start=0, goal=-1)
     model = blank_model(6, 2)
-    _, curve = lived(tables, model, manner=Manner(senses=True), episodes=1, max_steps=3)
+    _, curve = lived(tables, model, strategy=ExplorationStrategy(senses=True), episodes=1, max_steps=3)
     assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
     assert (model.target[3:] == UNKNOWN).all()
     assert curve.collisions[0] == 0
@@ -139,7 +147,7 @@ def test_senses_show_every_move_of_a_place_without_trying_it():
 def test_exhaustive_tries_everything_before_it_settles():
     tables = corridor(start=0, n=4, goal=3)
     model = blank_model(4, 2)
-    lived(tables, model, manner=Manner(exhaustive=True), episodes=40)
+    lived(tables, model, strategy=ExplorationStrategy(exhaustive=True), episodes=40)
     assert (model.target[:3] != UNKNOWN).all()
 
 
@@ -218,8 +226,8 @@ def test_a_wall_across_the_remembered_way_is_met_once():
 class Bookkeeper:
     """What is known, tried and looked at, kept in dictionaries; checks each step of the kernel."""
 
-    def __init__(self, tables, model, seen, manner):
-        self.tables, self.seen, self.manner = tables, seen, manner
+    def __init__(self, tables, model, seen, strategy):
+        self.tables, self.seen, self.strategy = tables, seen, strategy
         self.target = {at: int(t) for at, t in np.ndenumerate(model.target)}
         self.percept = dict(enumerate(model.percept.tolist()))
         self.place = dict.fromkeys(range(tables.n_states), NOT_LOOKED)
@@ -234,7 +242,7 @@ class Bookkeeper:
                 if not self.tried[s, a]:
                     self.target[s, a] = UNKNOWN
             self.percept[s] = int(self.seen.percept[s])
-        if self.manner.senses:
+        if self.strategy.senses:
             for a in range(self.tables.n_actions):
                 self.target[s, a] = int(self.tables.next_state[s, a, 0])
 
@@ -253,7 +261,7 @@ class Bookkeeper:
                 if t == UNKNOWN:
                     costs[s, a] = depth + self.seen.try_cost[self.seen.cost_row[s], a]
                 elif self.place[t] == GOAL:
-                    costs[s, a] = np.inf if self.manner.exhaustive else depth
+                    costs[s, a] = np.inf if self.strategy.exhaustive else depth
                 elif self.place[t] == NOT_LOOKED and not goal_known:
                     beside = {(t, b) for b in range(self.tables.n_actions)}
                     near = [self.target[at] for at in beside if self.target[at] not in (UNKNOWN, t)]
@@ -275,9 +283,16 @@ class Bookkeeper:
 @given(
     st.integers(0, 10**6),
     st.booleans(),
-    st.sampled_from([Manner(), Manner(exhaustive=True), Manner(senses=True), Manner(planned=False)]),
+    st.sampled_from(
+        [
+            ExplorationStrategy(),
+            ExplorationStrategy(exhaustive=True),
+            ExplorationStrategy(senses=True),
+            ExplorationStrategy(planned=False),
+        ]
+    ),
 )
-def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, manner):
+def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, strategy):
     tables = draw_world(seed, n_states=12)
     random = np.random.default_rng(seed)
     model = blank_model(12, 3)
@@ -287,12 +302,12 @@ def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, man
     seen = Perceived(
         random.integers(0, 2, 12), random.integers(0, 2, 12).astype(np.int32), random.choice([0, 3.0], (2, 3))
     )
-    book = Bookkeeper(tables, model, seen, manner)
+    book = Bookkeeper(tables, model, seen, strategy)
     explorer, curve = new(tables, seed), new_curve(40)
     plan: list[int] = []
     for _ in range(400):
         tried, s, fresh = explorer.tried.copy(), int(explorer.cursor[2]), explorer.cursor[1] == 0
-        if not explore(tables, model, seen, manner, explorer, curve, 40, 0.9, 1):
+        if not explore(tables, model, seen, strategy, explorer, curve, 40, 0.9, 1):
             break
         ((acted_in, action),) = np.argwhere(explorer.tried != tried).tolist()
         if fresh:
@@ -300,8 +315,8 @@ def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, man
         assert acted_in == s
         newly = book.place[s] == NOT_LOOKED
         book.arrive(s)
-        if manner.planned:
-            if not plan or (newly and manner.senses):
+        if strategy.planned:
+            if not plan or (newly and strategy.senses):
                 plan = _checked_plan(book, s, explorer, action)
             assert plan.pop(0) == action
         else:
@@ -335,12 +350,14 @@ def _checked_plan(book, s, explorer, action) -> list[int]:
 
 
 @pytest.mark.parametrize("budget", [1, 7])
-@pytest.mark.parametrize("manner", [Manner(), Manner(planned=False), Manner(senses=True)])
-def test_chunks_change_no_bit(draw_world, budget, manner):
+@pytest.mark.parametrize(
+    "strategy", [ExplorationStrategy(), ExplorationStrategy(planned=False), ExplorationStrategy(senses=True)]
+)
+def test_chunks_change_no_bit(draw_world, budget, strategy):
     tables = draw_world(11, n_states=30)
     models = blank_model(30, 3), blank_model(30, 3)
-    whole = lived(tables, models[0], manner=manner, episodes=40)
-    parts = lived(tables, models[1], manner=manner, episodes=40, budget=budget)
+    whole = lived(tables, models[0], strategy=strategy, episodes=40)
+    parts = lived(tables, models[1], strategy=strategy, episodes=40, budget=budget)
     for a, b in zip((*whole[0], *whole[1], *models[0]), (*parts[0], *parts[1], *models[1]), strict=True):
         assert np.array_equal(a, b)
 

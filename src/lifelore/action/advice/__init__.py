@@ -1,4 +1,5 @@
 """Advice to agents with unknown goals (thesis §3.7).
 
-Read in this order: `advice` (the evidence), `behaviour_models`, `goal_model`, `advisor`, `advised_walk`.
+Read in this order: `advice` (the evidence), `behaviour_models`, `goal_model`, `advisor`, `advised_walk`;
+`outcome_map` lets an advisor watch agents with other actions than the experts.
 """

@@ -1,16 +1,15 @@
-"""When to give advice, and which: the evidence of the last steps, step by step, in log space.
+"""Decides when to advise an agent and which action to advise, from the evidence of its last steps.
 
     P(M | H) ∝ P(M) Π P(a | s, M)  over the window H                                      (Eq. 3.15)
     P(a | s, H) = Σ_M P(a | s, M) P(M | H)                                                 (Eq. 3.14)
     advise θ_s  if  KL[θ_s, P(A | s, H)] = Σ_a θ_s(a) log(θ_s(a) / P(a | s, H)) ≥ κ        (Eq. 3.13, 3.16)
 
-Logarithms are natural. An action that θ excludes adds nothing to the sum; every model keeps a trace of mass for
-every action (`Guide.log_models`), so the ratio is always finite. Where nothing was counted, nothing is advised.
+Logarithms are natural. Actions with θ_s(a) = 0 add nothing to the sum. Every model gives every action a least
+probability (`Guide.log_models`), so the ratio is always finite. In states without counts there is no advice.
 
-A guide may know several *purposes* (the goals that experts went to): then it advises the way to one of them at a
-time, the one likeliest to be the agent's for the steps it costs, and drops a goal that the agent left again. One
-purpose without a goal is the thesis's advisor.
-Thesis: §3.7.1.
+A guide may have several *goal models*, one for each goal of the experts. It then advises the path to one goal at a
+time: the goal with the largest probability per step to go. It drops a goal if the agent reaches it and walks on.
+One goal model without a goal is the thesis's advisor. Thesis: §3.7.1.
 """
 
 from typing import NamedTuple
@@ -21,33 +20,33 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 
 SLOT, FILLED, PREVIOUS, TARGET, SPENDING = range(5)
-"""Places in `Watch.cursor`: next slot of the window, slots in use, action tried last, purpose advised for or -1,
-whether what was saved up is being spent."""
+"""Indices of `WatchedAgent.cursor`: next slot of the window, slots in use, last action, goal model that the advice
+leads to (-1: none), and whether saved steps are being spent."""
 
 
 class Guide(NamedTuple):
-    """What an advisor knows; G purposes, M models.
+    """Tables of an advisor, for G goal models and M behaviour models.
 
-    theta : (G, n_states, n_actions) float64, advice; rows sum to 1, or are all 0 where it is silent
-    steps : (G, n_states) float64, steps to go as far as experts showed, inf where it is silent
-    goal_of : (n_states,) int32, purpose whose goal a state is, -1: none
-    log_models : (M, n_states, H, n_actions) float64, log P(a | s, M); H is 1, or n_actions + 1 (action tried last)
+    theta : (G, n_states, n_actions) float64, advice; rows sum to 1, or are all 0 in states without advice
+    steps : (G, n_states) float64, the experts' mean steps to the goal, inf in states without advice
+    goal_of_state : (n_states,) int32, goal model whose goal the state is, -1: none
+    log_models : (M, n_states, H, n_actions) float64, log P(a | s, M); H is 1, or n_actions + 1 (last action)
     log_prior : (M,) float64, log P(M)
-    normal : (M,) bool, whether a model is one of experts
-    purpose_of : (M,) int32, the purpose a model is bound for, -1: none
+    is_expert : (M,) bool, whether a model describes experts
+    goal_of_model : (M,) int32, goal model whose goal the behaviour model walks to, -1: none
     """
 
     theta: NDArray[np.float64]
     steps: NDArray[np.float64]
-    goal_of: NDArray[np.int32]
+    goal_of_state: NDArray[np.int32]
     log_models: NDArray[np.float64]
     log_prior: NDArray[np.float64]
-    normal: NDArray[np.bool_]
-    purpose_of: NDArray[np.int32]
+    is_expert: NDArray[np.bool_]
+    goal_of_model: NDArray[np.int32]
 
 
-class Rule(NamedTuple):
-    """When advice is given; see `AdviceSettings`."""
+class AdviceRule(NamedTuple):
+    """Conditions of advice; see `AdviceSettings`."""
 
     kappa: float
     share: float
@@ -55,15 +54,15 @@ class Rule(NamedTuple):
     own_steps_only: bool
 
 
-class Watch(NamedTuple):
-    """What is known of one agent; changed in place.
+class WatchedAgent(NamedTuple):
+    """Evidence about one agent; changed in place.
 
     ring : (window, M) float64, log P(a | s, M) of each step of the window
     total : (M,) float64, their sum
     posterior : (M,) float64, P(M | H)
     cursor : (5,) int64
-    dropped : (G,) bool, goals that were not this agent's
-    saved : (1,) float64, steps that may be advised by now
+    dropped : (G,) bool, goals that the agent has reached and left
+    saved : (1,) float64, number of steps that may be advised now
     """
 
     ring: NDArray[np.float64]
@@ -74,62 +73,62 @@ class Watch(NamedTuple):
     saved: NDArray[np.float64]
 
 
-def new_watch(guide: Guide, window: int) -> Watch:
-    """Nothing seen of the agent yet."""
-    n_models, n_purposes = len(guide.log_prior), len(guide.theta)
-    cursor = np.zeros(5, np.int64)
+def new_watched_agent(guide: Guide, window: int) -> WatchedAgent:
+    """An agent without any steps."""
+    n_models, n_goals = len(guide.log_prior), len(guide.theta)
+    cursor = np.zeros(SPENDING + 1, np.int64)
     cursor[[PREVIOUS, TARGET]] = -1
-    return Watch(
+    return WatchedAgent(
         np.zeros((window, n_models)),
         np.zeros(n_models),
         np.exp(guide.log_prior),
         cursor,
-        np.zeros(n_purposes, np.bool_),
+        np.zeros(n_goals, np.bool_),
         np.zeros(1),
     )
 
 
 @kernel
-def observe(guide, rule, watch, s, a, advised):
-    """The agent, in state `s`, tried action `a`; `advised` if it had been told to. Action -1 is no evidence."""
-    ring, total, _, cursor, dropped, _ = watch
-    if guide.goal_of[s] >= 0:
-        # It stood on this goal and went on.
-        dropped[guide.goal_of[s]] = True
+def observe(guide, rule, agent, s, a, advised):
+    """The agent tried action `a` in state `s`; `advised` if this was the advice. Action -1 is no evidence."""
+    ring, total, _, cursor, dropped, _ = agent
+    if guide.goal_of_state[s] >= 0:
+        # The agent was at this goal and walked on.
+        dropped[guide.goal_of_state[s]] = True
     if a >= 0 and not (advised and rule.own_steps_only):
-        h = cursor[2] + 1 if guide.log_models.shape[2] > 1 else 0
-        slot, window = cursor[0], len(ring)
+        h = cursor[PREVIOUS] + 1 if guide.log_models.shape[2] > 1 else 0
+        slot, window = cursor[SLOT], len(ring)
         for m in range(total.size):
             total[m] += guide.log_models[m, s, h, a] - ring[slot, m]
             ring[slot, m] = guide.log_models[m, s, h, a]
-        cursor[0] = slot + 1
-        cursor[1] = min(cursor[1] + 1, window)
+        cursor[SLOT] = slot + 1
+        cursor[FILLED] = min(cursor[FILLED] + 1, window)
         if slot + 1 == window:
-            cursor[0] = 0
-            # Summed afresh once a round, so that rounding never piles up.
+            cursor[SLOT] = 0
+            # A new sum once a round keeps rounding errors from adding up.
             for m in range(total.size):
                 total[m] = 0.0
                 for i in range(window):
                     total[m] += ring[i, m]
-    cursor[2] = a
+    cursor[PREVIOUS] = a
 
 
 @kernel
-def consider(guide, rule, watch, s):
-    """What to tell the agent in state `s`: (whether to advise, gain in nats); the purpose stands in the cursor."""
-    _, _, _, cursor, _, saved = watch
-    _update_posterior(guide, watch)
+def consider(guide, rule, agent, s):
+    """Whether to advise the agent in state `s`, and the gain in nats; sets the goal in the cursor."""
+    _, _, _, cursor, _, saved = agent
+    _update_posterior(guide, agent)
     limited = rule.share < 1.0
-    if limited and cursor[4] == 0 and saved[0] >= rule.burst:
-        cursor[4] = 1
-    if cursor[4] == 1 and saved[0] < 1.0:
-        cursor[4] = 0
-        cursor[3] = -1
-    cursor[3] = _purpose(guide, watch, s)
+    if limited and cursor[SPENDING] == 0 and saved[0] >= rule.burst:
+        cursor[SPENDING] = 1
+    if cursor[SPENDING] == 1 and saved[0] < 1.0:
+        cursor[SPENDING] = 0
+        cursor[TARGET] = -1
+    cursor[TARGET] = _target_goal(guide, agent, s)
     gain = 0.0
-    if cursor[3] >= 0:
-        gain = _gain(guide, watch, cursor[3], s)
-    advised = cursor[3] >= 0 and gain >= rule.kappa and (cursor[4] == 1 or not limited)
+    if cursor[TARGET] >= 0:
+        gain = _gain(guide, agent, cursor[TARGET], s)
+    advised = cursor[TARGET] >= 0 and gain >= rule.kappa and (cursor[SPENDING] == 1 or not limited)
     if limited:
         saved[0] = min(saved[0] + rule.share, rule.burst)
         if advised:
@@ -138,22 +137,22 @@ def consider(guide, rule, watch, s):
 
 
 @kernel
-def _update_posterior(guide, watch):
-    """P(M | H) (Eq. 3.15), models bound for dropped goals left out."""
-    _, total, posterior, _, dropped, _ = watch
+def _update_posterior(guide, agent):
+    """Set P(M | H) (Eq. 3.15); models of dropped goals get probability 0."""
+    _, total, posterior, _, dropped, _ = agent
     if dropped.all():
-        # None of the goals known was its goal, or it has a new errand: begin again.
+        # The agent has left every known goal, so it has an unknown goal or a new one: allow all again.
         dropped[:] = False
     best = -np.inf
     for m in range(total.size):
-        purpose = guide.purpose_of[m]
-        if (purpose < 0 or not dropped[purpose]) and guide.log_prior[m] + total[m] > best:
+        goal = guide.goal_of_model[m]
+        if (goal < 0 or not dropped[goal]) and guide.log_prior[m] + total[m] > best:
             best = guide.log_prior[m] + total[m]
     mass = 0.0
     for m in range(total.size):
-        purpose = guide.purpose_of[m]
+        goal = guide.goal_of_model[m]
         posterior[m] = 0.0
-        if purpose < 0 or not dropped[purpose]:
+        if goal < 0 or not dropped[goal]:
             posterior[m] = np.exp(guide.log_prior[m] + total[m] - best)
         mass += posterior[m]
     for m in range(total.size):
@@ -162,27 +161,27 @@ def _update_posterior(guide, watch):
 
 @inlined
 def _is_shown(guide, g, s):
-    """Whether experts bound for `g` passed state `s`."""
+    """Whether experts on their way to goal `g` passed state `s`."""
     return guide.steps[g, s] < np.inf
 
 
 @inlined
-def _purpose(guide, watch, s):
-    """The purpose to advise for in `s`, -1 where nothing is known: the present one, or the likeliest per step."""
-    _, _, posterior, cursor, dropped, _ = watch
-    present = cursor[3]
-    if present >= 0 and cursor[4] == 1 and not dropped[present] and _is_shown(guide, present, s):
+def _target_goal(guide, agent, s):
+    """The goal that advice in `s` leads to, -1: none; the present goal, or the most probable per step."""
+    _, _, posterior, cursor, dropped, _ = agent
+    present = cursor[TARGET]
+    if present >= 0 and cursor[SPENDING] == 1 and not dropped[present] and _is_shown(guide, present, s):
         return present
     left = dropped.size - dropped.sum()
     chosen, best = -1, -1.0
     for g in range(dropped.size):
-        if dropped[g] or guide.goal_of[s] == g or not _is_shown(guide, g, s):
+        if dropped[g] or guide.goal_of_state[s] == g or not _is_shown(guide, g, s):
             continue
         weight = 0.0
         for m in range(posterior.size):
-            if guide.purpose_of[m] == g:
+            if guide.goal_of_model[m] == g:
                 weight += posterior[m]
-            elif guide.purpose_of[m] < 0:
+            elif guide.goal_of_model[m] < 0:
                 weight += posterior[m] / left
         weight /= 1.0 + guide.steps[g, s]
         if weight > best:
@@ -191,10 +190,10 @@ def _purpose(guide, watch, s):
 
 
 @inlined
-def _gain(guide, watch, g, s):
+def _gain(guide, agent, g, s):
     """KL[θ_s, P(A | s, H)] in nats (Eq. 3.13, 3.14)."""
-    _, _, posterior, cursor, _, _ = watch
-    h = cursor[2] + 1 if guide.log_models.shape[2] > 1 else 0
+    _, _, posterior, cursor, _, _ = agent
+    h = cursor[PREVIOUS] + 1 if guide.log_models.shape[2] > 1 else 0
     gain = 0.0
     for a in range(guide.theta.shape[2]):
         theta = guide.theta[g, s, a]
@@ -203,5 +202,5 @@ def _gain(guide, watch, g, s):
             for m in range(posterior.size):
                 mixture += posterior[m] * np.exp(guide.log_models[m, s, h, a])
             gain += theta * np.log(theta / mixture)
-    # Never negative but by rounding, which must not silence κ = 0.
+    # Rounding may make the gain negative, which must not prevent advice at κ = 0.
     return max(gain, 0.0)

@@ -1,4 +1,4 @@
-"""A walk under an advisor's eyes: an agent follows its own policy, and the advice where it is given.
+"""Simulates the walk of an agent that follows its own policy, and the advice where it is given.
 
 Thesis: §3.7.2, the one-shot tasks of the fixed-policy agents (Table 3.1, Figures 3.21 and 3.23).
 """
@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.action.advice.advice import consider, observe
+from lifelore.action.advice.advice import TARGET, consider, observe
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.random_state import next_uniform, random_state
@@ -18,14 +18,14 @@ from lifelore.core.mdp import TERMINAL, Tables
 
 
 class Walk(NamedTuple):
-    """What happened, step by step, all (n_steps,); and whether the goal was reached.
+    """The steps of a walk, all (n_steps,), and whether it reached the goal.
 
-    states, actions : where it was and what it tried
+    states, actions : state of the agent and action tried
     advised : whether the step followed advice
     p_normal : P(M | H) of experts before the step
     gain : nats
     reached : bool
-    reward : float, summed
+    reward : float, sum over the steps
     """
 
     states: NDArray[np.int32]
@@ -45,30 +45,30 @@ def advised_walk(
     max_steps: int = 5000,
     *,
     start: int | None = None,
-    heeds: bool = True,
+    follows_advice: bool = True,
 ) -> Walk:
-    """One task of an agent with a fixed policy.
+    """Simulate one task of an agent with a fixed policy.
 
     Parameters
     ----------
     tables : Tables
-        Of a task whose outcomes are certain.
+        A deterministic task.
     policy : (n_states, n_actions) or (n_states, n_actions + 1, n_actions) float
-        The agent's own action probabilities; with three axes by the action tried last, plus 1.
+        The agent's own action probabilities; with three axes the middle one is the last action plus 1.
     advisor : Advisor
     generator : numpy generator
-        Draws the start, then one number a step: with and without advice the same ones.
+        Draws the start, then one number a step, the same numbers with and without advice.
     max_steps : int
-        The thesis's 5,000.
+        Maximum number of steps; the thesis uses 5,000.
     start : int, optional
         Default: one of the task's starts.
-    heeds : bool
-        Whether the agent acts by the advice when it is given (§3.7.1.1); if not, it is watched and never told.
+    follows_advice : bool
+        Whether the agent follows the advice (§3.7.1.1); if not, the advisor only watches it.
 
     Raises
     ------
     InputError
-        The task is uncertain, or the shapes of task, policy and advisor differ.
+        The task is not deterministic, or the shapes of task, policy and advisor differ.
     """
     if max_steps < 1:
         raise InputError(f"max_steps must be at least 1, got {max_steps}")
@@ -92,18 +92,18 @@ def advised_walk(
         advisor.watch(),
         random,
         drawn if start is None else start,
-        heeds,
+        follows_advice,
         trace,
     )
     return Walk(*[array[:n] for array in trace], reached=bool(reached), reward=float(reward))  # type: ignore[arg-type]
 
 
 def _cumulative_policy(policy: ArrayLike, tables: Tables, advisor: Advisor) -> NDArray[np.float64]:
-    """The policy as the kernel takes it, (n_states, 1 or n_actions + 1, n_actions), once all shapes agree."""
+    """Cumulative probabilities of the policy, (n_states, 1 or n_actions + 1, n_actions); checks all shapes."""
     policy = np.asarray(policy, np.float64)
     shape = (tables.n_states, tables.n_actions)
     if tables.outcome_cum.size != 1:
-        raise InputError("tables must be those of a task whose outcomes are certain")
+        raise InputError("tables must be deterministic, with one outcome for each action")
     if (advisor.n_states, advisor.n_actions) != shape or (policy.shape[0], policy.shape[-1]) != shape:
         raise InputError(
             f"task, policy and advisor must agree in states and actions, got {shape}, "
@@ -116,26 +116,26 @@ def _cumulative_policy(policy: ArrayLike, tables: Tables, advisor: Advisor) -> N
 
 
 @kernel
-def _walk(world, policy_cum, guide, rule, watch, random, state, heeds, trace):
+def _walk(world, policy_cum, guide, rule, agent, random, state, follows_advice, trace):
     next_state, reward_of, event_of = world
     states, actions, advised, p_normal, gain = trace
     total, previous = 0.0, -1
     for t in range(states.size):
-        told, gain[t] = consider(guide, rule, watch, state)
-        told = told and heeds
-        for m in range(watch.posterior.size):
-            if guide.normal[m]:
-                p_normal[t] += watch.posterior[m]
+        advise, gain[t] = consider(guide, rule, agent, state)
+        advise = advise and follows_advice
+        for m in range(agent.posterior.size):
+            if guide.is_expert[m]:
+                p_normal[t] += agent.posterior[m]
         u = next_uniform(random)
-        if told:
-            a = _drawn(guide.theta, watch.cursor[3], state, u)
+        if advise:
+            a = _drawn(guide.theta, agent.cursor[TARGET], state, u)
         else:
             a = 0
             h = previous + 1 if policy_cum.shape[1] > 1 else 0
             while u >= policy_cum[state, h, a]:
                 a += 1
-        states[t], actions[t], advised[t] = state, a, told
-        observe(guide, rule, watch, state, a, told)
+        states[t], actions[t], advised[t] = state, a, advise
+        observe(guide, rule, agent, state, a, advise)
         total += reward_of[state, a, 0]
         previous = a
         if event_of[state, a, 0] & TERMINAL:
@@ -146,7 +146,7 @@ def _walk(world, policy_cum, guide, rule, watch, random, state, heeds, trace):
 
 @inlined
 def _drawn(theta, g, s, u):
-    """The action that the uniform number `u` draws from advice; never one of no mass, whatever the rounding."""
+    """The action that the uniform number `u` draws from the advice; never an action with probability 0."""
     chosen = -1
     for a in range(theta.shape[2]):
         if theta[g, s, a] > 0.0 and (chosen < 0 or u >= 0.0):

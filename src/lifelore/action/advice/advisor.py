@@ -1,10 +1,9 @@
-"""`Advisor`: watches agents whose goals it does not know, and advises where they seem lost.
+"""`Advisor`: watches agents whose goals are unknown and advises them when they seem lost.
 
-Two advisors of one make. The thesis's pools its experts into one prior and tells models apart by all of the last
-steps. The better one keeps the experts' goals apart, leads to one goal at a time, drops goals seen, judges by the
-steps that the agent chose itself (an advised step says what the advisor thinks, not what the agent does), and
-saves up: it advises a whole way at once, and never more than a share of the steps.
-Thesis: §3.7.1, Eq. 3.13-3.16.
+The settings give two advisors. The thesis's advisor pools all experts into one prior and uses all of the last
+steps as evidence. The better advisor (`BETTER`) keeps the experts' goals separate, leads to one goal at a time and
+drops goals that the agent has left. It uses only the steps that the agent chose itself as evidence. It limits the
+share of advised steps, and saves them up so that it can advise a whole path. Thesis: §3.7.1, Eq. 3.13-3.16.
 """
 
 from collections.abc import Sequence
@@ -14,34 +13,42 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.action.advice.advice import TARGET, Guide, Rule, Watch, consider, new_watch, observe
+from lifelore.action.advice.advice import (
+    TARGET,
+    AdviceRule,
+    Guide,
+    WatchedAgent,
+    consider,
+    new_watched_agent,
+    observe,
+)
 from lifelore.action.advice.behaviour_models import Behaviour, Experts, Uniform
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.compiled.jit import kernel
 from lifelore.core.errors import InputError
 
 TRACE = 1e-12
-"""Least probability of an action under any model; without it one step could prove a model wrong for good."""
+"""Least probability of an action under any model; at 0, one step could exclude a model for ever."""
 
 
 @dataclass(frozen=True)
 class AdviceSettings:
-    """When to advise.
+    """Conditions under which an advisor gives advice.
 
     Parameters
     ----------
     kappa : float
-        κ, the cost of advice in nats; at least 0. KL is taken to the base e: in bits the same κ is 0.69 of it.
+        Cost of advice κ in nats; at least 0. A κ in bits is 0.69 times as many nats.
     window : int
-        Steps that P(M | H) looks back over, ≥ 1; thesis §3.7.2.3: 300.
+        Number of last steps in the evidence H, ≥ 1; thesis §3.7.2.3: 300.
     slip : float
         Share in [0, 1) of every model's probability that is spread over all actions; 0 leaves only `TRACE`.
     share : float
-        In (0, 1]: advised steps never exceed this share of the steps so far. 1: no limit (the thesis).
+        In (0, 1]: largest share of advised steps so far. 1: no limit (the thesis).
     burst : float
-        With a limit, advice begins once so many advised steps are saved up, and goes on until they are spent; ≥ 1.
+        With a limit: number of saved steps at which advice begins; it continues until they are spent; ≥ 1.
     own_steps_only : bool
-        Whether steps that followed advice are left out of H.
+        Whether steps that followed advice are excluded from H.
     """
 
     kappa: float = 0.5
@@ -68,20 +75,20 @@ BETTER = AdviceSettings(slip=0.05, share=0.4, own_steps_only=True)
 
 
 class Advice(NamedTuple):
-    """What is said to one agent at one step.
+    """Advice for one agent at one step.
 
     advise : whether advice is given now
-    theta : (n_actions,) the advice, given or not; all zeros where there is none
+    theta : (n_actions,) the advised probabilities, also if advice is not given; all zeros if there are none
     p_normal : P(M | H) of the experts' models together
-    gain : KL[θ, P(A | s, H)] in nats, 0 where there is no advice
-    purpose : which purpose the advice is for; -1 where there is none
+    gain : KL[θ, P(A | s, H)] in nats, 0 without advice
+    goal : number of the goal model that the advice leads to; -1: none
     """
 
     advise: bool
     theta: NDArray[np.float64]
     p_normal: float
     gain: float
-    purpose: int
+    goal: int
 
 
 class Assessment(NamedTuple):
@@ -94,71 +101,75 @@ class Assessment(NamedTuple):
 
 
 class Advisor:
-    """Tells lost agents the way, by what experts did.
+    """Advises lost agents by the actions of experts.
 
     Parameters
     ----------
-    purposes : sequence of Purpose
-        One: the thesis's advisor. Several: advice leads to one of them at a time.
+    goal_models : sequence of GoalModel
+        One model: the thesis's advisor. Several: advice leads to one of their goals at a time.
     others : sequence of Behaviour, or of sequences of them
-        Models of who is no expert, `Uniform` by default. An entry that is itself a sequence has one model for each
-        purpose (a bug bound for each goal, say).
+        Models of agents that are no experts, `Uniform` by default. An entry that is itself a sequence has one
+        model for each goal (for example a bug algorithm that walks to it).
     settings : AdviceSettings
     weights : (1 + len(others),) float, optional
-        P(M) of the experts and of each of `others`, positive; default equal. Models of one entry share alike.
+        P(M) of the experts and of each of `others`, positive; default equal. The models of an entry share its
+        probability equally.
 
     Raises
     ------
     InputError
-        There is no purpose, they disagree in states or actions, or a model's probabilities are none.
+        There is no goal model, the goal models differ in states or actions, or a behaviour model does not give
+        probabilities.
 
     Notes
     -----
-    States are 0 … n_states - 1. In a state that no expert passed it is silent; there the experts' model is
-    uniform, so that such a step speaks neither for it nor for `Uniform`.
+    States are 0 … n_states - 1. In states that no expert passed there is no advice, and the experts' model is
+    uniform, so that a step there is no evidence for or against `Uniform`.
     """
 
     def __init__(
         self,
-        purposes: Sequence[Purpose],
+        goal_models: Sequence[GoalModel],
         others: Sequence[Behaviour | Sequence[Behaviour]] | None = None,
         settings: AdviceSettings | None = None,
         weights: ArrayLike | None = None,
     ) -> None:
-        _check_purposes(purposes)
+        _check_goal_models(goal_models)
         self.settings = settings or AdviceSettings()
-        self.n_actions, self.n_states = purposes[0].prior.n_actions, len(purposes[0].steps)
-        experts = [Experts(purpose.prior) for purpose in purposes]
+        self.n_actions, self.n_states = goal_models[0].prior.n_actions, len(goal_models[0].steps)
+        experts = [Experts(model.prior) for model in goal_models]
         others = [Uniform(self.n_actions)] if others is None else others
-        kinds = [_per_purpose(entry, len(purposes)) for entry in (experts, *others)]
-        self.guide = self._guide(purposes, kinds, _checked_weights(weights, len(kinds)))
+        kinds = [_per_goal(entry, len(goal_models)) for entry in (experts, *others)]
+        self.guide = self._guide(goal_models, kinds, _checked_weights(weights, len(kinds)))
         chosen = self.settings
-        self.rule = Rule(float(chosen.kappa), float(chosen.share), float(chosen.burst), chosen.own_steps_only)
+        self.rule = AdviceRule(
+            float(chosen.kappa), float(chosen.share), float(chosen.burst), chosen.own_steps_only
+        )
 
     @classmethod
-    def of_thesis(cls, purposes: Sequence[Purpose], settings: AdviceSettings | None = None) -> "Advisor":
+    def of_thesis(cls, goal_models: Sequence[GoalModel], settings: AdviceSettings | None = None) -> "Advisor":
         """M₁ from all experts pooled, M₂ uniform (§3.7.1.2)."""
-        return cls([Purpose.pooled(purposes)], None, settings)
+        return cls([GoalModel.pooled(goal_models)], None, settings)
 
-    def _guide(self, purposes, kinds, weights) -> Guide:
+    def _guide(self, goal_models, kinds, weights) -> Guide:
         models = [model for kind in kinds for model in kind]
-        bound = [g if len(kind) > 1 else -1 for kind in kinds for g in range(len(kind))]
+        goal_of_model = [g if len(kind) > 1 else -1 for kind in kinds for g in range(len(kind))]
         prior = np.concatenate([np.full(len(kind), w / len(kind)) for kind, w in zip(kinds, weights, strict=True)])
-        goal_of = np.full(self.n_states, -1, np.int32)
-        for g, purpose in enumerate(purposes):
-            goal_of[list(purpose.goals)] = g
+        goal_of_state = np.full(self.n_states, -1, np.int32)
+        for g, model in enumerate(goal_models):
+            goal_of_state[list(model.goals)] = g
         return Guide(
-            np.stack([purpose.theta for purpose in purposes]),
-            np.stack([purpose.steps for purpose in purposes]),
-            goal_of,
+            np.stack([model.theta for model in goal_models]),
+            np.stack([model.steps for model in goal_models]),
+            goal_of_state,
             np.log(np.stack([self._table(model) for model in models])),
             np.log(prior / prior.sum()),
-            np.arange(len(models)) < len(purposes),
-            np.array(bound, np.int32),
+            np.arange(len(models)) < len(goal_models),
+            np.array(goal_of_model, np.int32),
         )
 
     def _table(self, model: Behaviour) -> NDArray[np.float64]:
-        """P(a | s, M) after each last action, (n_states, n_actions + 1, n_actions), slip and trace added."""
+        """P(a | s, M) for each last action, (n_states, n_actions + 1, n_actions), with `slip` and `TRACE`."""
         previous = np.arange(-1, self.n_actions)
         states = np.repeat(np.arange(self.n_states), len(previous))
         probs = np.asarray(model.probs(np.column_stack([states, np.tile(previous, self.n_states)])), np.float64)
@@ -172,48 +183,48 @@ class Advisor:
                 f"a model's probabilities must sum to 1 in every context, {type(model).__name__}'s do not"
             )
         slip = self.settings.slip
-        kept = np.maximum((1 - slip) * probs + slip / self.n_actions, TRACE)
-        return kept.reshape(self.n_states, len(previous), self.n_actions)
+        probs = np.maximum((1 - slip) * probs + slip / self.n_actions, TRACE)
+        return probs.reshape(self.n_states, len(previous), self.n_actions)
 
     # ---- step by step ----------------------------------------------------------------------------
 
-    def watch(self) -> Watch:
-        """A new agent, of whom nothing is known."""
-        return new_watch(self.guide, self.settings.window)
+    def watch(self) -> WatchedAgent:
+        """Begin to watch an agent, without any evidence yet."""
+        return new_watched_agent(self.guide, self.settings.window)
 
-    def consider(self, watch: Watch, state: int) -> Advice:
-        """What to tell an agent that is in `state` now; once for each step, before `observe`."""
+    def consider(self, agent: WatchedAgent, state: int) -> Advice:
+        """Advice for the agent in `state`; call it once for each step, before `observe`."""
         self._check(state)
-        advise, gain = consider(self.guide, self.rule, watch, state)
-        purpose = int(watch.cursor[TARGET])
-        theta = self.guide.theta[purpose, state].copy() if purpose >= 0 else np.zeros(self.n_actions)
-        p_normal = float(watch.posterior[self.guide.normal].sum())
-        return Advice(bool(advise), theta, p_normal, float(gain), purpose)
+        advise, gain = consider(self.guide, self.rule, agent, state)
+        goal = int(agent.cursor[TARGET])
+        theta = self.guide.theta[goal, state].copy() if goal >= 0 else np.zeros(self.n_actions)
+        p_normal = float(agent.posterior[self.guide.is_expert].sum())
+        return Advice(bool(advise), theta, p_normal, float(gain), goal)
 
-    def observe(self, watch: Watch, state: int, action: int, advised: bool = False) -> None:
-        """The agent tried `action` in `state`; -1: something that has no outcome here.
+    def observe(self, agent: WatchedAgent, state: int, action: int, advised: bool = False) -> None:
+        """The agent tried `action` in `state`; -1: an action without a known outcome.
 
-        `advised`: it had been told to.
+        `advised`: whether the action followed advice.
         """
         self._check(state)
         if not -1 <= action < self.n_actions:
             raise InputError(f"action must lie in [0, {self.n_actions}) or be -1, got {action}")
-        observe(self.guide, self.rule, watch, state, action, advised)
+        observe(self.guide, self.rule, agent, state, action, advised)
 
     def _check(self, state: int) -> None:
         if not 0 <= state < self.n_states:
             raise InputError(f"state must lie in [0, {self.n_states}), got {state}")
 
-    # ---- at once ---------------------------------------------------------------------------------
+    # ---- whole trajectories ---------------------------------------------------------------------------------
 
-    def assess(self, states: ArrayLike, actions: ArrayLike, watch: Watch | None = None) -> Assessment:
-        """What would have been said at every step of a trajectory that followed no advice.
+    def assess(self, states: ArrayLike, actions: ArrayLike, agent: WatchedAgent | None = None) -> Assessment:
+        """The advice at every step of a trajectory that followed no advice.
 
         Parameters
         ----------
         states, actions : (n,) int
-        watch : Watch, optional
-            Go on with what is known of this agent; it is changed in place.
+        agent : WatchedAgent, optional
+            Continue with the evidence about this agent; changed in place.
         """
         states, actions = np.asarray(states, np.int64), np.asarray(actions, np.int64)
         if states.shape != actions.shape or states.ndim != 1:
@@ -224,46 +235,46 @@ class Advisor:
             raise InputError(
                 f"actions must lie in [0, {self.n_actions}) or be -1, got {actions.min()}..{actions.max()}"
             )
-        found = Assessment(
+        assessment = Assessment(
             np.zeros(len(states), np.bool_),
             np.zeros(len(states)),
             np.zeros(len(states)),
             np.zeros((len(states), len(self.guide.log_prior))),
         )
-        _assess(self.guide, self.rule, watch or self.watch(), states, actions, found)
-        return found
+        _assess(self.guide, self.rule, agent or self.watch(), states, actions, assessment)
+        return assessment
 
 
 @kernel
-def _assess(guide, rule, watch, states, actions, found):
-    advise, p_normal, gain, posterior = found
+def _assess(guide, rule, agent, states, actions, assessment):
+    advise, p_normal, gain, posterior = assessment
     for t in range(states.size):
-        advise[t], gain[t] = consider(guide, rule, watch, states[t])
+        advise[t], gain[t] = consider(guide, rule, agent, states[t])
         for m in range(posterior.shape[1]):
-            posterior[t, m] = watch.posterior[m]
-            if guide.normal[m]:
-                p_normal[t] += watch.posterior[m]
-        observe(guide, rule, watch, states[t], actions[t], False)
+            posterior[t, m] = agent.posterior[m]
+            if guide.is_expert[m]:
+                p_normal[t] += agent.posterior[m]
+        observe(guide, rule, agent, states[t], actions[t], False)
 
 
-def exploration_rows(purpose: Purpose, kappa: float = 0.5) -> NDArray[np.float64]:
-    """Advice for who learns: exploration rows (n_states, n_actions) for its ε branch (Alg. 2).
+def exploration_rows(goal_model: GoalModel, kappa: float = 0.5) -> NDArray[np.float64]:
+    """Exploration rows (n_states, n_actions) for the ε branch of a learner that follows advice (Alg. 2).
 
-    An exploring step is uniform without advice, so the gain of advice in a state is KL[θ_s, uniform] whatever was
-    seen before; where it is less than κ, or nothing was counted, the row stays uniform.
+    An exploring step without advice is uniform, so the gain of advice in a state is KL[θ_s, uniform], independent
+    of earlier steps. Rows with a gain below κ or without counts stay uniform.
     """
-    theta = purpose.theta
+    theta = goal_model.theta
     n_actions = theta.shape[1]
     gain = (theta * (np.log(np.where(theta > 0, theta, 1.0)) + np.log(n_actions))).sum(axis=1)
-    told = theta.any(axis=1) & (gain >= kappa)
-    return np.where(told[:, None], theta, 1 / n_actions)
+    advised = theta.any(axis=1) & (gain >= kappa)
+    return np.where(advised[:, None], theta, 1 / n_actions)
 
 
-def _per_purpose(entry, n_purposes: int) -> list[Behaviour]:
+def _per_goal(entry, n_goals: int) -> list[Behaviour]:
     if not isinstance(entry, Sequence):
         return [entry]
-    if len(entry) != n_purposes:
-        raise InputError(f"a model for each purpose needs {n_purposes} of them, got {len(entry)}")
+    if len(entry) != n_goals:
+        raise InputError(f"others must have one model for each of the {n_goals} goals, got {len(entry)}")
     return list(entry)
 
 
@@ -274,9 +285,9 @@ def _checked_weights(weights: ArrayLike | None, n_kinds: int) -> NDArray[np.floa
     return weights
 
 
-def _check_purposes(purposes: Sequence[Purpose]) -> None:
-    if not purposes:
-        raise InputError("purposes must be at least one, got none; experts are needed to learn from")
-    sizes = {(len(purpose.steps), purpose.prior.n_actions) for purpose in purposes}
+def _check_goal_models(goal_models: Sequence[GoalModel]) -> None:
+    if not goal_models:
+        raise InputError("goal_models must have at least one model, got none; make it from experts' trajectories")
+    sizes = {(len(model.steps), model.prior.n_actions) for model in goal_models}
     if len(sizes) > 1:
-        raise InputError(f"purposes must agree in (states, actions), got {sorted(sizes)}")
+        raise InputError(f"goal_models must agree in (states, actions), got {sorted(sizes)}")

@@ -1,8 +1,8 @@
-"""Models of behaviour: what an agent of a kind would do where it is, P(A | s, M).
+"""Models of behaviour: the action probabilities P(A | s, M) of experts and of other agents.
 
-A model is any object with ``probs(contexts)``: contexts are (n, 2) int64, a state and the action tried last (-1
-where there was none), and what comes back is (n, n_actions), rows summing to 1. The list of models is open; here
-are the ones that need nothing but arrays. Thesis: §3.7.1.2, Eq. 3.14.
+A model is any object with ``probs(contexts)``. `contexts` is (n, 2) int64: a state, and the last action or -1. The
+result is (n, n_actions) with rows that sum to 1. You can add models; these need only arrays.
+Thesis: §3.7.1.2, Eq. 3.14.
 """
 
 from dataclasses import dataclass
@@ -16,14 +16,14 @@ from lifelore.core.errors import InputError
 
 
 class Behaviour(Protocol):
-    """What every model offers."""
+    """The method of every model."""
 
     def probs(self, contexts: NDArray[np.int64], /) -> NDArray[np.float64]: ...
 
 
 @dataclass(frozen=True)
 class Uniform:
-    """M₂ of the thesis: an agent is lost if its action seems to be drawn uniformly."""
+    """M₂ of the thesis: a lost agent, which draws its actions uniformly."""
 
     n_actions: int
 
@@ -34,12 +34,12 @@ class Uniform:
 
 @dataclass(frozen=True, eq=False)
 class Tabulated:
-    """A policy written down.
+    """A policy given as a table.
 
     Parameters
     ----------
     table : (n_states, n_actions) or (n_states, n_actions + 1, n_actions) float
-        Rows sum to 1. With three axes the middle one is the action tried last, plus 1.
+        Rows sum to 1. With three axes the middle one is the last action plus 1.
 
     Examples
     --------
@@ -61,7 +61,7 @@ class Tabulated:
         object.__setattr__(self, "table", table)
 
     def probs(self, contexts: NDArray[np.int64]) -> NDArray[np.float64]:
-        """The rows of the contexts."""
+        """Rows of the table for the contexts."""
         table: NDArray[np.float64] = self.table  # type: ignore[assignment]
         if table.ndim == 2:
             return table[contexts[:, 0]]
@@ -70,7 +70,7 @@ class Tabulated:
 
 @dataclass(frozen=True, eq=False)
 class Experts:
-    """M₁ of the thesis: as the experts whose actions a prior by state has counted; uniform where none were.
+    """M₁ of the thesis: experts whose actions a state prior has counted; uniform in states without counts.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
-"""What experts bound for one goal do: counts by state, and how far it was from there.
+"""`GoalModel`: the actions of experts on their way to one goal, and the steps that they still had to go.
 
-Thesis: §3.7.1.3, offline phase. The thesis pools all goals into one prior; kept apart they tell more.
+Thesis: §3.7.1.3, offline phase. The thesis pools all goals into one prior (`GoalModel.pooled`).
 """
 
 from collections.abc import Iterable, Sequence
@@ -16,24 +16,24 @@ from lifelore.core.learning.known_world import GOAL, goal_distances
 
 
 class Trajectory(NamedTuple):
-    """States passed, (n + 1,) with the one it ended in, and the actions taken in all but that one, (n,)."""
+    """States passed, (n + 1,) with the last one, and the action taken in each but the last, (n,)."""
 
     states: NDArray[np.int64]
     actions: NDArray[np.int64]
 
 
 @dataclass(frozen=True, eq=False)
-class Purpose:
-    """The way to a goal, as experts go it.
+class GoalModel:
+    """Counts of the experts' actions on their way to a goal.
 
     Parameters
     ----------
     goals : tuple of int
-        States that are this goal; none where goals are pooled.
+        States of this goal; empty if goals are pooled.
     prior : ActionPrior
         Actions of the experts by state.
     steps : (n_states,) float64
-        Mean number of steps the experts still had to go, inf in states none of them passed.
+        Mean number of steps that the experts still had to go, inf in states that no expert passed.
     """
 
     goals: tuple[int, ...]
@@ -42,7 +42,7 @@ class Purpose:
 
     @property
     def theta(self) -> NDArray[np.float64]:
-        """The advice, (n_states, n_actions): proportions of the counts without α⁰, zeros where there are none."""
+        """The advice, (n_states, n_actions): proportions of the counts without α⁰; zeros without counts."""
         counts = self.prior.counts(np.arange(len(self.steps)))
         total = counts.sum(axis=1, keepdims=True)
         return np.divide(counts, total, out=np.zeros_like(counts), where=total > 0)
@@ -55,8 +55,8 @@ class Purpose:
         n_actions: int,
         goals: Sequence[int] = (),
         alpha0: float = 0.1,
-    ) -> "Purpose":
-        """Count every step; actions of -1 (nothing that has an outcome) are passed over.
+    ) -> "GoalModel":
+        """Count every step; actions of -1 (without a known outcome) are skipped.
 
         Raises
         ------
@@ -78,10 +78,10 @@ class Purpose:
     @classmethod
     def from_best_actions(
         cls, best: ArrayLike, goals: Sequence[int] = (), steps: ArrayLike | None = None, alpha0: float = 0.1
-    ) -> "Purpose":
+    ) -> "GoalModel":
         """Count a policy's best or tied-best actions, (n_states, n_actions) bool; leave goal rows all False.
 
-        `steps` (n_states,) defaults to 0 wherever something is counted: every goal is as far.
+        `steps` (n_states,) defaults to 0 in states with counts, which makes all goals equally far.
         """
         best = np.asarray(best, bool)
         prior = ActionPrior(best.shape[1], alpha0)
@@ -91,49 +91,49 @@ class Purpose:
         return cls(tuple(int(goal) for goal in goals), prior, np.where(shown, far, np.inf))
 
     @classmethod
-    def pooled(cls, purposes: Sequence["Purpose"]) -> "Purpose":
-        """The thesis's one prior over all goals; bound for none of them."""
-        shown = np.any([np.isfinite(purpose.steps) for purpose in purposes], axis=0)
-        prior = ActionPrior.merged(purpose.prior for purpose in purposes)
+    def pooled(cls, goal_models: Sequence["GoalModel"]) -> "GoalModel":
+        """The thesis's model: one prior over all goals, without a goal of its own."""
+        shown = np.any([np.isfinite(model.steps) for model in goal_models], axis=0)
+        prior = ActionPrior.merged(model.prior for model in goal_models)
         return cls((), prior, np.where(shown, 0.0, np.inf))
 
 
-def stitched(purposes: Sequence[Purpose], moves: ArrayLike) -> list[Purpose]:
-    """The same purposes, each known wherever experts of any of them passed.
+def extend_goal_models(goal_models: Sequence[GoalModel], moves: ArrayLike) -> list[GoalModel]:
+    """Extend each goal model to all states that experts of any goal passed.
 
-    In a state that only others' experts passed, the best moves are those of the shortest way over states that
-    experts passed (in either direction); where no expert ever was, all stay silent.
+    In a state that only experts of other goals passed, the best moves are those of the shortest path over states
+    that experts passed (in either direction). States that no expert passed stay without advice.
 
     Parameters
     ----------
-    purposes : sequence of Purpose
+    goal_models : sequence of GoalModel
         Each with its goals.
     moves : (n_states, n_actions) int
-        The map: where each action leads, -1 where it is refused.
+        The map: the state to which each action leads, -1 where it is refused.
     """
     moves = np.asarray(moves, np.int32)
-    trodden = np.any([np.isfinite(purpose.steps) for purpose in purposes], axis=0)
-    trodden[[goal for purpose in purposes for goal in purpose.goals]] = True
-    among = np.where((moves >= 0) & trodden[:, None] & trodden[moves], moves, -1).astype(np.int32)
-    return [_filled(purpose, among) for purpose in purposes]
+    passed = np.any([np.isfinite(model.steps) for model in goal_models], axis=0)
+    passed[[goal for model in goal_models for goal in model.goals]] = True
+    among = np.where((moves >= 0) & passed[:, None] & passed[moves], moves, -1).astype(np.int32)
+    return [_extended(model, among) for model in goal_models]
 
 
-def _filled(purpose: Purpose, moves: NDArray[np.int32]) -> Purpose:
+def _extended(model: GoalModel, moves: NDArray[np.int32]) -> GoalModel:
     place = np.zeros(len(moves), np.int8)
-    place[list(purpose.goals)] = GOAL
+    place[list(model.goals)] = GOAL
     distance = goal_distances(moves, place)
-    new = ~np.isfinite(purpose.steps) & (distance > 0)
+    new = ~np.isfinite(model.steps) & (distance > 0)
     nearer = (moves >= 0) & (distance[moves] == distance[:, None] - 1)
-    prior = ActionPrior.merged([purpose.prior])
+    prior = ActionPrior.merged([model.prior])
     prior.update(np.flatnonzero(new), nearer[new])
-    return Purpose(purpose.goals, prior, np.where(new, distance, purpose.steps))
+    return GoalModel(model.goals, prior, np.where(new, distance, model.steps))
 
 
 def _checked(trajectory: Trajectory, n_states: int, n_actions: int):
     states, actions = np.asarray(trajectory.states, np.int64), np.asarray(trajectory.actions, np.int64)
     if len(states) != len(actions) + 1:
         raise InputError(
-            f"a trajectory must have one state more than actions, the last where it ended; "
+            f"a trajectory must have one state more than actions, its last state; "
             f"got {len(states)} states and {len(actions)} actions"
         )
     if states.min() < 0 or states.max() >= n_states:

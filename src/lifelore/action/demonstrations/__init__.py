@@ -1,4 +1,4 @@
 """Demonstrations: files of steps, the competence of demonstrators, and simulated demonstrators (thesis §3.6).
 
-Read in this order: `demonstrations`, `competence`, `outcome_map`, `simulated_person`.
+Read in this order: `demonstrations`, `competence`, `simulated_person`.
 """

@@ -1,14 +1,15 @@
-"""How far to trust each demonstrator: w(π) in [0, 1] from what they did.
+"""Estimates the competence w(π) in [0, 1] of each demonstrator from the demonstrations.
 
-Two estimators. Where the tasks can be solved, by steps:
+There are two estimators. By steps, if the tasks can be solved:
 
     w = max(0, (h - e) / (n - e))
 
-with n steps of an agent in all tasks, h of them best or tied best (in a world of moves: they shorten the way),
-and e the number that choosing blindly would have made best in the same states. Someone who chooses blindly weighs
-about 0, an expert 1. Where they cannot, by ways: the shortest known way from where a demonstration began to where
-it ended, over the steps of all demonstrations of the task, as a share of its own length; the mean of an agent's.
-It trusts whoever is alone: nothing shorter is known. Thesis: §3.2.2.1 (w(π) as confidence), §3.4.8.
+n is the number of an agent's steps in all tasks, h the number of best or tied-best steps among them, and e the
+expected number of best steps of a uniform choice in the same states. A uniform choice has a weight of about 0, an
+expert 1. By paths, if the tasks cannot be solved: the length of the shortest known path from the start to the end
+of a demonstration, over the steps of all demonstrations of the task, as a share of the demonstration's own length;
+w is the mean over the agent's demonstrations. An agent alone in a task gets 1, because no shorter path is known.
+Thesis: §3.2.2.1 (w(π) as confidence), §3.4.8.
 """
 
 from collections.abc import Callable, Iterable, Sequence
@@ -30,13 +31,13 @@ def competence_by_steps(
     ----------
     demonstrations : iterable of Demonstration
     best_of : callable
-        A task's name to its best or tied-best actions, (n_states, n_actions) bool. Steps in states without any
-        (goals, completed configurations) are passed over, and so are those where every action is best.
+        A task's name to its best or tied-best actions, (n_states, n_actions) bool. Steps in states without
+        best actions (goals, completed configurations) are skipped, and so are steps where every action is best.
 
     Returns
     -------
     dict
-        Agent to w in [0, 1]; 0 for an agent without a step that tells.
+        Agent to w in [0, 1]; 0 for an agent without a step that counts.
     """
     found: dict[str, list[float]] = {}
     for one in demonstrations:
@@ -47,16 +48,16 @@ def competence_by_steps(
                 f"{best.shape[1]} actions, got {one.states.max()} and {one.actions.max()}"
             )
         share = best[one.states].mean(axis=1)
-        tells = (share > 0) & (share < 1)
-        hits = best[one.states, one.actions][tells]
+        counts_for_w = (share > 0) & (share < 1)
+        hits = best[one.states, one.actions][counts_for_w]
         total = found.setdefault(one.agent, [0.0, 0.0, 0.0])
-        for i, value in enumerate((hits.sum(), share[tells].sum(), tells.sum())):
+        for i, value in enumerate((hits.sum(), share[counts_for_w].sum(), counts_for_w.sum())):
             total[i] += float(value)
     return {agent: max(0.0, (h - e) / (n - e)) if n else 0.0 for agent, (h, e, n) in found.items()}
 
 
-def competence_by_ways(demonstrations: Sequence[Demonstration]) -> dict[str, float]:
-    """w(π) of each agent by the length of its ways beside the shortest known ones; needs no solution.
+def competence_by_paths(demonstrations: Sequence[Demonstration]) -> dict[str, float]:
+    """w(π) of each agent by the length of its paths relative to the shortest known ones; needs no solution.
 
     Returns
     -------
@@ -69,7 +70,7 @@ def competence_by_ways(demonstrations: Sequence[Demonstration]) -> dict[str, flo
         followers = _followers(same)
         for one in same:
             shortest = _distance(followers, int(one.states[0]), int(one.states[-1]))
-            # The last action leads out of the last state told, so a way of n states has n steps.
+            # The last action leaves the last recorded state, so a path of n states has n steps.
             shares.setdefault(one.agent, []).append((shortest + 1) / len(one.states))
     return {agent: float(np.mean(own)) for agent, own in shares.items()}
 
@@ -84,7 +85,7 @@ def _followers(demonstrations: Iterable[Demonstration]) -> dict[int, set[int]]:
 
 
 def _distance(followers: dict[int, set[int]], start: int, end: int) -> int:
-    """Steps of the shortest way; there is one, the demonstration's own."""
+    """Steps of the shortest path; the demonstration itself is a path."""
     distance, frontier, seen = 0, {start}, {start}
     while end not in frontier:
         frontier = {following for state in frontier for following in followers.get(state, ())} - seen

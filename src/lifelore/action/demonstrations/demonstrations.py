@@ -1,12 +1,12 @@
-"""Demonstrations: what people did, step by step, as a file of JSON lines.
+"""Reads and writes demonstrations as JSON lines, and counts them into an action prior.
 
-One line a step, in the order of the steps; lines of one task and agent are one demonstration, which an empty line
-ends, so that the same agent can show the same task again:
+Each line is a step. The lines of one task and agent are one demonstration. An empty line ends it, so that the same
+agent can demonstrate the same task again:
 
     {"task": "lattice/0/goal 57", "agent": "ann", "state": 12, "action": 2}
 
-`task` and `agent` are texts (whole numbers are taken as their digits), `state` and `action` whole numbers from 0;
-further fields are left alone. Thesis: §3.4.8.
+`task` and `agent` are texts (whole numbers are read as text), `state` and `action` whole numbers from 0. Other
+fields are ignored. Thesis: §3.4.8.
 """
 
 import json
@@ -22,10 +22,11 @@ from lifelore.core.errors import InputError, StoreError
 
 FIELDS = ("task", "agent", "state", "action")
 LARGEST = 2**62
+"""States and actions must be smaller, so that codes made of them fit 64 bits."""
 
 
 class Demonstration(NamedTuple):
-    """What one agent did in one task: states (n,) int64 it acted in, and its actions (n,) int64."""
+    """Steps of one agent in one task: states (n,) int64, and the actions in them (n,) int64."""
 
     task: str
     agent: str
@@ -39,22 +40,22 @@ def demonstrations_from_lines(lines: Iterable[str], where: str = "demonstrations
     Raises
     ------
     InputError
-        A line breaks its rule; the message gives its number and the reason.
+        A line breaks its rule; the message gives the number of the line and the reason.
     """
     found: list[tuple[str, str, list[tuple[int, int]]]] = []
-    under_way: dict[tuple[str, str], list[tuple[int, int]]] = {}
+    open_demonstrations: dict[tuple[str, str], list[tuple[int, int]]] = {}
     for number, line in enumerate(lines, start=1):
         if not line.strip():
-            under_way = {}
+            open_demonstrations = {}
             continue
         try:
             task, agent, state, action = _step(line)
         except ValueError as error:
             raise InputError(f"{where}, line {number}: {error}") from None
-        if (task, agent) not in under_way:
-            under_way[task, agent] = []
-            found.append((task, agent, under_way[task, agent]))
-        under_way[task, agent].append((state, action))
+        if (task, agent) not in open_demonstrations:
+            open_demonstrations[task, agent] = []
+            found.append((task, agent, open_demonstrations[task, agent]))
+        open_demonstrations[task, agent].append((state, action))
     return [_demonstration(task, agent, done) for task, agent, done in found]
 
 
@@ -66,12 +67,12 @@ def read_demonstrations(path: str | Path) -> list[Demonstration]:
         raise InputError(f"demonstrations {path} cannot be read: {error.strerror}") from None
     except UnicodeDecodeError as error:
         raise InputError(f"demonstrations {path} must be UTF-8 text, got a bad byte at {error.start}") from None
-    # Not splitlines: JSON texts may hold the further line separators of Unicode.
+    # Not splitlines: JSON texts may hold other line separators of Unicode.
     return demonstrations_from_lines(text.split("\n"), str(path))
 
 
 def demonstration_lines(demonstrations: Iterable[Demonstration]) -> Iterator[str]:
-    """JSON lines without their line ends, one a step, and an empty one after each demonstration."""
+    """JSON lines without line ends: one for each step, and an empty line after each demonstration."""
     for one in demonstrations:
         for state, action in zip(one.states.tolist(), one.actions.tolist(), strict=True):
             yield json.dumps({"task": one.task, "agent": one.agent, "state": state, "action": action})
@@ -79,12 +80,12 @@ def demonstration_lines(demonstrations: Iterable[Demonstration]) -> Iterator[str
 
 
 def write_demonstrations(path: str | Path, demonstrations: Iterable[Demonstration], append: bool = False) -> None:
-    """Write, or with `append` add to, a file of JSON lines.
+    """Write a file of JSON lines, or append to it.
 
     Raises
     ------
     StoreError
-        The disk refuses.
+        The file cannot be written.
     """
     text = "".join(line + "\n" for line in demonstration_lines(demonstrations))
     try:
@@ -100,7 +101,7 @@ def count_demonstrations(
     contexts_of: Callable[[Demonstration], NDArray[np.int64]],
     weights: Mapping[str, float] | None = None,
 ) -> None:
-    """Count every step of every demonstration, each visit once, with its agent's w(π) (§3.4.8).
+    """Count every step of every demonstration with the w(π) of its agent (§3.4.8).
 
     Parameters
     ----------
@@ -110,11 +111,11 @@ def count_demonstrations(
     contexts_of : callable
         The (n,) contexts of a demonstration's states.
     weights : mapping of agent to w(π), optional
-        See `competence`; default 1 for everyone.
+        See `competence`; default 1 for every agent.
     """
     for one in demonstrations:
         if weights is not None and one.agent not in weights:
-            raise InputError(f"weights must have one for each agent, got none for '{one.agent}'")
+            raise InputError(f"weights must have a number for each agent, got none for '{one.agent}'")
         weight = 1.0 if weights is None else weights[one.agent]
         prior.update_trajectory(contexts_of(one), one.actions, weight)
 
@@ -126,16 +127,16 @@ def _demonstration(task: str, agent: str, done: list[tuple[int, int]]) -> Demons
 
 def _step(line: str) -> tuple[str, str, int, int]:
     try:
-        told = json.loads(line)
+        step = json.loads(line)
     except (json.JSONDecodeError, RecursionError) as error:
-        raise ValueError(f"is no JSON ({getattr(error, 'msg', error)})") from None
-    if not isinstance(told, dict):
-        raise ValueError(f"must be an object with {', '.join(FIELDS)}, got {type(told).__name__}")
-    missing = [name for name in FIELDS if name not in told]
+        raise ValueError(f"must be JSON, got other text ({getattr(error, 'msg', error)})") from None
+    if not isinstance(step, dict):
+        raise ValueError(f"must be an object with {', '.join(FIELDS)}, got {type(step).__name__}")
+    missing = [name for name in FIELDS if name not in step]
     if missing:
         raise ValueError(f"field '{missing[0]}' is missing")
-    task, agent = (_name(field, told[field]) for field in ("task", "agent"))
-    state, action = (_number(field, told[field]) for field in ("state", "action"))
+    task, agent = (_name(field, step[field]) for field in ("task", "agent"))
+    state, action = (_number(field, step[field]) for field in ("state", "action"))
     return task, agent, state, action
 
 

@@ -1,8 +1,8 @@
-"""Simulated people who show a task: noisily rational, each with a skill.
+"""Simulates people who demonstrate a task; each has a skill and otherwise acts at random.
 
     π(a | s) = skill · [a is best in s] / (number of best in s) + (1 - skill) / |A|
 
-They stand in for people in experiments, and what is measured with them says so. Thesis: §3.4.8.
+Experiments that use simulated people say so in their results. Thesis: §3.4.8.
 """
 
 import numpy as np
@@ -14,7 +14,7 @@ from lifelore.core.mdp import TERMINAL, Tables
 
 
 def person_policy(best: ArrayLike, skill: float) -> NDArray[np.float64]:
-    """Action probabilities of a person, (n_states, n_actions), rows sum to 1; blind where nothing is best."""
+    """Action probabilities of a person, (n_states, n_actions), rows sum to 1; uniform without best action."""
     best = np.asarray(best, bool)
     if not 0 <= skill <= 1:
         raise InputError(f"skill must lie in [0, 1], got {skill}")
@@ -22,7 +22,7 @@ def person_policy(best: ArrayLike, skill: float) -> NDArray[np.float64]:
     return skill * known / known.sum(axis=1, keepdims=True) + (1 - skill) / best.shape[1]
 
 
-def shown_by_person(
+def simulated_demonstration(
     tables: Tables,
     best: ArrayLike,
     skill: float,
@@ -33,7 +33,7 @@ def shown_by_person(
     start: int | None = None,
     most_steps: int = 1000,
 ) -> Demonstration | None:
-    """One demonstration, from a start to the end of the episode; None if `most_steps` did not end it.
+    """One demonstration from a start to the end of the episode; None if it takes more than `most_steps` steps.
 
     Parameters
     ----------
@@ -41,14 +41,14 @@ def shown_by_person(
     best : (n_states, n_actions) bool
         Best or tied-best actions.
     skill : float
-        In [0, 1]: 0 acts blindly, 1 is an expert.
+        In [0, 1]: 0 chooses uniformly, 1 is an expert.
     generator : numpy generator
     task, agent : str
         Names in the demonstration.
     start : int, optional
         Default: drawn from the task's starts.
     most_steps : int
-        At least 1: people give up.
+        Number of steps after which the person gives up, at least 1.
     """
     if most_steps < 1:
         raise InputError(f"most_steps must be at least 1, got {most_steps}")

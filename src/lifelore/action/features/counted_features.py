@@ -1,9 +1,9 @@
-"""Counts of useful actions by features, and how open they leave the choice: the entropy of the action set.
+"""Counts of useful actions by features, and the entropy of the action set under a set of features.
 
     H_φ = - Σ_a Σ_i P(φ^i) θ_{φ^i}(a) log2 θ_{φ^i}(a),   P(φ^i) = Σ_a α_{φ^i}(a) / Σ_j Σ_a α_{φ^j}(a)
 
-in bits, from the counts alone: α⁰ takes no part, or features never counted would seem to matter. Whether states
-are counted all alike or by how often they were visited is decided where they are counted.
+in bits, from the counts without α⁰, because with α⁰ features without counts would change the entropy. The caller
+decides whether each state counts once or each visit counts.
 Thesis: §3.3.2, Eq. 3.9-3.11.
 """
 
@@ -18,7 +18,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 _DENSE = 8
-"""Configurations per counted context up to which a table with a row for each is smaller work than sorting."""
+"""Maximum ratio of configurations to counted contexts for a table with a row each; above it, sorting is faster."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class CountedFeatures:
     ) -> "CountedFeatures":
         """From rows of feature values (n, n_features) and their counts (n, n_actions).
 
-        Without `features` they are named f0, f1, … and take the values from 0 to the largest that occurs.
+        Without `features`, the features are f0, f1, … with the values from 0 to the largest in each column.
         """
         columns, counts = np.asarray(columns), np.asarray(counts, np.float64)
         if columns.ndim != 2 or counts.ndim != 2 or len(columns) != len(counts):
@@ -59,7 +59,7 @@ class CountedFeatures:
         return cls(features, features.codes(columns), counts)
 
     def entropy(self, names: Sequence[str] | None = None) -> float:
-        """H_φ in bits (Eq. 3.11) of the features `names`, default all; 0 where nothing was counted."""
+        """H_φ in bits (Eq. 3.11) of the features `names`, default all; 0 without counts."""
         names = self.features.names if names is None else names
         return action_set_entropy(pooled_counts(self.features.coarser(self.codes, names), self.counts)[1])
 
@@ -85,7 +85,7 @@ def _n_log_n(n: NDArray[np.float64]) -> NDArray[np.float64]:
 def pooled_counts(
     codes: NDArray[np.int64], counts: NDArray[np.float64]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Counts of equal codes added up: codes that rise, and their counts."""
+    """Sum the counts of equal codes; return the ascending codes and their counts."""
     if not codes.size:
         return codes, counts
     top = int(codes.max()) + 1

@@ -1,4 +1,4 @@
-"""What features are read from: the state, the task, the reward just received, the class of the agent.
+"""Feature functions: features of the state, the task, the last reward, or the class of the agent.
 
     φ(s, τ, r) -> (f_1, …, f_k)
 
@@ -19,8 +19,8 @@ from lifelore.core.errors import InputError, NotFoundError
 class FeatureFunction(Protocol):
     """φ(state, task, last reward): a row of feature values for each state, in the order of `features`.
 
-    `states` is (n,) int, `task` whatever the world calls a task, `last_rewards` (n,) float, the reward received on
-    coming to each state (0 at the start of an episode). Pure: equal arguments give equal rows.
+    `states` is (n,) int, `task` an object of the world, `last_rewards` (n,) float: the reward received on entering
+    each state (0 at the start of an episode). Equal arguments must give equal rows.
     """
 
     @property
@@ -31,7 +31,7 @@ class FeatureFunction(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class StateFeatures:
-    """Features read from a table with a row for each state, (n_states, n_features) int."""
+    """Features from a table with a row for each state, (n_states, n_features) int."""
 
     features: FeatureSet
     table: NDArray[np.integer]
@@ -58,7 +58,7 @@ class TaskFeature:
 
 @dataclass(frozen=True)
 class LastReward:
-    """The last reward as a class: how many of the rising `edges` it has reached.
+    """The last reward as a class: the number of the ascending `edges` that it reaches.
 
     Examples
     --------
@@ -72,7 +72,7 @@ class LastReward:
     def __post_init__(self) -> None:
         edges = np.asarray(self.edges, float)
         if not (np.isfinite(edges).all() and (np.diff(edges) > 0).all()):
-            raise InputError(f"edges must be finite and rise, got {list(self.edges)}")
+            raise InputError(f"edges must be finite and ascending, got {list(self.edges)}")
 
     @property
     def features(self) -> FeatureSet:
@@ -85,7 +85,7 @@ class LastReward:
 
 @dataclass(frozen=True)
 class AgentClass:
-    """The class of the agent that acts, one of `classes`: agents of one class share their counts (§3.7)."""
+    """The class of the acting agent, one of `classes`; agents of a class share their counts (§3.7)."""
 
     classes: tuple[str, ...]
     own: str
@@ -105,7 +105,7 @@ class AgentClass:
 
 @dataclass(frozen=True)
 class JoinedFeatures:
-    """Several feature functions side by side."""
+    """The features of several feature functions joined."""
 
     parts: tuple[FeatureFunction, ...]
 
@@ -124,18 +124,23 @@ class JoinedFeatures:
 def context_codes(
     phi: FeatureFunction, states: ArrayLike, task: Any = None, last_rewards: ArrayLike = 0.0
 ) -> NDArray[np.int64]:
-    """The contexts of states in a task, (n,) int64: what `ActionPrior` counts and reads.
+    """Context codes of states in a task, (n,) int64, for `ActionPrior`.
+
+    Use feature functions where a state alone does not determine the useful actions, for example where they depend
+    on the last reward.
 
     Parameters
     ----------
     phi : FeatureFunction
     states : (n,) int
     task : any, optional
-    last_rewards : (n,) float or one for all
-        Rewards received on coming to each state; 0 at the start of an episode.
+    last_rewards : (n,) float, or a number for all states
+        Rewards received on entering each state; 0 at the start of an episode.
     """
     states = np.asarray(states, np.int64).ravel()
     rewards = np.asarray(last_rewards, float).ravel()
     if rewards.size not in (1, len(states)):
-        raise InputError(f"last_rewards must be one or one for each of {len(states)} states, got {rewards.size}")
+        raise InputError(
+            f"last_rewards must be one number or {len(states)}, a number for each state, got {rewards.size}"
+        )
     return phi.features.codes(phi(states, task, np.broadcast_to(rewards, states.shape)))

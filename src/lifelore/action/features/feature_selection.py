@@ -1,4 +1,5 @@
-"""Features chosen by the entropy they save: every set (Eq. 3.12), each alone (Alg. 5), anew each task (Alg. 6).
+"""Selects features by the entropy that they save: over all sets (Eq. 3.12), singly (Alg. 5), after each task (Alg.
+6).
 
 Thesis: §3.3.2, §3.3.3, §3.4.5.
 """
@@ -16,9 +17,9 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 MOST_FEATURES = 15
-"""Most features of an exhaustive search: 32,768 sets."""
+"""Maximum number of features of an exhaustive search, which then compares 32,768 sets."""
 SLACK = 1e-12
-"""Bits by which an increase may miss the threshold: the mean of equal numbers may round above them."""
+"""Bits by which an increase may be below the threshold, because the mean of equal numbers may round up."""
 
 
 # ---- Eq. 3.12, exhaustively -------------------------------------------------------------------------------
@@ -26,7 +27,7 @@ SLACK = 1e-12
 
 @dataclass(frozen=True)
 class FeatureSearch:
-    """φ* and every set that was weighed.
+    """φ*, and the entropy of every set.
 
     names : the chosen features, in the full set's order
     entropy : H_φ* in bits
@@ -41,14 +42,14 @@ class FeatureSearch:
 
 
 def best_feature_set(counted: CountedFeatures, penalty: float = 0.0) -> FeatureSearch:
-    """φ* = arg min H_φ + c ‖φ‖ over all subsets (Eq. 3.12); of equally good ones the smallest, then the first.
+    """φ* = arg min H_φ + c ‖φ‖ over all subsets (Eq. 3.12); of equally good sets the smallest, then the first.
 
     Parameters
     ----------
     counted : CountedFeatures
         At most `MOST_FEATURES` features.
     penalty : float
-        c ≥ 0, bits a feature.
+        c ≥ 0, bits per feature.
     """
     n = len(counted.features)
     if n > MOST_FEATURES:
@@ -65,13 +66,13 @@ def best_feature_set(counted: CountedFeatures, penalty: float = 0.0) -> FeatureS
 
 
 def _all_subsets(counted: CountedFeatures) -> Iterator[tuple[tuple[str, ...], float]]:
-    """Every subset with its entropy, each pooled from a set with one feature more."""
+    """Every subset with its entropy, computed from the counts of a set with one more feature."""
     names, sizes = counted.features.names, counted.features.sizes
     waiting = [(tuple(range(len(names))), *pooled_counts(counted.codes, counted.counts), len(names))]
     while waiting:
         own, codes, counts, below = waiting.pop()
         yield tuple(names[i] for i in own), action_set_entropy(counts)
-        # Only features before the one last left out are left out next, so that each set comes up once.
+        # The next features left out stand before the last one left out, so that each set occurs once.
         place = prod(sizes[i] for i in own[below:])
         for at in reversed(range(below)):
             coarser = codes // (place * sizes[own[at]]) * place + codes % place
@@ -84,11 +85,11 @@ def _all_subsets(counted: CountedFeatures) -> Iterator[tuple[tuple[str, ...], fl
 
 @dataclass(frozen=True)
 class FeatureChoice:
-    """What Alg. 5 chose and why.
+    """Features chosen by Alg. 5, and their entropy increases.
 
     names : the chosen features, in the full set's order
     full_entropy : H of the full set, bits
-    increase : Δ_f of every feature, bits: how much the entropy grows without it; at least 0 but for rounding
+    increase : Δ_f of every feature, bits: growth of the entropy without it; at least 0 up to rounding
     threshold : ω
     """
 
@@ -101,7 +102,8 @@ class FeatureChoice:
 def independent_features(counted: CountedFeatures, threshold: float | None = None) -> FeatureChoice:
     """Features without which the entropy grows by ω or more (Alg. 5).
 
-    Each is left out alone, so two copies of one feature are both worth nothing: see `features_left_by_removal`.
+    Each feature is left out alone, so two copies of one feature both have an increase of 0; see
+    `features_by_removal`.
 
     Parameters
     ----------
@@ -128,10 +130,10 @@ def independent_features(counted: CountedFeatures, threshold: float | None = Non
     return FeatureChoice(chosen, full, increase, omega)
 
 
-def features_left_by_removal(counted: CountedFeatures, penalty: float) -> tuple[str, ...]:
-    """The reading of §3.4.5, "iteratively remove": drop the least feature while H_φ + c ‖φ‖ does not grow.
+def features_by_removal(counted: CountedFeatures, penalty: float) -> tuple[str, ...]:
+    """Features left when the least useful is removed while H_φ + c ‖φ‖ does not grow (§3.4.5).
 
-    Unlike Alg. 5 it keeps one of two copies of a feature. `penalty`: c ≥ 0 in bits a feature.
+    Unlike Alg. 5, it retains one of two copies of a feature. `penalty`: c ≥ 0, bits per feature.
     """
     if not (penalty >= 0 and np.isfinite(penalty)):
         raise InputError(f"penalty must be finite and at least 0, got {penalty}")
@@ -143,7 +145,7 @@ def features_left_by_removal(counted: CountedFeatures, penalty: float) -> tuple[
             names = own.names[:i] + own.names[i + 1 :]
             pooled = pooled_counts(own.coarser(codes, names), counts)
             tried.append((action_set_entropy(pooled[1]), names, pooled))
-        least, names, pooled = min(tried, key=lambda one: one[0])
+        least, names, pooled = min(tried, key=lambda candidate: candidate[0])
         if least - entropy > penalty + SLACK:
             break
         own, (codes, counts), entropy = own.subset(names), pooled, least
@@ -154,7 +156,7 @@ def features_left_by_removal(counted: CountedFeatures, penalty: float) -> tuple[
 
 
 class OnlineFeatureSelection:
-    """Features chosen anew after each task, and the prior over them (Alg. 6).
+    """Selects features after each task, and holds the prior over the selected features (Alg. 6).
 
     Parameters
     ----------
@@ -172,10 +174,10 @@ class OnlineFeatureSelection:
     full : ActionPrior
         θ_full, over codes of all features.
     prior : ActionPrior
-        θ, over codes of the chosen ones; before the first task all features are chosen.
+        θ, over codes of the chosen features; before the first task all features are chosen.
     chosen : FeatureSet
     choices : list of FeatureChoice
-        One for each task so far.
+        The choice after each task.
     """
 
     def __init__(
@@ -187,7 +189,7 @@ class OnlineFeatureSelection:
         self.choices: list[FeatureChoice] = []
 
     def update(self, contexts: ArrayLike, best: ArrayLike, weight: float = 1.0) -> FeatureChoice:
-        """Count one task's policy and choose (Alg. 6, lines 6-8).
+        """Count the policy of one task and select features (Alg. 6, lines 6-8).
 
         As `ActionPrior.update`, with codes of `features` as contexts.
         """
@@ -200,6 +202,6 @@ class OnlineFeatureSelection:
         self.choices.append(choice)
         return choice
 
-    def probs(self, contexts: ArrayLike, form: str = "proportion", **how) -> NDArray[np.float64]:
-        """θ for codes of the full set, (n, n_actions): what `prior_rows` asks for."""
-        return self.prior.probs(self.features.coarser(contexts, self.chosen.names), form, **how)
+    def probs(self, contexts: ArrayLike, form: str = "proportion", **form_settings) -> NDArray[np.float64]:
+        """θ for codes of the full set, (n, n_actions), as `prior_rows` takes it."""
+        return self.prior.probs(self.features.coarser(contexts, self.chosen.names), form, **form_settings)

@@ -1,8 +1,8 @@
-"""Features of a context as whole numbers, packed into one int64 code by mixed radix; the last counts fastest.
+"""`FeatureSet`: packs the features of a context, whole numbers, into one int64 code by mixed radix.
 
     φ = (f_1, …, f_k),   f_i in [0, K_i),   K_φ = Π K_i
 
-Thesis: §3.3.2.
+The last feature changes the code by 1. Thesis: §3.3.2.
 """
 
 import hashlib
@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 
 MOST_CODES = 2**47
-"""Most configurations of a feature set: with up to 65,535 actions a context's code then still fits a record."""
+"""Maximum number of configurations; with up to 65,535 actions a slot of a memory record then fits 64 bits."""
 
 Columns = NDArray[np.int64]
 """(n, n_features), a row of feature values for each context."""
@@ -23,7 +23,7 @@ Columns = NDArray[np.int64]
 
 @dataclass(frozen=True)
 class FeatureSet:
-    """Names of features and how many values each can take.
+    """Names of features and the number of values of each.
 
     Parameters
     ----------
@@ -71,7 +71,7 @@ class FeatureSet:
 
     @property
     def places(self) -> tuple[int, ...]:
-        """What a step of each feature adds to a code."""
+        """Increase of the code when each feature increases by 1."""
         places, place = [], 1
         for size in reversed(self.sizes):
             places.append(place)
@@ -79,7 +79,7 @@ class FeatureSet:
         return tuple(reversed(places))
 
     def key(self, actions: Sequence[str]) -> str:
-        """Key of a prior over these features and actions: equal only where both agree in name and order."""
+        """Key of a prior over these features and actions; equal only if names and order are equal."""
         text = repr((self.names, self.sizes, tuple(map(str, actions))))
         return hashlib.sha256(text.encode()).hexdigest()[:32]
 
@@ -92,7 +92,7 @@ class FeatureSet:
         return total
 
     def columns(self, codes: ArrayLike) -> Columns:
-        """The feature values that codes stand for, (n, n_features) int64."""
+        """Feature values of codes, (n, n_features) int64."""
         codes = np.asarray(codes, np.int64).ravel()
         if codes.size and not (codes.min() >= 0 and codes.max() < self.n_codes):
             raise InputError(f"codes must lie in [0, {self.n_codes}), got {codes.min()}..{codes.max()}")
@@ -106,11 +106,11 @@ class FeatureSet:
         unknown = [name for name in names if name not in self.names]
         if unknown:
             raise NotFoundError(f"features must be among {', '.join(self.names)}, got '{unknown[0]}'")
-        kept = [i for i, name in enumerate(self.names) if name in names]
-        return FeatureSet(tuple(self.names[i] for i in kept), tuple(self.sizes[i] for i in kept))
+        chosen = [i for i, name in enumerate(self.names) if name in names]
+        return FeatureSet(tuple(self.names[i] for i in chosen), tuple(self.sizes[i] for i in chosen))
 
     def coarser(self, codes: ArrayLike, names: Sequence[str]) -> NDArray[np.int64]:
-        """The codes of `subset` (names) that codes of this set fall into: what `ActionPrior.marginalise` takes."""
+        """Codes of `subset(names)` that contain codes of this set, as `ActionPrior.marginalise` takes them."""
         codes, part = np.asarray(codes, np.int64).ravel(), self.subset(names)
         if codes.size and not (codes.min() >= 0 and codes.max() < self.n_codes):
             raise InputError(f"codes must lie in [0, {self.n_codes}), got {codes.min()}..{codes.max()}")

@@ -1,4 +1,4 @@
-"""Why a context leaves its actions open: tasks disagree there, or its features are too poor (§3.3.2)."""
+"""Explains the entropy of a context: tasks have different best actions, or features are too poor (§3.3.2)."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -14,13 +14,13 @@ REASONS = ("certain", "tasks disagree", "features too poor", "too few counts")
 
 @dataclass(frozen=True, eq=False)
 class Uncertainty:
-    """Why each context of a feature set leaves its actions open, told against the full set.
+    """Reasons for the entropy of each context of a feature set, compared with the full set.
 
     columns : (m, n_chosen) int64, the contexts
     share : (m,) P(φ^i), sums to 1
     entropy : (m,) H[θ_{φ^i}] in bits
-    with_all : (m,) the mean entropy there once all features are known, bits; never more than `entropy`
-    counts_each : (m,) mean counts of a full configuration there
+    with_all : (m,) mean entropy in the context if all features are known, bits; at most `entropy`
+    counts_each : (m,) mean counts of the full configurations in the context
     reason : (m,) index into `REASONS`
     """
 
@@ -34,12 +34,12 @@ class Uncertainty:
 
     @property
     def disagreement(self) -> float:
-        """Bits of H_φ that no feature of the full set explains: tasks disagree, or several actions tie."""
+        """Bits of H_φ that no feature explains: tasks have different best actions, or several actions tie."""
         return float(self.share @ self.with_all)
 
     @property
     def poverty(self) -> float:
-        """Bits of H_φ that the left-out features explain; `disagreement` + `poverty` = H_φ."""
+        """Bits of H_φ that the features outside the set explain; `disagreement` + `poverty` = H_φ."""
         return float(self.share @ (self.entropy - self.with_all))
 
     def share_of(self, reason: str) -> float:
@@ -50,22 +50,22 @@ class Uncertainty:
 def why_uncertain(
     counted: CountedFeatures, names: Sequence[str], high: float = 0.5, enough: float = 5.0
 ) -> Uncertainty:
-    """Whether the entropy is high because tasks disagree or because the features are too poor (§3.3.2).
+    """Why contexts have a high entropy: tasks disagree, features are too poor, or counts are too few (§3.3.2).
 
-    A context's entropy splits exactly into what stays once all features are known and what they explain. The
-    larger part is the reason. A full configuration with few counts looks certain whatever is true, so where
-    they average fewer than `enough` the split is not believed: "too few counts".
+    The entropy of a context is the sum of two parts: the part that remains if all features are known, and the part
+    that they explain. The larger part is the reason. A full configuration with few counts seems certain, so the
+    reason is "too few counts" if the full configurations have fewer than `enough` counts on average.
 
     Parameters
     ----------
     counted : CountedFeatures
-        Over the full set, "the most informative set of observation features".
+        Counts over the full set, "the most informative set of observation features".
     names : sequence of str
-        The features that are chosen.
+        The chosen features.
     high : float
-        Bits above which a context's actions count as open.
+        Bits above which the entropy of a context counts as high.
     enough : float
-        Mean counts of the full configurations within a context, from which the split is believed.
+        Least mean counts of the full configurations in a context for another reason than "too few counts".
     """
     features = counted.features
     fine_codes, fine = pooled_counts(counted.codes, counted.counts)

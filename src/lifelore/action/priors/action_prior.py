@@ -1,9 +1,9 @@
-"""Action priors: how often each action was best in each context, over tasks and policies.
+"""`ActionPrior`: counts how often each action was best in each context, over tasks and policies.
 
     α_c(a) = Σ_π w(π) U_c^π(a) + α⁰        U = 1 where a is best or tied best under π, else 0
 
-Counts are kept sparse by context code, weights as fixed-point integers, and α⁰ apart from them, so that priors
-of many robots merge exactly in any order. Thesis: §3.2.2, §3.3, Eq. 3.1-3.8.
+Counts are stored by context code, only for contexts with counts. Weights are fixed-point integers, and α⁰ is
+stored separately, so that priors of many robots merge exactly in any order. Thesis: §3.2.2, §3.3, Eq. 3.1-3.8.
 """
 
 from collections.abc import Iterable, Mapping
@@ -19,20 +19,20 @@ from lifelore.core.metrics import entropy
 from lifelore.core.protocols import Record
 
 MOST_WEIGHT = 1e6
-"""Largest w(π): the counts of 2**23 such policies still fit a 64-bit integer."""
+"""Largest w(π); the counts of 2**23 such policies fit a 64-bit integer."""
 KIND, VERSION = "action_prior", 1
 ONE = 1 << 20
-"""A weight of 1 as a fixed-point integer: weights keep six decimal digits and sum without rounding."""
+"""A weight of 1 as a fixed-point integer; weights have six decimal digits and add without rounding."""
 
 BLOCK = 1 << 13
-"""Rows sampled at a time: their numbers stay in the processor's cache."""
+"""Rows sampled at a time; larger blocks do not fit the processor's cache and take longer."""
 
 MANY = 1 << 16
-"""Contexts from which their counts no longer fit the cache: they are then sampled in the order they lie in."""
+"""Number of contexts whose counts no longer fit the cache; from here on, samples are drawn in storage order."""
 
 FORMS = ("proportion", "dirichlet", "softmax", "support", "tempered")
-"""How counts become probabilities (§3.2.2.1): their proportion (the mean of the Dirichlet), one draw from the
-Dirichlet, a softmax of the counts, uniform over actions ever counted, or the proportion to a power."""
+"""Forms of probabilities from counts (§3.2.2.1): their proportion (the mean of the Dirichlet), one draw from the
+Dirichlet, a softmax of the counts, uniform over actions with counts, or the proportion to a power."""
 
 
 class ActionPrior:
@@ -45,13 +45,13 @@ class ActionPrior:
     alpha0 : float
         Pseudo-count α⁰ of every action in every context, > 0; the weight of the uniform policy π₀.
     key : str
-        What the contexts mean, usually a hash of their definition and the actions. Priors of different
-        keys do not merge.
+        Meaning of the contexts, usually a hash of their definition and the actions. Priors of different keys
+        do not merge.
 
     Notes
     -----
     A context is an int64 code of magnitude at most 2**63 / (n_actions + 1). A context without counts has the
-    uniform distribution in every form but ``dirichlet``, which is drawn around it, far from it where α⁰ is small.
+    uniform distribution in every form but ``dirichlet``, whose draws scatter around it, widely if α⁰ is small.
 
     Examples
     --------
@@ -90,13 +90,12 @@ class ActionPrior:
         Parameters
         ----------
         contexts : (n,) int
-            Context of each state counted; codes may repeat (§3.3.1: states with one percept pool).
+            Context of each state to count; codes may repeat (§3.3.1: states with the same percept share counts).
         best : (n, n_actions) bool
-            Best or tied-best actions of each; a row without any counts nothing. Leave out, or pass as all
-            False, goal rows (where every action ties), completed rows, and states a learnt policy does not
-            know.
+            Best or tied-best actions of each state; rows without any are not counted. Leave out, or pass as all
+            False: goal rows (where every action ties), completed rows, and states without a learnt policy.
         weight : float
-            w(π) in [0, `MOST_WEIGHT`]; kept to six decimal digits.
+            w(π) in [0, `MOST_WEIGHT`]; rounded to six decimal digits.
         """
         contexts, best = np.asarray(contexts, np.int64).ravel(), np.asarray(best, bool)
         if best.shape != (len(contexts), self.n_actions):
@@ -105,19 +104,19 @@ class ActionPrior:
             )
         if not 0 <= weight <= MOST_WEIGHT:
             raise InputError(f"weight must lie in [0, {MOST_WEIGHT:.0f}], got {weight}")
-        # A record's slot is code · n_actions + action, which must not wrap round.
+        # A slot of a record is code · n_actions + action, which must not overflow.
         largest = (2**63 - 1) // (self.n_actions + 1)
         if contexts.size and not (-largest <= contexts.min() and contexts.max() <= largest):
             raise InputError(f"contexts must be codes of magnitude at most {largest}; shorten the hash")
-        worth = round(weight * ONE)
+        fixed_point = round(weight * ONE)
         counted = np.logical_or.reduce(list(best.T))  # column by column: rows are short
         if not counted.all():
             contexts, best = contexts[counted], best[counted]
-        if worth:
-            self._add(contexts, best, worth)
+        if fixed_point:
+            self._add(contexts, best, fixed_point)
 
     def update_trajectory(self, contexts: ArrayLike, actions: ArrayLike, weight: float = 1.0) -> None:
-        """Count the actions of a trajectory or demonstration, one for each visit (§3.4.8)."""
+        """Count the actions of a trajectory or demonstration, each visit once (§3.4.8)."""
         actions = np.asarray(actions, np.int64).ravel()
         if actions.size and not (actions.min() >= 0 and actions.max() < self.n_actions):
             raise InputError(f"actions must lie in [0, {self.n_actions}), got {actions.min()}..{actions.max()}")
@@ -132,20 +131,20 @@ class ActionPrior:
             )
         self._add(other._codes, other._counts)
 
-    def _add(self, codes: NDArray[np.int64], rows: NDArray, worth: int = 1) -> None:
-        """Add `worth` times each row of whole numbers or truths; none may be without any."""
+    def _add(self, codes: NDArray[np.int64], rows: NDArray, factor: int = 1) -> None:
+        """Add `factor` times each row of integers or booleans; no row may be all zero."""
         if len(codes) >= FEW:
-            codes, self._counts = merged_rows(self._codes, self._counts, codes, rows, worth)
+            codes, self._counts = merged_rows(self._codes, self._counts, codes, rows, factor)
             self._index = ContextIndex(codes)
             return
         place = self._index.places(codes)
         if (place < 0).any():
             self._make_room(np.unique(codes[place < 0]))
             place = self._index.places(codes)
-        np.add.at(self._counts, place, rows * np.int64(worth))
+        np.add.at(self._counts, place, rows * np.int64(factor))
 
     def _make_room(self, codes: NDArray[np.int64]) -> None:
-        """Rows of zeros for distinct rising codes that have none yet."""
+        """Insert rows of zeros for distinct ascending new codes."""
         at = np.searchsorted(self._codes, codes)
         self._index = ContextIndex(np.insert(self._codes, at, codes))
         self._counts = np.insert(self._counts, at, 0, axis=0)
@@ -153,7 +152,7 @@ class ActionPrior:
     # ---- reading ---------------------------------------------------------------------------------
 
     def counts(self, contexts: ArrayLike) -> NDArray[np.float64]:
-        """Weighted counts Σ w U without α⁰, (n, n_actions); zeros where a context has none."""
+        """Weighted counts Σ w U without α⁰, (n, n_actions); zeros for contexts without counts."""
         return self._counts_at(self._index.places(np.asarray(contexts, np.int64).ravel()))
 
     def _counts_at(self, place: NDArray[np.int64]) -> NDArray[np.float64]:
@@ -164,7 +163,7 @@ class ActionPrior:
         return result
 
     def unseen(self, contexts: ArrayLike) -> NDArray[np.bool_]:
-        """Which contexts have no counts, (n,) bool; their mean is the unseen rate."""
+        """Whether each context has no counts, (n,) bool; the mean is the unseen rate."""
         return np.logical_not(self.counts(contexts).any(axis=1))
 
     def probs(
@@ -188,7 +187,7 @@ class ActionPrior:
         beta : float
             Exponent of ``tempered``, ≥ 0; scale of the counts in ``softmax``.
         escape : float
-            Mass in [0, 1] that ``support`` spreads over all actions, so that none is ever excluded.
+            Probability in [0, 1] that ``support`` spreads over all actions, so that it excludes no action.
         """
         return self._probs_of(self.counts(contexts), form, generator, beta, escape)
 
@@ -201,8 +200,8 @@ class ActionPrior:
                 mass = alpha
             case "dirichlet":
                 if generator is None:
-                    raise InputError("form 'dirichlet' draws: pass generator=")
-                # Gammas of a tiny shape underflow to 0; the floor keeps a row from dividing 0 by 0.
+                    raise InputError("form 'dirichlet' draws probabilities: pass generator=")
+                # Gamma draws with a small shape underflow to 0; the floor prevents 0 / 0.
                 mass = np.maximum(generator.standard_gamma(alpha), 1e-300)
             case "softmax":
                 mass = np.exp(beta * (counts - counts.max(axis=1, keepdims=True)))
@@ -222,21 +221,23 @@ class ActionPrior:
         return (1 - escape) * inside + escape / self.n_actions
 
     def sample(
-        self, contexts: ArrayLike, generator: np.random.Generator, form: str = "proportion", **how: float
+        self, contexts: ArrayLike, generator: np.random.Generator, form: str = "proportion", **form_settings: float
     ) -> NDArray[np.int64]:
         """One action for each context, (n,) int64, drawn from `probs`."""
         contexts = np.asarray(contexts, np.int64).ravel()
-        if form == "proportion" and not how and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
+        if form == "proportion" and not form_settings and len(contexts) >= FEW and self.n_actions <= SEQUENTIAL:
             return self._sample_many(contexts, generator.random(len(contexts)))
         place = self._index.places(contexts)
         if form == "dirichlet":
-            probs = self._probs_of(self._counts_at(place), form, generator, **how)
+            probs = self._probs_of(self._counts_at(place), form, generator, **form_settings)
             return _drawn(probs, generator.random(len(place)))
         uniform = generator.random(len(place))
         actions = np.empty(len(place), np.int64)
         for first in range(0, max(1, len(place)), BLOCK):
             rows = slice(first, first + BLOCK)
-            actions[rows] = _drawn(self._probs_of(self._counts_at(place[rows]), form, **how), uniform[rows])
+            actions[rows] = _drawn(
+                self._probs_of(self._counts_at(place[rows]), form, **form_settings), uniform[rows]
+            )
         return actions
 
     def _sample_many(self, contexts: NDArray[np.int64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -250,8 +251,8 @@ class ActionPrior:
     def mask(self, contexts: ArrayLike, threshold: float = 0.0) -> NDArray[np.bool_]:
         """Actions whose proportion of the counts exceeds `threshold`, (n, n_actions) bool.
 
-        All True for a context without counts or without such an action. A mask can exclude the best
-        action: measure `exclusion_rate` before relying on one.
+        All True for a context without counts or without such an action. A mask can exclude the best action:
+        measure `exclusion_rate` before you rely on it.
         """
         counts = self.counts(contexts)
         total = counts.sum(axis=1, keepdims=True)
@@ -263,18 +264,18 @@ class ActionPrior:
         """Share of contexts whose every best action `mask` excludes; `best` as in `update`."""
         best = np.asarray(best, np.bool_)
         counted = np.asarray(best.any(axis=1))
-        kept = np.asarray((self.mask(contexts, threshold) & best).any(axis=1))
-        return float(np.mean(~kept[counted])) if counted.any() else 0.0
+        allowed = np.asarray((self.mask(contexts, threshold) & best).any(axis=1))
+        return float(np.mean(~allowed[counted])) if counted.any() else 0.0
 
     def entropy(self, contexts: ArrayLike) -> NDArray[np.float64]:
-        """Entropy in nats of the counted proportions, (n,); α⁰ takes no part, log |A| where unseen."""
+        """Entropy in nats of the proportions of the counts without α⁰, (n,); log |A| without counts."""
         counts = self.counts(contexts)
         total = counts.sum(axis=1, keepdims=True)
         share = np.divide(counts, total, out=np.full_like(counts, 1 / self.n_actions), where=total > 0)
         return entropy(share)
 
     def marginalise(self, coarser: ArrayLike, key: str = "") -> "ActionPrior":
-        """The prior over coarser contexts: `coarser` (len(self),) gives each of `contexts` its new code."""
+        """The prior over coarser contexts; `coarser` (len(self),) holds the new code of each of `contexts`."""
         coarser = np.asarray(coarser, np.int64).ravel()
         if len(coarser) != len(self):
             raise InputError(f"coarser must have one code for each of {len(self)} contexts, got {len(coarser)}")
@@ -282,30 +283,30 @@ class ActionPrior:
         result._add(coarser, self._counts)
         return result
 
-    # ---- keeping ---------------------------------------------------------------------------------
+    # ---- storing ---------------------------------------------------------------------------------
 
     def fixed_point_counts(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-        """Contexts (n,) and counts (n, n_actions) as multiples of 1 / `ONE`: all there is, without rounding."""
+        """Contexts (n,) and counts (n, n_actions) as multiples of 1 / `ONE`, without rounding."""
         return self._codes.copy(), self._counts.copy()
 
     @classmethod
     def from_fixed_point_counts(
         cls, contexts: NDArray[np.int64], counts: NDArray[np.int64], alpha0: float = 0.1, key: str = ""
     ) -> "ActionPrior":
-        """The prior of `fixed_point_counts`; contexts are distinct and rise, and no row of counts is all 0."""
+        """The prior of `fixed_point_counts`; contexts must be distinct and ascending, no row of counts all 0."""
         prior = cls(counts.shape[1], alpha0, key)
         prior._index, prior._counts = ContextIndex(contexts.copy()), np.ascontiguousarray(counts.copy())
         return prior
 
     def to_record(self, about: Mapping[str, Any] | None = None) -> Record:
-        """The counts as a record that memory adds up; α⁰ is a reader's choice and stays out."""
+        """The counts as a record that memory adds; without α⁰, which the reader chooses."""
         context, action = np.nonzero(self._counts)
         slots = self._codes[context] * self.n_actions + action
         return Record(KIND, self.key, VERSION, "add", slots, self._counts[context, action], about or {})
 
     @classmethod
     def from_record(cls, record: Record, n_actions: int, alpha0: float = 0.1) -> "ActionPrior":
-        """The prior that a record holds."""
+        """The prior in a record."""
         if (record.kind, record.version) != (KIND, VERSION):
             raise InputError(f"record must be {KIND} version {VERSION}, got {record.kind} {record.version}")
         prior = cls(n_actions, alpha0, record.key)
@@ -317,7 +318,7 @@ class ActionPrior:
 
     @classmethod
     def merged(cls, priors: Iterable["ActionPrior"]) -> "ActionPrior":
-        """A new prior with the counts of all; at least one."""
+        """A new prior with the sum of the counts; needs at least one prior."""
         first, *rest = priors
         total = cls(first.n_actions, first.alpha0, first.key)
         for prior in (first, *rest):
@@ -326,7 +327,7 @@ class ActionPrior:
 
 
 def _drawn(probs: NDArray[np.float64], uniform: NDArray[np.float64]) -> NDArray[np.int64]:
-    """The action of each row (n, n_actions) that a uniform number (n,) falls to."""
+    """Draw an action from each row (n, n_actions) with a uniform number (n,)."""
     cum = np.ascontiguousarray(probs.T)
     for action in range(1, len(cum)):
         cum[action] += cum[action - 1]

@@ -1,8 +1,8 @@
-"""Rare contexts back off to simpler features: a posterior mean drawn towards that of a coarser context.
+"""Back-off for contexts with few counts: the posterior mean shrinks towards the mean of a coarser context.
 
     θ_c = (counts of c + m θ_coarser(c)) / (n_c + m)
 
-level by level, from the full context to no context at all (uniform).
+level by level, from the full context to the uniform distribution.
 """
 
 from collections.abc import Sequence
@@ -27,14 +27,14 @@ def posterior_mean(
     coarser : sequence of int
         Bit masks, finest first: ``code & mask`` is the simpler context of that level.
     strength : float
-        m > 0, the counts' worth of evidence that the coarser level carries.
+        m > 0, the number of counts that the coarser level is equivalent to.
     """
     if not (strength > 0 and np.isfinite(strength)):
         raise InputError(f"strength must be positive and finite, got {strength}")
     contexts = np.asarray(contexts, np.int64).ravel()
     known = prior.contexts
     theta = np.full((len(contexts), prior.n_actions), 1 / prior.n_actions)
-    # The coarsest level meets the uniform distribution with the prior's own pseudo-counts.
+    # The coarsest level shrinks towards the uniform distribution with the prior's own pseudo-counts.
     weight = prior.alpha0 * prior.n_actions
     for mask in reversed(coarser):
         counts = prior.marginalise(known & mask).counts(contexts & mask)

@@ -1,7 +1,7 @@
-"""Where codes stand in a sorted list of codes: a table of buckets by the codes' leading bits, then bisection.
+"""Finds codes in a sorted array of codes: a table of buckets by the leading bits, then bisection in the bucket.
 
-Many lookups in a long list cost one or two memory accesses each instead of the twenty of a plain bisection, and no
-hash has to be trusted: codes that crowd into one bucket are still found by bisection.
+Many lookups in a long array take one or two memory accesses each, a plain bisection some twenty. Unlike a hash
+table, it stays fast if many codes fall into one bucket.
 """
 
 import numpy as np
@@ -10,18 +10,18 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 
 FEW = 1 << 14
-"""Lookups up to which a plain bisection is quicker than building the table."""
+"""Number of lookups up to which plain bisection is faster than building the table."""
 
 
 class ContextIndex:
-    """Places in `codes`, (n,) int64, distinct and rising; the array must not change."""
+    """Index of `codes`, (n,) int64, distinct and ascending; the array must not change."""
 
     def __init__(self, codes: NDArray[np.int64]) -> None:
         self.codes = codes
         self._buckets: tuple[NDArray[np.int32], int] | None = None
 
     def places(self, wanted: NDArray[np.int64]) -> NDArray[np.int64]:
-        """The place of each wanted code, (m,) int64; -1 where it is not in the list."""
+        """Place of each wanted code in `codes`, (m,) int64; -1 if it is missing."""
         codes = self.codes
         if not len(codes) or not len(wanted):
             return np.full(len(wanted), -1, np.int64)
@@ -37,7 +37,7 @@ class ContextIndex:
 
 
 def _buckets(codes: NDArray[np.int64]) -> tuple[NDArray[np.int32], int]:
-    """First place of each bucket and, last, of none; bits to shift a code's distance from the first."""
+    """First place of each bucket, then the number of codes; and the bits to shift code - codes[0] by."""
     span = int(codes[-1]) - int(codes[0])
     shift = max(0, span.bit_length() - (2 * len(codes)).bit_length())
     start = np.empty((span >> shift) + 2, np.int32)

@@ -1,4 +1,4 @@
-"""Rows of counts by code: many added at once, and actions drawn from them, without a temporary as large as they.
+"""Kernels on rows of counts by code: add many rows, and draw actions, without large temporary arrays.
 
 Thesis: Eq. 3.5, 3.7 and the proportion of §3.2.2.1.
 """
@@ -9,37 +9,37 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import kernel
 
 _DIGIT = 8
-"""Bits sorted by at a time: the 256 places written to stay in the nearest cache."""
+"""Bits sorted at a time; the 256 places written to fit the nearest cache."""
 
 
 def merged_rows(
-    codes: NDArray[np.int64], counts: NDArray[np.int64], more: NDArray[np.int64], rows: NDArray, worth: int
+    codes: NDArray[np.int64], counts: NDArray[np.int64], more: NDArray[np.int64], rows: NDArray, factor: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Distinct rising codes of both and their counts, to which `worth` times each row of `more` is added.
+    """Distinct ascending codes of both arrays, and their counts plus `factor` times each row of `more`.
 
     Parameters
     ----------
-    codes : (n,) int64, distinct and rising
+    codes : (n,) int64, distinct and ascending
     counts : (n, n_actions) int64
     more : (m,) int64, at least one; any order, may repeat
-    rows : (m, n_actions) of whole numbers or truths
-    worth : int
+    rows : (m, n_actions) of integers or booleans
+    factor : int
     """
     rows = np.ascontiguousarray(rows)
     if not rising(more):
         order, more = sorted_order(np.ascontiguousarray(more))
         rows = _in_order(rows, order)
-    return _merge(codes, counts, np.ascontiguousarray(more), rows, worth)
+    return _merge(codes, counts, np.ascontiguousarray(more), rows, factor)
 
 
 def rising(codes: NDArray[np.int64]) -> bool:
-    """Whether no code is less than the one before it."""
+    """Whether the codes are ascending; equal neighbours are allowed."""
     return bool((codes[1:] >= codes[:-1]).all())
 
 
 @kernel
 def _in_order(rows, order):
-    # Alone in a loop these reads overlap; within the merge each would be waited for.
+    # In a loop of their own these reads overlap; inside the merge each would stall it.
     result = np.empty_like(rows)
     for i in range(order.size):
         for j in range(rows.shape[1]):
@@ -49,7 +49,7 @@ def _in_order(rows, order):
 
 @kernel
 def sorted_order(codes):
-    """Places of the codes in rising order, equal ones in their own order, and the codes so; digit by digit."""
+    """Stable radix sort: the order of the codes, and the sorted codes."""
     lowest = codes.min()
     span = codes.max() - lowest
     keys, order = codes - lowest, np.arange(codes.size).astype(np.int32)
@@ -73,7 +73,7 @@ def sorted_order(codes):
 
 
 @kernel
-def _merge(codes, counts, more, rows, worth):
+def _merge(codes, counts, more, rows, factor):
     n, m, n_actions = codes.size, more.size, rows.shape[1]
     size = _union_size(codes, more)
     merged, total = np.empty(size, np.int64), np.zeros((size, n_actions), np.int64)
@@ -87,7 +87,7 @@ def _merge(codes, counts, more, rows, worth):
             i += 1
         while j < m and more[j] == code:
             for action in range(n_actions):
-                total[k, action] += rows[j, action] * worth
+                total[k, action] += rows[j, action] * factor
             j += 1
     return merged, total
 
@@ -107,10 +107,10 @@ def _union_size(codes, more):
 
 @kernel
 def draw_by_proportion(counts, place, unit, alpha0, uniform):
-    """An action for each place, (m,) int64, by the proportion of its row of `counts`, each worth `unit`.
+    """Draw an action for each place, (m,) int64, by the proportions of its row of `counts` · `unit` + `alpha0`.
 
-    Place -1 is a row of no counts. To the bit what the proportions, summed up, give: for up to seven actions NumPy
-    adds in this order.
+    Place -1 is a row without counts. The draws are to the bit those of NumPy's cumulative proportions, because
+    NumPy adds up to seven numbers in this order.
     """
     n_actions = counts.shape[1]
     actions = np.zeros(place.size, np.int64)
@@ -125,10 +125,10 @@ def draw_by_proportion(counts, place, unit, alpha0, uniform):
             mass[action] = mass[action - 1] + mass[action] / total
         drawn, passed = uniform[i] * mass[n_actions - 1], 0
         for action in range(n_actions - 1):
-            passed += drawn >= mass[action]  # no branch: it could not be predicted
+            passed += drawn >= mass[action]  # without a branch, which the processor could not predict
         actions[i] = passed
     return actions
 
 
 SEQUENTIAL = 7
-"""Most actions for which `draw_by_proportion` adds in NumPy's order."""
+"""Maximum number of actions for which `draw_by_proportion` adds in NumPy's order."""

@@ -1,7 +1,7 @@
-"""Which of a policy's actions count: the best and tied best ones (Eq. 3.1), and in which states.
+"""Selects the actions of a policy to count: the best and tied-best ones (Eq. 3.1), in all or in visited states.
 
-Goal and completed rows never count. Whether all states count or only those visited is the caller's word: exact
-Q-functions are right everywhere, learnt ones know nothing of states never visited.
+Goal rows and completed rows never count. Exact Q-functions are right in all states; learnt Q-functions only in
+visited states.
 """
 
 import numpy as np
@@ -31,12 +31,12 @@ def actions_to_count(
         ``all``: every state, for exact values. ``visited``: only states with a visit and a value above zero, for
         learnt ones; of their actions only those ever tried.
     ended : (n_states,) bool, optional
-        Goals and completed configurations: the episode is over and every action ties.
+        Goals and completed configurations, where the episode is over and every action ties.
     visits : (n_states, n_actions) int
-        How often each action was tried; needed by ``visited``.
+        Number of times each action was tried; needed for ``visited``.
     tolerance : float
-        Actions within this of the best, relative to it, are tied; at least 0. Exact values have the
-        floor of `best_actions` beside it.
+        Relative distance to the best value within which actions are tied; at least 0. Exact values also use
+        the floor of `best_actions`.
     """
     q = np.asarray(q, np.float64)
     if over not in OVER:

@@ -1,10 +1,11 @@
-"""An `ActionPrior` as one npz file: two arrays and a JSON text; no pickle; equal priors give equal bytes.
+"""Saves and loads an `ActionPrior` as an npz file of two arrays and a JSON text, without pickle.
 
-    contexts   (n,) int64, distinct and rising
+    contexts   (n,) int64, distinct and ascending
     counts     (n, n_actions) int64, Σ w U as multiples of 2^-20, at least 0, no row all 0
-    about      uint8, UTF-8 JSON: format, version, n_actions, alpha0, key, and under `about` what is for people
+    about      uint8, UTF-8 JSON: format, version, n_actions, alpha0, key, and `about` for readers
 
-Reading gives back the same bits. Other programs read it with ``numpy.load``; counts divide by 2^20.
+Loading gives the same bits, and equal priors give equal bytes. Other programs can read the file with
+``numpy.load`` and divide the counts by 2^20.
 """
 
 from collections.abc import Mapping
@@ -23,14 +24,14 @@ FORMAT = PackedFormat("lifelore action prior", 1, "action prior", "save_prior", 
 
 
 def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
-    """Write a prior; `about` is for people: features, actions, tasks counted, as JSON values.
+    """Write a prior; `about` describes it for readers (features, actions, tasks) as JSON values.
 
     Raises
     ------
     InputError
-        `about` holds something that is not JSON.
+        `about` holds a value that is not JSON.
     StoreError
-        The disk refuses.
+        The file cannot be written.
     """
     content = prior_bytes(prior, about)
     try:
@@ -41,18 +42,18 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
 
 
 def load_prior(path: str | Path) -> ActionPrior:
-    """The prior that `save_prior` wrote, bit for bit.
+    """The prior that `save_prior` wrote, equal to the bit.
 
     Raises
     ------
     InputError
-        There is no such file, or it is none of ours, newer, or damaged.
+        The file is missing or damaged, has another format, or comes from a newer version.
     """
     return prior_from_bytes(_content(path), str(path))
 
 
 def prior_about(path: str | Path) -> dict[str, Any]:
-    """What a file says of itself: format, version, n_actions, alpha0, key and `about`."""
+    """Description of a prior file: format, version, n_actions, alpha0, key and `about`."""
     return FORMAT.unpack(_content(path), str(path))[0]
 
 
@@ -64,7 +65,7 @@ def prior_bytes(prior: ActionPrior, about: Mapping[str, Any] | None = None) -> b
 
 
 def prior_from_bytes(content: bytes, where: str = "the prior") -> ActionPrior:
-    """The prior of `prior_bytes`; `where` is named when it cannot be read."""
+    """The prior of `prior_bytes`; error messages name `where`."""
     header, arrays = FORMAT.unpack(content, where)
     try:
         contexts, counts = arrays["contexts"], arrays["counts"]
@@ -83,7 +84,7 @@ def _check(contexts: NDArray[Any], counts: NDArray[Any], n_actions: int) -> None
     if counts.shape != (len(contexts), n_actions):
         raise ValueError(f"counts must have shape ({len(contexts)}, {n_actions}), got {counts.shape}")
     if not (contexts[1:] > contexts[:-1]).all():
-        raise ValueError("contexts must be distinct and rise")
+        raise ValueError("contexts must be distinct and ascending")
     largest = (2**63 - 1) // (n_actions + 1)
     if len(contexts) and not (-largest <= contexts[0] and contexts[-1] <= largest):
         raise ValueError(f"contexts must be of magnitude at most {largest}")

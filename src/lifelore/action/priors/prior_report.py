@@ -1,4 +1,4 @@
-"""What a prior knows, in numbers for people: what it counted, how open it leaves the choice, what it excludes."""
+"""Describes a prior in numbers: counts, entropy, and how often its mask excludes the best action."""
 
 from typing import Any
 
@@ -9,35 +9,35 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 
 SURE = 1e-9
-"""Nats of entropy below which a context leaves nothing to choose."""
+"""Nats of entropy below which a context has only one action."""
 
 
 def prior_report(
     prior: ActionPrior, contexts: ArrayLike | None = None, best: ArrayLike | None = None, threshold: float = 0.0
 ) -> dict[str, Any]:
-    """Plain data about a prior; NaN never, None where there is nothing to measure.
+    """Numbers about a prior as JSON data; None where a number is undefined.
 
     Parameters
     ----------
     prior : ActionPrior
     contexts : (n,) int, optional
-        Contexts met, say the states of a held-out task; default every context with counts.
+        Contexts to report on, for example those of a held-out task; default: all contexts with counts.
     best : (n, n_actions) bool, optional
-        Best actions there; rows of goals and completed configurations all False. Needs `contexts`.
+        Best actions in `contexts`; rows of goals and completed configurations all False.
     threshold : float
         As in `ActionPrior.mask`.
 
     Returns
     -------
     dict
-        ``contexts`` (with counts), ``counted`` (Σ w U), ``unseen_rate`` (share of the contexts met that have no
-        counts), ``entropy`` (mean over the contexts met, nats), ``entropy_by_counts`` (mean over all counts, nats:
-        Eq. 3.11), ``sure_rate`` (share of contexts met with one action only), ``useful_actions`` (share of actions
-        that the mask allows, Fig. 3.1), ``exclusion_rate`` (share of contexts met whose every best action the mask
+        ``contexts`` (with counts), ``counted`` (Σ w U), ``unseen_rate`` (share of `contexts` without
+        counts), ``entropy`` (mean over `contexts`, nats), ``entropy_by_counts`` (mean over all counts, nats:
+        Eq. 3.11), ``sure_rate`` (share of `contexts` with one action only), ``useful_actions`` (share of actions
+        that the mask allows, Fig. 3.1), ``exclusion_rate`` (share of `contexts` whose every best action the mask
         excludes; None without `best`).
     """
     if best is not None and contexts is None:
-        raise InputError("best needs the contexts it belongs to: pass contexts=")
+        raise InputError("best needs contexts, got none: pass contexts=")
     met = prior.contexts if contexts is None else np.asarray(contexts, np.int64).ravel()
     weight = prior.counts(prior.contexts).sum(axis=1)
     entropy = prior.entropy(met)

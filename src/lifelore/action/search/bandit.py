@@ -1,12 +1,13 @@
 """Bandits whose arms start from an action prior: UCB1 and Thompson sampling.
 
-An action prior says how likely each action is to be a useful one in the context at hand. As pseudo-counts it
-stands for pulls made before the first: `strength` pulls of every arm that paid `useless + (useful - useless) θ`
-on average. Many problems are played at once, row by row. Thesis: §3.8.
+An action prior gives the probability that each action is useful in a context. It enters as `strength` pseudo-pulls
+of every arm with the mean payoff `useless + (useful - useless) θ`. Many problems are played at the same time, one
+in each row. Use it to measure how much an action prior saves in a bandit: play `prior_arms` and `flat_arms` on the
+same payoffs, and compare their `regret`. Thesis: §3.8.
 
 UCB1 (Auer et al., 2002) pulls the arm of the largest mean + √(2 ln t / n), where n and t count pseudo-pulls too.
-Thompson sampling draws each arm's value from what is believed of it and pulls the largest: Beta(1 + paid,
-1 + not paid), or a normal around the mean of the payoffs and one weak guess.
+Thompson sampling draws the value of each arm from its posterior and pulls the largest: Beta(1 + paid, 1 + not
+paid), or a normal around the mean of the payoffs and of a weak guess.
 """
 
 from collections.abc import Callable
@@ -22,7 +23,7 @@ GUESS, GUESS_PULLS = 0.5, 0.25
 
 
 class Arms(NamedTuple):
-    """What is known of every arm of every problem: pulls, pseudo-pulls too, and their summed payoff.
+    """Pulls of every arm of every problem, with pseudo-pulls, and the sum of their payoffs.
 
     pulls, paid : (n_problems, n_arms) float64, at least 0
     """
@@ -31,12 +32,12 @@ class Arms(NamedTuple):
     paid: NDArray[np.float64]
 
 
-Index = Callable[[Arms, np.random.Generator], NDArray[np.float64]]
-"""What an arm is worth pulling, (n_problems, n_arms); the largest of a row is pulled, equals at random."""
+ArmIndex = Callable[[Arms, np.random.Generator], NDArray[np.float64]]
+"""Gives the index of each arm, (n_problems, n_arms); the arm with the largest index of a row is pulled."""
 
 
 def flat_arms(n_problems: int, n_arms: int) -> Arms:
-    """Arms of which nothing is known."""
+    """Arms without pulls."""
     if n_problems < 1 or n_arms < 1:
         raise InputError(f"n_problems and n_arms must be at least 1, got {n_problems} and {n_arms}")
     return Arms(np.zeros((n_problems, n_arms)), np.zeros((n_problems, n_arms)))
@@ -52,7 +53,7 @@ def prior_arms(theta: ArrayLike, strength: float, useful: float = 1.0, useless: 
     strength : float
         Pseudo-pulls of every arm, ≥ 0; 0 gives `flat_arms`.
     useful, useless : float
-        Mean payoff believed of a useful and of a useless action.
+        Expected payoff of a useful and of a useless action.
 
     Examples
     --------
@@ -69,18 +70,18 @@ def prior_arms(theta: ArrayLike, strength: float, useful: float = 1.0, useless: 
 
 def ucb1(arms: Arms, generator: np.random.Generator) -> NDArray[np.float64]:
     """Upper confidence bounds; infinite for arms never pulled, pseudo-pulls counted."""
-    # Fewer than one pull in all would have a negative logarithm.
+    # With fewer than one pull in all, the logarithm would be negative.
     seen = np.log(np.maximum(arms.pulls.sum(axis=1, keepdims=True), 1.0))
     pulls = np.where(arms.pulls > 0, arms.pulls, 1.0)
     return np.where(arms.pulls > 0, arms.paid / pulls + np.sqrt(2 * seen / pulls), np.inf)
 
 
 def beta_thompson(arms: Arms, generator: np.random.Generator) -> NDArray[np.float64]:
-    """One draw of each arm's value, payoffs in {0, 1}, from a flat belief and the pulls."""
+    """One draw of each arm's value from a flat prior and the pulls; payoffs are in {0, 1}."""
     return generator.beta(1 + arms.paid, 1 + np.maximum(arms.pulls - arms.paid, 0.0))
 
 
-def gaussian_thompson(noise: float) -> Index:
+def gaussian_thompson(noise: float) -> ArmIndex:
     """Thompson sampling for payoffs with a normal noise of known deviation `noise` > 0."""
     if not noise > 0:
         raise InputError(f"noise must be positive, got {noise}")
@@ -94,20 +95,20 @@ def gaussian_thompson(noise: float) -> Index:
 
 
 def play(
-    index: Index, arms: Arms, payoffs: NDArray[np.float64], generator: np.random.Generator
+    index: ArmIndex, arms: Arms, payoffs: NDArray[np.float64], generator: np.random.Generator
 ) -> NDArray[np.int64]:
     """The arms pulled, (n_problems, horizon).
 
     Parameters
     ----------
     index : callable
-        `ucb1`, `beta_thompson` or ``gaussian_thompson(noise)``.
+        `ucb1`, `beta_thompson` or ``gaussian_thompson(noise)``; ties are broken at random.
     arms : Arms
-        What is known before the first pull; left as it is.
+        The arms before the first pull; not changed.
     payoffs : (n_problems, horizon, n_arms) float
-        What each arm would pay at each pull: the same for all that are compared.
+        Payoff of each arm at each pull; use the same payoffs for all methods that you compare.
     generator : numpy generator
-        For draws and among equals.
+        For the draws of `index`, and to break ties.
     """
     payoffs = np.asarray(payoffs, np.float64)
     if payoffs.ndim != 3 or (payoffs.shape[0], payoffs.shape[2]) != arms.pulls.shape:
@@ -118,16 +119,16 @@ def play(
     every = np.arange(len(payoffs))
     pulled = np.empty(payoffs.shape[:2], np.int64)
     for t in range(payoffs.shape[1]):
-        worth = index(known, generator)
-        equals = worth == worth.max(axis=1, keepdims=True)
-        pulled[:, t] = np.where(equals, generator.random(worth.shape), -1.0).argmax(axis=1)
+        values = index(known, generator)
+        equals = values == values.max(axis=1, keepdims=True)
+        pulled[:, t] = np.where(equals, generator.random(values.shape), -1.0).argmax(axis=1)
         known.pulls[every, pulled[:, t]] += 1
         known.paid[every, pulled[:, t]] += payoffs[every, t, pulled[:, t]]
     return pulled
 
 
 def regret(pulled: NDArray[np.int64], means: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Regret summed up to each pull, (n_problems, horizon): what the best arm would have paid more on average.
+    """Cumulated regret up to each pull, (n_problems, horizon): best mean payoff less that of the arm pulled.
 
     Parameters
     ----------

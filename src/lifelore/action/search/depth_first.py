@@ -1,9 +1,9 @@
-"""Depth-first search whose order of actions is a prior's list of preferences.
+"""Depth-first search that tries actions in the order of a prior.
 
-Plain depth-first search never enters a state twice and follows the first action of the list as deep as it leads.
-Iterative deepening does the same below a limit that grows by one until it finds a way, which is then a shortest
-one; within one limit a state is entered again only nearer to the start. A prior may also prune: actions whose
-mass lies below a threshold are not tried, and the way may then be missed. Thesis: §3.8.
+Plain depth-first search never enters a state twice. Iterative deepening searches below a depth limit that grows by
+one until it finds a path, which is then a shortest path; below a limit, a state is entered again only at a smaller
+depth. A prior may also prune: actions with a probability below a threshold are not tried, and the search may then
+miss all paths. Thesis: §3.8.
 """
 
 from typing import NamedTuple
@@ -20,15 +20,15 @@ class Preferences(NamedTuple):
     """Actions in the order in which they are tried.
 
     order : (n_states, n_actions) int32, a permutation in each row
-    n_tried : (n_states,) int32, how many of them are tried at all, at least 1
+    n_tried : (n_states,) int32, number of the actions that are tried, at least 1
     """
 
     order: NDArray[np.int32]
     n_tried: NDArray[np.int32]
 
 
-class Found(NamedTuple):
-    """A finished search: whether the end was found, nodes expanded, and the actions of the way."""
+class DepthFirstResult(NamedTuple):
+    """Result of a search: whether it found a terminal move, number of expanded nodes, actions of the path."""
 
     reached: bool
     expanded: int
@@ -36,7 +36,7 @@ class Found(NamedTuple):
 
 
 def preferences(probs: NDArray[np.float64], generator: np.random.Generator, prune: float = 0.0) -> Preferences:
-    """The list of each state: likelier actions first, equals in an order drawn anew for every state.
+    """Order of the actions of each state: more probable actions first, ties in a random order for each state.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ def preferences(probs: NDArray[np.float64], generator: np.random.Generator, prun
         search without a prior, in random order.
     generator : numpy generator
     prune : float
-        In [0, 1]: actions of less mass are left out, but never the likeliest.
+        In [0, 1]: actions of smaller probability are left out, except the most probable action.
     """
     probs = np.asarray(probs, np.float64)
     if probs.ndim != 2 or not probs.shape[1]:
@@ -53,64 +53,66 @@ def preferences(probs: NDArray[np.float64], generator: np.random.Generator, prun
     if not 0 <= prune <= 1:
         raise InputError(f"prune must lie in [0, 1], got {prune}")
     order = np.lexsort((generator.random(probs.shape), -probs), axis=1)
-    kept = (np.take_along_axis(probs, order, axis=1) >= prune).sum(axis=1)
-    return Preferences(order.astype(np.int32), np.maximum(kept, 1).astype(np.int32))
+    n_tried = (np.take_along_axis(probs, order, axis=1) >= prune).sum(axis=1)
+    return Preferences(order.astype(np.int32), np.maximum(n_tried, 1).astype(np.int32))
 
 
-def depth_first(tables: Tables, start: int, liked: Preferences) -> Found:
-    """Search from `start` for a terminal move, never entering a state twice.
+def depth_first(tables: Tables, start: int, preferred: Preferences) -> DepthFirstResult:
+    """Search from `start` for a terminal move, and enter no state twice.
 
-    A node is expanded when its actions begin to be tried.
+    A node is expanded when its first action is tried.
 
     Raises
     ------
     InputError
-        The world is not deterministic, or `start` or `liked` do not fit it.
+        The world is not deterministic, or `start` or `preferred` do not fit it.
     """
-    _check(tables, start, liked)
-    return _found(tables, int(start), liked, tables.n_states, shortest=False)
+    _check(tables, start, preferred)
+    return _found(tables, int(start), preferred, tables.n_states, shortest=False)
 
 
-def iterative_deepening(tables: Tables, start: int, liked: Preferences, max_depth: int | None = None) -> Found:
+def iterative_deepening(
+    tables: Tables, start: int, preferred: Preferences, max_depth: int | None = None
+) -> DepthFirstResult:
     """Depth-first search below limits of 1, 2, … moves; nodes expanded are summed over all limits.
 
     Parameters
     ----------
-    tables, start, liked
+    tables, start, preferred
         As in `depth_first`.
     max_depth : int, optional
-        Last limit tried; default: the number of states, beyond which no shortest way reaches.
+        Last limit tried; default: the number of states, which no shortest path exceeds.
     """
-    _check(tables, start, liked)
+    _check(tables, start, preferred)
     most = tables.n_states if max_depth is None else max_depth
     if most < 1:
         raise InputError(f"max_depth must be at least 1, got {max_depth}")
     expanded = 0
     for limit in range(1, most + 1):
-        found = _found(tables, int(start), liked, limit, shortest=True)
+        found = _found(tables, int(start), preferred, limit, shortest=True)
         expanded += found.expanded
         if found.reached:
             return found._replace(expanded=expanded)
-    return Found(False, expanded, np.empty(0, np.int32))
+    return DepthFirstResult(False, expanded, np.empty(0, np.int32))
 
 
-def _check(tables: Tables, start: int, liked: Preferences) -> None:
+def _check(tables: Tables, start: int, preferred: Preferences) -> None:
     if tables.outcome_cum.size != 1:
-        raise InputError("depth-first search needs a deterministic world; use tree_search for one of chance")
+        raise InputError("depth-first search needs a deterministic world; use tree_search for a random one")
     if not 0 <= start < tables.n_states:
         raise InputError(f"start must lie in [0, {tables.n_states}), got {start}")
     shape = (tables.n_states, tables.n_actions)
-    if liked.order.shape != shape:
-        raise InputError(f"liked must have an order of shape {shape}, got {liked.order.shape}")
+    if preferred.order.shape != shape:
+        raise InputError(f"preferred must have an order of shape {shape}, got {preferred.order.shape}")
 
 
-def _found(tables: Tables, start: int, liked: Preferences, limit: int, shortest: bool) -> Found:
+def _found(tables: Tables, start: int, preferred: Preferences, limit: int, shortest: bool) -> DepthFirstResult:
     entered = np.full(tables.n_states, limit + 1, np.int64)
     path = np.empty(limit, np.int32)
     reached, expanded, length = _descend(
-        tables.next_state, tables.event, liked.order, liked.n_tried, start, limit, shortest, entered, path
+        tables.next_state, tables.event, preferred.order, preferred.n_tried, start, limit, shortest, entered, path
     )
-    return Found(bool(reached), int(expanded), path[:length].copy())
+    return DepthFirstResult(bool(reached), int(expanded), path[:length].copy())
 
 
 @kernel
@@ -131,7 +133,7 @@ def _descend(next_state, event, order, n_tried, start, limit, shortest, entered,
         if event[state, action, 0] & TERMINAL:
             return True, expanded, depth + 1
         following = next_state[state, action, 0]
-        # Plain search enters once; below a limit, a nearer entrance may reach farther.
+        # Plain search enters a state once; below a limit, an entry at a smaller depth may lead farther.
         unseen = entered[following] == limit + 1
         if unseen or (shortest and depth + 1 < entered[following]):
             entered[following] = depth + 1

@@ -1,15 +1,17 @@
-"""What a set of tasks leaves of its domain: reachable states, futile states and actions, the minimised domain.
+"""Reduces a domain to the states and actions that a set of tasks needs: the minimised domain.
 
-Policies are their sets of best or tied-best actions, (n_states, n_actions) bool. A row without any has no policy:
-goals, where the episode is over, and completed configurations. Three definitions of what is kept:
+A policy is its set of best or tied-best actions, (n_states, n_actions) bool. Rows without any action have no
+policy: goals, where the episode is over, and completed configurations. There are three definitions of the pairs
+(s, a) in the minimised domain:
 
     printed   s reachable under some policy, a optimal in s under some policy (Def. 3.2.5)
     repaired  s reachable and a optimal under one and the same policy
     closed    s reachable when every step is optimal under some policy, a optimal in s under some policy
 
-The printed one can be left by its own actions (errata E8); the repaired one, the default, cannot. Nor can the
-closed one, which keeps every task's own policy wherever another's may have led (errata E36), and so keeps more.
-Thesis: §3.2.3, Def. 3.2.1-3.2.5, Thm 3.2.6, Props. 3.2.7-3.2.8, Alg. 3, Eq. 3.6.
+Actions of the printed definition can lead out of the domain (errata E8). Actions of the repaired definition, the
+default, cannot. Actions of the closed definition cannot either; it contains more, because it contains the policy
+of every task also in states to which the policy of another task leads (errata E36). Thesis: §3.2.3, Def.
+3.2.1-3.2.5, Thm 3.2.6, Props. 3.2.7-3.2.8, Alg. 3, Eq. 3.6.
 """
 
 from collections.abc import Sequence
@@ -33,9 +35,9 @@ def reachable_states(tables: Tables, best: ArrayLike) -> States:
     Parameters
     ----------
     tables : Tables
-        A state entered by a TERMINAL event is reached, but nothing is done there: the episode is over.
+        A state entered by a TERMINAL event is reached, but its actions are not followed: the episode is over.
     best : (n_states, n_actions) bool
-        The policy's actions; of several tied each may be taken.
+        The policy's actions; each of several tied actions may be taken.
     """
     best = _checked(tables, best)
     visited = np.zeros(tables.n_states, bool)
@@ -79,9 +81,9 @@ class MinimisedDomain:
 
     form : one of `FORMS`
     states : (n_states,) bool, Ŝ
-    pairs : (n_states, n_actions) bool, the (s, a) with s in Ŝ that Â keeps
-    kept_mass : (n_states, n_actions) float, the probability that a kept pair stays within Ŝ, which is 1/η; 0
-        where a pair is not kept
+    pairs : (n_states, n_actions) bool, the (s, a) with s in Ŝ and a in Â
+    kept_mass : (n_states, n_actions) float, the probability that the outcome of a pair in `pairs` lies in Ŝ,
+        which is 1/η; 0 for other pairs
     """
 
     form: str
@@ -91,19 +93,19 @@ class MinimisedDomain:
 
     @property
     def leading_out(self) -> Pairs:
-        """Kept pairs with an outcome outside Ŝ; only the form "printed" has any."""
+        """Pairs in `pairs` with an outcome outside Ŝ; only the form "printed" has such pairs."""
         return self.pairs & (self.kept_mass < 1)
 
     @property
     def without_successor(self) -> Pairs:
-        """Kept pairs all of whose outcomes lie outside Ŝ: their η is 1/0."""
+        """Pairs in `pairs` with all outcomes outside Ŝ; their η is 1/0."""
         return self.pairs & (self.kept_mass == 0)
 
 
 def minimised_domain(
     tasks: Sequence[Tables], policies: Sequence[ArrayLike], form: str = "repaired"
 ) -> MinimisedDomain:
-    """The domain that these tasks leave (Def. 3.2.5).
+    """The minimised domain of these tasks (Def. 3.2.5).
 
     Parameters
     ----------
@@ -125,13 +127,13 @@ def minimised_domain(
     tables = paired[0][0]
     inside = states[tables.next_state]
     outcome_probs = np.diff(tables.outcome_cum, prepend=0.0)
-    # Exactly 1 where every outcome is kept, whatever the probabilities add up to in floating point.
+    # Exactly 1 where every outcome lies in Ŝ, because the sum of the probabilities may round to another number.
     mass = np.where(inside.all(axis=2), 1.0, np.minimum((inside * outcome_probs).sum(axis=2), 1 - 1e-16))
     return MinimisedDomain(form, states, pairs, np.where(pairs, mass, 0.0))
 
 
 def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:
-    """States on a path of kept pairs from any task's starts, whosever each step is and whatever ends there."""
+    """States on a path of `kept` pairs from the starts of any task, also beyond the end of another task."""
     follow = paired[0][0].next_state
     states = np.zeros(len(kept), bool)
     frontier = np.unique(np.concatenate([tables.starts for tables, _ in paired]))
@@ -143,18 +145,17 @@ def _closure(paired: Sequence[tuple[Tables, Pairs]], kept: Pairs) -> States:
 
 
 def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> Tables:
-    """The task with only the kept pairs to choose from: every other action does what the first kept one does.
+    """The task restricted to the given pairs: every other action acts as the first given action of its state.
 
-    Rewards and outcomes of kept pairs stay as they are: nothing is renormalised, so the world's dynamics are its
-    own.
+    Rewards and outcomes of the given pairs do not change; probabilities are not renormalised.
 
     Parameters
     ----------
     tables : Tables
     pairs : (n_states, n_actions) bool
     dead_ends : {"stay", "free"}
-        A state without kept pairs, such as another task's goal: as in the minimised domain nothing can be done
-        there (every action stays, for no reward), or it keeps all of its own actions.
+        Actions of a state without given pairs, such as the goal of another task: every action stays there without
+        reward (as in the minimised domain), or all of the state's own actions are available.
     """
     if dead_ends not in ("stay", "free"):
         raise NotFoundError(f"dead_ends must be one of stay, free, got '{dead_ends}'")
@@ -172,9 +173,9 @@ def tables_within(tables: Tables, pairs: ArrayLike, dead_ends: str = "stay") -> 
 
 
 def trap_states(tables: Tables, pairs: ArrayLike | None = None) -> States:
-    """States from which no choice of kept pairs ever ends the episode, (n_states,) bool; `pairs` default all.
+    """States from which no choice of `pairs` (default: all) ends the episode, (n_states,) bool.
 
-    The trap states and dead ends of Prop. 3.2.7, for this task. Where an episode can end is no trap.
+    These are the trap states and dead ends of Prop. 3.2.7 for this task. States where an episode can end are none.
     """
     kept = np.ones(tables.next_state.shape[:2], bool) if pairs is None else _checked(tables, pairs)
     ends = (tables.event & TERMINAL) > 0
@@ -190,15 +191,15 @@ def trap_states(tables: Tables, pairs: ArrayLike | None = None) -> States:
 
 
 def futile_goal_probability(n_actions: int, n_tasks: ArrayLike, alpha0: float) -> NDArray[np.float64]:
-    """Eq. 3.6: the least probability of the one action that leads to a goal futile in all tasks so far.
+    """Eq. 3.6: least probability of the only action that leads to a goal that was futile in all tasks so far.
 
     Parameters
     ----------
     n_actions : int
         At least 1.
     n_tasks : int or array of int
-        |T_s| ≥ 0: all tasks counted, each with weight 1, and all other actions tied best in each. For a prior by
-        percepts, tasks times the states that share the percept.
+        |T_s| ≥ 0: number of tasks counted, each with weight 1 and with all other actions tied best. For a percept
+        prior, multiply by the number of states that share the percept.
     alpha0 : float
         > 0.
 

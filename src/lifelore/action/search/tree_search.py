@@ -4,13 +4,13 @@ At a node visited N times the search takes the action that maximises
 
     q(a) + c P(s, a) √max(1, N) / (1 + n(a))
 
-q(a) is the mean discounted return beyond the action, put to [0, 1] by the least and largest mean of this search,
-so that c needs no unit; an action not yet tried counts as the node's own mean. P is the prior's row of the state's
-context, n(a) how often the action was tried. Each simulation adds one node and ends in a rollout, drawn
-uniformly or from the prior. Equals are chosen among at random.
+q(a) is the mean discounted return after the action, scaled to [0, 1] by the least and largest mean of this search,
+so that c has no unit. An action not yet tried has the mean of its node. P is the prior of the state's context,
+n(a) the number of times the action was tried. Each simulation adds one node and ends with a rollout, drawn
+uniformly or from the prior. Ties are broken at random.
 
-The prior here is the thesis's action prior: how often an action was useful in a context, over tasks. It knows
-nothing of the task at hand; that knowledge comes from the simulations alone. Thesis: §3.8, §5.2.
+The prior is the thesis's action prior: how often an action was useful in a context, over earlier tasks. Only the
+simulations depend on the present task. Thesis: §3.8, §5.2.
 """
 
 from typing import NamedTuple
@@ -27,12 +27,12 @@ from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 ROLLOUTS = ("uniform", "prior")
 
 
-class Guidance(NamedTuple):
-    """What a prior tells the search.
+class SearchGuidance(NamedTuple):
+    """Probabilities by which a prior guides the search.
 
     prior : (n_rows, n_actions) float64, P(s, a) by context; rows sum to 1
     rollout_cum : (n_rows, n_actions) float64, cumulative probabilities of a rollout's actions
-    row : (n_states,) int32, row of the two arrays above that each state reads
+    row : (n_states,) int32, row of each state in the two arrays above
     """
 
     prior: NDArray[np.float64]
@@ -41,13 +41,13 @@ class Guidance(NamedTuple):
 
 
 class SearchSettings(NamedTuple):
-    """How much is searched and what move follows.
+    """Size of the search, and the rule of the move.
 
     simulations : int, for each move, at least 1
-    depth : int, moves that a simulation looks ahead, at least 1
+    depth : int, maximum number of moves in a simulation, at least 1
     exploration : float, c, at least 0
     discount : float, γ in [0, 1]
-    by_mean : bool, make the move of the best mean instead of the one tried most
+    by_mean : bool, make the move with the best mean instead of the move tried most
     """
 
     simulations: int = 200
@@ -57,12 +57,12 @@ class SearchSettings(NamedTuple):
     by_mean: bool = False
 
 
-class Searched(NamedTuple):
-    """What a search found at its root.
+class SearchResult(NamedTuple):
+    """Result of a search at its root.
 
-    action : int, the one tried most (or of the best mean), of equals one at random
-    visits : (n_actions,) int64, how often each was tried; they sum to the simulations
-    means : (n_actions,) float64, mean discounted return of each; 0 where never tried
+    action : int, the action tried most (or with the best mean); ties are broken at random
+    visits : (n_actions,) int64, number of times each action was tried; the sum is the number of simulations
+    means : (n_actions,) float64, mean discounted return of each action; 0 if it was never tried
     """
 
     action: int
@@ -70,8 +70,8 @@ class Searched(NamedTuple):
     means: NDArray[np.float64]
 
 
-class Played(NamedTuple):
-    """An episode of a searching agent: moves made, whether it ended at a terminal move, discounted return."""
+class EpisodeResult(NamedTuple):
+    """An episode of a searching agent: moves made, whether a terminal move ended it, return, collisions."""
 
     steps: int
     reached: bool
@@ -80,7 +80,7 @@ class Played(NamedTuple):
 
 
 class _Tree(NamedTuple):
-    """Nodes by number, the root 0. `child` holds 0 where there is none: the root is nobody's child."""
+    """Nodes by number; the root is 0. `child` is 0 where there is no child, because the root is never a child."""
 
     state: NDArray[np.int32]
     child: NDArray[np.int32]
@@ -88,10 +88,10 @@ class _Tree(NamedTuple):
     total: NDArray[np.float64]
 
 
-def guidance(
+def search_guidance(
     tables: Tables, probs: ArrayLike | None = None, row: ArrayLike | None = None, rollout: str = "prior"
-) -> Guidance:
-    """What a prior tells the search.
+) -> SearchGuidance:
+    """Make the guidance of a search from a prior.
 
     Parameters
     ----------
@@ -100,14 +100,14 @@ def guidance(
         Action probabilities by context, e.g. ``ActionPrior.probs``; rows sum to 1. Default: uniform, which
         gives the search without a prior.
     row : (n_states,) int, optional
-        Row of `probs` that each state reads; default: the state's own number, or row 0 if `probs` has one row.
+        Row of each state in `probs`; default: the number of the state, or row 0 if `probs` has one row.
     rollout : {"uniform", "prior"}
-        What a rollout's actions are drawn from.
+        Distribution of the actions in a rollout.
 
     Raises
     ------
     InputError
-        `probs` are no probabilities, `row` names a row that is not there, or `rollout` is neither.
+        `probs` are no probabilities, `row` names a missing row, or `rollout` has another value.
     """
     if rollout not in ROLLOUTS:
         raise InputError(f"rollout must be one of {', '.join(ROLLOUTS)}, got '{rollout}'")
@@ -123,13 +123,13 @@ def guidance(
     if row.shape != (tables.n_states,) or row.min() < 0 or row.max() >= len(probs):
         raise InputError(f"row must give each of {tables.n_states} states a row in [0, {len(probs)})")
     drawn = probs if rollout == "prior" else np.broadcast_to(flat, probs.shape)
-    return Guidance(probs, cumulative(drawn), row)
+    return SearchGuidance(probs, cumulative(drawn), row)
 
 
 def search(
-    tables: Tables, guide: Guidance, state: int, settings: SearchSettings, generator: np.random.Generator
-) -> Searched:
-    """Search from `state`; the tree is new. The same generator state gives the same search."""
+    tables: Tables, guide: SearchGuidance, state: int, settings: SearchSettings, generator: np.random.Generator
+) -> SearchResult:
+    """Search from `state` with a new tree; the same generator state gives the same result."""
     _check(tables, settings)
     if not 0 <= state < tables.n_states:
         raise InputError(f"state must lie in [0, {tables.n_states}), got {state}")
@@ -138,21 +138,21 @@ def search(
     _grow(tables, guide, tree, int(state), settings, random)
     visits, total = tree.visits[0].copy(), tree.total[0]
     means = np.divide(total, visits, out=np.zeros_like(total), where=visits > 0)
-    return Searched(int(_move(tree, settings.by_mean, random)), visits, means)
+    return SearchResult(int(_move(tree, settings.by_mean, random)), visits, means)
 
 
 def play(
     tables: Tables,
-    guide: Guidance,
+    guide: SearchGuidance,
     start: int,
     settings: SearchSettings,
     max_steps: int,
     world: np.random.Generator,
     own: np.random.Generator,
-) -> Played:
-    """One episode from `start`, searched anew before every move, of at most `max_steps` moves.
+) -> EpisodeResult:
+    """One episode from `start` of at most `max_steps` moves, with a new search before every move.
 
-    `world` draws what happens (nothing where the world is deterministic), `own` what the search imagines.
+    `world` draws the outcomes of the moves (none in a deterministic world), `own` the simulations of the search.
     """
     _check(tables, settings)
     if not 0 <= start < tables.n_states:
@@ -162,7 +162,7 @@ def play(
     tree = _new_tree(tables, settings.simulations)
     randoms = random_state(world), random_state(own)
     steps, reached, gained, bumps = _walk(tables, guide, tree, int(start), _plain(settings), max_steps, *randoms)
-    return Played(int(steps), bool(reached), float(gained), int(bumps))
+    return EpisodeResult(int(steps), bool(reached), float(gained), int(bumps))
 
 
 def _check(tables: Tables, settings: SearchSettings) -> None:
@@ -178,7 +178,7 @@ def _check(tables: Tables, settings: SearchSettings) -> None:
 
 
 def _plain(settings: SearchSettings) -> SearchSettings:
-    """Of the types that the kernel is compiled for, whatever came."""
+    """The settings converted to the types that the kernel is compiled for."""
     simulations, depth, exploration, discount, by_mean = settings
     return SearchSettings(int(simulations), int(depth), float(exploration), float(discount), bool(by_mean))
 
@@ -195,14 +195,14 @@ def _new_tree(tables: Tables, simulations: int) -> _Tree:
 
 @kernel
 def _walk(tables, guide, tree, state, settings, max_steps, world, own):
-    gained, worth, bumps = 0.0, 1.0, 0
+    gained, factor, bumps = 0.0, 1.0, 0
     for moved in range(max_steps):
         _grow(tables, guide, tree, state, settings, own)
         action = _move(tree, settings.by_mean, own)
         k = _outcome(tables, world)
         event = tables.event[state, action, k]
-        gained += worth * tables.reward[state, action, k]
-        worth *= settings.discount
+        gained += factor * tables.reward[state, action, k]
+        factor *= settings.discount
         bumps += event & COLLISION > 0
         if event & TERMINAL:
             return moved + 1, True, gained, bumps
@@ -212,7 +212,7 @@ def _walk(tables, guide, tree, state, settings, max_steps, world, own):
 
 @kernel
 def _grow(tables, guide, tree, state, settings, random):
-    """Fill `tree`, whatever it held, with the simulations of one decision."""
+    """Clear `tree` and fill it with the simulations of one decision."""
     tree.child[:] = 0
     tree.visits[:] = 0
     tree.total[:] = 0.0
@@ -228,7 +228,7 @@ def _grow(tables, guide, tree, state, settings, random):
 
 @kernel
 def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rewards, used):
-    """One simulation: down the tree, a new node, a rollout, and back up; returns the nodes now used."""
+    """One simulation: select moves, add a node, roll out, update the means; return the number of nodes in use."""
     node, n, beyond = 0, 0, 0.0
     while n < settings.depth:
         state = tree.state[node]
@@ -258,14 +258,14 @@ def _simulate(tables, guide, tree, settings, random, bounds, nodes, actions, rew
 
 @kernel
 def _promising(tree, node, prior, row, exploration, bounds, random):
-    """The action of the highest PUCT value, one of the equals at random."""
+    """The action with the highest PUCT value; ties are broken at random."""
     _, _, visits, total = tree
     n_actions = prior.shape[1]
-    tried, worth = 0, 0.0
+    tried, summed = 0, 0.0
     for a in range(n_actions):
         tried += visits[node, a]
-        worth += total[node, a]
-    own = worth / tried if tried > 0 else 0.0
+        summed += total[node, a]
+    own = summed / tried if tried > 0 else 0.0
     spread = bounds[1] - bounds[0]
     wide = exploration * np.sqrt(max(1.0, float(tried)))
     best, equals, chosen = -np.inf, 0, 0
@@ -277,7 +277,7 @@ def _promising(tree, node, prior, row, exploration, bounds, random):
         if value > best:
             best, equals, chosen = value, 1, a
         elif value == best:
-            # The k-th of the equals takes the place with chance 1/k: each is as likely in the end.
+            # The k-th tied action replaces the choice with probability 1/k, which makes all equally probable.
             equals += 1
             if one_of(random, equals) == 0:
                 chosen = a
@@ -286,11 +286,11 @@ def _promising(tree, node, prior, row, exploration, bounds, random):
 
 @kernel
 def _rollout(tables, guide, state, depth, discount, random):
-    """Discounted return of at most `depth` moves drawn without looking."""
+    """Discounted return of at most `depth` randomly drawn moves."""
     next_state, reward, event, outcome_cum, _ = tables
     _, cum, row = guide
     last_action, last_outcome = cum.shape[1] - 1, outcome_cum.size - 1
-    gained, worth = 0.0, 1.0
+    gained, factor = 0.0, 1.0
     for _ in range(depth):
         uniform, here, action, k = next_uniform(random), row[state], 0, 0
         while action < last_action and uniform >= cum[here, action]:
@@ -299,17 +299,17 @@ def _rollout(tables, guide, state, depth, discount, random):
             uniform = next_uniform(random)
             while k < last_outcome and uniform >= outcome_cum[k]:
                 k += 1
-        gained += worth * reward[state, action, k]
+        gained += factor * reward[state, action, k]
         if event[state, action, k] & TERMINAL:
             break
-        worth *= discount
+        factor *= discount
         state = next_state[state, action, k]
     return gained
 
 
 @kernel
 def _outcome(tables, random):
-    """The outcome of a move; a deterministic world draws nothing."""
+    """Draw the outcome of a move; a deterministic world needs no random number."""
     last, k = tables.outcome_cum.size - 1, 0
     if last > 0:
         uniform = next_uniform(random)
@@ -320,7 +320,7 @@ def _outcome(tables, random):
 
 @kernel
 def _move(tree, by_mean, random):
-    """The root's action tried most or, of those tried, the one of the best mean; one of the equals at random."""
+    """The root's action tried most, or the tried action with the best mean; ties are broken at random."""
     visits, total = tree.visits[0], tree.total[0]
     best, equals, chosen = -np.inf, 0, 0
     for a in range(visits.size):

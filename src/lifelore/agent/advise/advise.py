@@ -1,6 +1,6 @@
-"""The verb `advise`: steps of agents with unknown goals in, advice out, line by line.
+"""Advises agents with unknown goals step by step, from the walks of experts in the same world (`lifelore advise`).
 
-What experts did in the same world says where people go and how; thesis §3.7.
+Thesis: §3.7.
 """
 
 import os
@@ -9,11 +9,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from lifelore.action.advice.advice import Watch
+from lifelore.action.advice.advice import WatchedAgent
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Behaviour, Tabulated
-from lifelore.action.advice.goal_model import Purpose, Trajectory, stitched
-from lifelore.agent.advise.expert_trajectories import after, goals_of_ends, purposes, trajectories
+from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
+from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
 from lifelore.agent.advise.step_lines import NO_ACTION, StepLine, read_objects, read_steps, state_number
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
@@ -25,7 +25,7 @@ METHODS = ("better", "thesis")
 
 @dataclass(frozen=True)
 class AdviseSettings:
-    """Where, by whose example, and how often to advise.
+    """The world, the experts, and when to advise.
 
     Parameters
     ----------
@@ -34,15 +34,15 @@ class AdviseSettings:
     experts : str
         File of JSON lines, see `step_lines`.
     goals : str, optional
-        File of JSON lines ``{"state": …}``; default: where experts' walks ended, near ends taken as one.
+        File of JSON lines ``{"state": …}``; default: the ends of the experts' walks, near ends joined.
     method : {"better", "thesis"}
-        One goal at a time, dropping those seen; or one prior over all goals (§3.7.1).
+        One goal at a time, dropping goals that the agent has passed; or one prior over all goals (§3.7.1).
     kappa : float
-        κ in nats.
+        Least gain of advice, κ, in nats.
     window : int
-        Steps of an agent that are looked back over.
+        Number of last steps of an agent that count as evidence.
     share : float, optional
-        Most advised steps of an agent, as a share; default 0.4, and no limit for ``thesis``.
+        Largest share of an agent's steps that are advised; default 0.4, and no limit for ``thesis``.
     cell, robot_radius : float, optional
         Metres, for maps: 0.5 and 0.2.
     """
@@ -62,8 +62,8 @@ class AdviseSettings:
             raise NotFoundError(f"method must be one of {', '.join(METHODS)}, got '{self.method}'")
 
 
-class AdviceDesk:
-    """Answers step by step, for any number of agents at a time.
+class AdviceSession:
+    """Gives advice step by step, for any number of agents at the same time.
 
     Parameters
     ----------
@@ -73,9 +73,9 @@ class AdviceDesk:
     ----------
     world : GridWorld
     goals : list of int
-        States that agents are led to.
+        States of the goals that advice leads to.
     n_experts : int
-        Walks learnt from.
+        Number of expert walks.
     """
 
     def __init__(self, settings: AdviseSettings) -> None:
@@ -86,15 +86,15 @@ class AdviceDesk:
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
         self.advisor = _advisor(settings, walks, self.goals, self.world)
-        self._watched: dict[str | int, tuple[Watch, bool]] = {}
+        self._agents: dict[str | int, tuple[WatchedAgent, bool]] = {}
 
     def answer(self, step: StepLine) -> dict[str, Any]:
-        """What to tell the agent where its step has led it; see `advise`."""
-        watch, advised = self._watched.get(step.agent) or (self.advisor.watch(), False)
+        """Advice for the agent in the state after its step; see `advise`."""
+        agent, advised = self._agents.get(step.agent) or (self.advisor.watch(), False)
         if step.action != NO_ACTION:
-            self.advisor.observe(watch, step.state, step.action, advised)
-        advice = self.advisor.consider(watch, after(self.world, step))
-        self._watched[step.agent] = (watch, advice.advise)
+            self.advisor.observe(agent, step.state, step.action, advised)
+        advice = self.advisor.consider(agent, state_after(self.world, step))
+        self._agents[step.agent] = (agent, advice.advise)
         return {
             "agent": step.agent,
             "advise": advice.advise,
@@ -105,29 +105,29 @@ class AdviceDesk:
 
 
 def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
-    """Advice for each line ``{"agent", "state", "action"}``, as it comes.
+    """Advice for each line ``{"agent", "state", "action"}``, as soon as the line arrives.
 
     Yields
     ------
     dict
-        ``agent``; ``advise``, whether it should be told now; ``theta``, the probabilities of the moves to tell it
-        where it is after its step (north, south, east, west), None where no expert ever was; ``p_normal``,
-        P(M | H) of the experts' models; ``gain`` in nats.
+        ``agent``; ``advise``, whether to advise the agent now; ``theta``, the advised probabilities of the moves
+        (north, south, east, west) in the state after its step, None where no expert was; ``p_normal``, P(M | H)
+        of the experts' models; ``gain`` of the advice in nats.
 
     Raises
     ------
     InputError
-        A file or line breaks its rule: the message says which line.
+        A file or line breaks its rule; the message names the line.
     NotFoundError
         The world or a file does not exist.
     """
-    desk = AdviceDesk(settings)
+    desk = AdviceSession(settings)
     for step in read_steps(lines, desk.world, name):
         yield desk.answer(step)
 
 
 def world_of(settings: AdviseSettings) -> GridWorld:
-    """The world of a map, or of a name and a seed."""
+    """The world of a map, or of a world's name and seed."""
     if settings.world.endswith((".yaml", ".yml")) or os.sep in settings.world:
         return world_from_settings(WorldSettings("building", settings.world, settings.cell, settings.robot_radius))
     domain, _, seed = settings.world.partition(":")
@@ -169,14 +169,14 @@ def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int]
         chosen = AdviceSettings(
             settings.kappa, settings.window, share=1.0 if settings.share is None else settings.share
         )
-        return Advisor([Purpose.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
+        return Advisor([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
     share = BETTER.share if settings.share is None else settings.share
     chosen = replace(BETTER, kappa=settings.kappa, window=settings.window, share=share)
-    ways = stitched(purposes(walks, goals, world), world.neighbour)
-    return Advisor(ways, lost_people(world, [way.goals[0] for way in ways]), chosen)
+    models = extend_goal_models(goal_models(walks, goals, world), world.neighbour)
+    return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
 
 
-def lost_people(world: GridWorld, goals: list[int]) -> list[Behaviour | list[Behaviour]]:
-    """Models of who does not know the way: the explorers, and a bug for each of the goals."""
-    aimless = [Tabulated(explorer_probs(world, explorer)) for explorer in EXPLORERS if explorer != "bug"]
-    return [*aimless, [Tabulated(explorer_probs(world, "bug", goal)) for goal in goals]]
+def non_expert_models(world: GridWorld, goals: list[int]) -> list[Behaviour | list[Behaviour]]:
+    """Models of agents that do not know the paths: the explorers, and a bug algorithm for each goal."""
+    without_goal = [Tabulated(explorer_probs(world, explorer)) for explorer in EXPLORERS if explorer != "bug"]
+    return [*without_goal, [Tabulated(explorer_probs(world, "bug", goal)) for goal in goals]]

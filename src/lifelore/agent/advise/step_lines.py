@@ -1,7 +1,7 @@
-"""Steps of agents as JSON lines: ``{"agent": …, "state": …, "action": …}``, one a line.
+"""Reads steps of agents from JSON lines: ``{"agent": …, "state": …, "action": …}``, one step a line.
 
-``state`` is a state's number or its cell ``[row, column]``; ``action`` a number or a name of the world's moves,
-tried in that state; null: the agent is there and tries nothing (the end of its errand, or the wish for advice).
+``state`` is the number of a state or its cell ``[row, column]``. ``action`` is the number or name of the move that
+the agent tried in that state, or null: the agent has reached its goal, or asks for advice before it moves.
 """
 
 import json
@@ -17,7 +17,7 @@ NO_ACTION = -1
 
 
 class StepLine(NamedTuple):
-    """An agent tried an action in a state; action -1: none."""
+    """The action that an agent tried in a state; action -1: no action."""
 
     agent: str | int
     state: int
@@ -25,12 +25,12 @@ class StepLine(NamedTuple):
 
 
 def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[StepLine]:
-    """The steps, as they come; empty lines are passed over.
+    """The steps in order; empty lines are skipped.
 
     Raises
     ------
     InputError
-        A line is no such object; the message says `name` and which line.
+        A line is no such object; the message gives `name` and the number of the line.
     """
     for number, document in read_objects(lines, name):
         try:
@@ -40,7 +40,7 @@ def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[St
 
 
 def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[str, Any]]]:
-    """Line numbers from 1 and the objects in them."""
+    """The number of each line, from 1, and its object."""
     for number, line in enumerate(_decoded(lines, name), 1):
         if not line.strip():
             continue
@@ -56,11 +56,11 @@ def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[st
 
 
 def _decoded(lines: Iterable[str], name: str) -> Iterator[str]:
-    # A file is decoded by the block, so that the line of a wrong byte is not known.
+    # A file is decoded in blocks, so the line of a wrong byte is unknown.
     try:
         yield from lines
     except UnicodeDecodeError:
-        raise InputError(f"{name} must be JSON lines in UTF-8, got bytes that are not") from None
+        raise InputError(f"{name} must be JSON lines in UTF-8, got other bytes; convert the file") from None
 
 
 def _agent(document: dict[str, Any]) -> str | int:
@@ -71,7 +71,7 @@ def _agent(document: dict[str, Any]) -> str | int:
 
 
 def state_number(document: dict[str, Any], world: GridWorld) -> int:
-    """The state that an object speaks of."""
+    """The number of the state in an object."""
     state = document.get("state")
     if _is_whole(state) and 0 <= state < world.n_states:  # type: ignore[operator]
         return int(state)  # type: ignore[arg-type]

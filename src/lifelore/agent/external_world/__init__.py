@@ -1,4 +1,4 @@
-"""`live_in`: the agent lives in a world of the user's own, met only through the `World` protocol.
+"""`live_in`: an agent lives in a world of the user, through the `World` protocol only.
 
 Read in this order: `live_in`, `task`, `context_code`.
 """

@@ -1,4 +1,4 @@
-"""Codes of contexts: an integer for whatever hashable a world tells, the same in every process and life."""
+"""Maps each hashable context of a world to an integer code, the same in every process."""
 
 import hashlib
 import math
@@ -12,13 +12,14 @@ import numpy as np
 from lifelore.core.errors import InputError
 
 CODE_BITS = 47
-"""Bits of a context's code: of a million contexts two share one by chance in 0.4 % of lives, and are found out."""
+"""Bits of a code. With a million contexts, two share a code by chance in 0.4 % of lives; `ContextCodes` refuses
+it."""
 MOST_ACTIONS = 2**16 - 1
-"""With this many, code · n_actions + action still fits a 64-bit integer."""
+"""Maximum number of actions for which code · n_actions + action fits a 64-bit integer."""
 
 
 def context_code(context: Hashable, bits: int = CODE_BITS) -> int:
-    """A context's code in [0, 2**bits), the same in every process and for equal contexts.
+    """The code of a context in [0, 2**bits), the same in every process and for equal contexts.
 
     Parameters
     ----------
@@ -28,14 +29,14 @@ def context_code(context: Hashable, bits: int = CODE_BITS) -> int:
     Raises
     ------
     InputError
-        Another type, whose identity may not outlive the process; or NaN, which is not even equal to itself.
+        The context has another type, whose identity may differ between processes, or is NaN.
     """
     digest = hashlib.blake2b(_canonical(context).encode(), digest_size=8).digest()
     return int.from_bytes(digest, "big") >> (64 - bits)
 
 
 def _canonical(part: Hashable) -> str:
-    """One text for each value; values that Python holds to be equal have one text (1, 1.0 and True)."""
+    """A text for each value, the same for values that are equal in Python (1, 1.0 and True)."""
     if isinstance(part, np.generic) and not isinstance(part, str | bytes):
         part = part.item()
     if isinstance(part, numbers.Real) and math.isfinite(part):
@@ -60,7 +61,7 @@ def _canonical(part: Hashable) -> str:
 
 
 class ContextCodes:
-    """Codes of the contexts met, and the watch that no two of them share one."""
+    """Codes of the contexts met so far; refuses two contexts with the same code."""
 
     def __init__(self, bits: int = CODE_BITS) -> None:
         self.bits = bits
@@ -68,7 +69,7 @@ class ContextCodes:
         self._context: dict[int, Hashable] = {}
 
     def __getitem__(self, context: Hashable) -> int:
-        """The context's code; InputError for a second context of one code."""
+        """The code of a context; InputError if another context has the same code."""
         try:
             return self._code[context]
         except KeyError:
@@ -83,7 +84,7 @@ class ContextCodes:
         other = self._context.setdefault(code, context)
         if other != context:
             raise InputError(
-                f"contexts {ascii(other)[:60]} and {ascii(context)[:60]} share the code {code}, so their lore "
+                f"contexts {ascii(other)[:60]} and {ascii(context)[:60]} share the code {code}, so their counts "
                 "would mix; change the features slightly, for instance add a constant to the tuple"
             )
         self._code[context] = code

@@ -1,4 +1,4 @@
-"""`live_in`: the agent lives in a world of the user's own, met only through the `World` protocol."""
+"""`live_in`: an agent lives in a world of the user, through the `World` protocol only."""
 
 import hashlib
 import os
@@ -6,7 +6,7 @@ import time
 import uuid
 from collections.abc import Hashable
 from contextlib import nullcontext
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
 
@@ -16,7 +16,7 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
-from lifelore.agent.external_world.task import ForeignLearner, ForeignTask, Guidance
+from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
@@ -52,73 +52,73 @@ def live_in(
     progress: Progress | None = None,
     stop: Event | None = None,
 ) -> dict:
-    """Live through `tasks` tasks of a world, ``scratch`` beside on the same random streams; keep what was learnt.
+    """Live through `tasks` tasks of a world with two agents, `lore` and `scratch`, on the same random streams.
 
-    Two agents learn each task by ε-greedy Q-learning from nothing (Q = 0). ``scratch`` explores uniformly;
-    ``lore`` by the action prior that its life has taught it so far. After each task, the best actions of the
-    learnt policy are counted by context, in the states whose learnt value is above 0. So a world whose rewards
-    are never positive teaches nothing (``n_contexts`` stays 0): shift its rewards.
+    Both agents learn each task by ε-greedy Q-learning from Q = 0. `scratch` explores uniformly. `lore` explores by
+    the action prior of its earlier tasks: after each task, the best actions of the learnt policy are counted by
+    context, in the states whose value is positive. If no reward of the world is positive, the agent learns no
+    prior (``n_contexts`` stays 0): add a constant to the rewards.
 
     Parameters
     ----------
     world : World
-        ``lifelore.bridges.gymnasium_world.GymnasiumWorld``, or an object of your own; it is not closed.
+        ``lifelore.bridges.gymnasium_world.GymnasiumWorld``, or your own object. `live_in` does not close it.
     tasks, episodes, max_steps : int
-        Tasks to live through now, episodes of each, steps of an episode at most; ≥ 1.
+        Tasks to live through now, episodes of a task, maximum steps of an episode; ≥ 1.
     memory : str or Path, optional
-        SQLite file or ``postgresql://`` URL in which to go on from earlier lives and to keep this one, one
-        transaction a task. None keeps nothing on disk and starts from nothing, other than in `live`.
+        SQLite file or ``postgresql://`` URL that holds earlier lives and stores this one, one transaction a
+        task. None: start without knowledge and store nothing (`live` uses the user's memory instead).
     robot : str
-        Name under which memory keeps this life.
+        Name of the robot in memory.
     key : str, optional
-        What the contexts mean; lives with one key and number of actions share their lore. Default:
-        ``world.context_key``; `GymnasiumWorld` has one, and its documentation says what that cannot see.
-        Not needed without a memory.
+        The meaning of the contexts. Lives with the same key and number of actions share their prior. Default:
+        ``world.context_key``, which `GymnasiumWorld` has; its documentation names what that key cannot
+        distinguish. Not needed without a memory.
     seed : int
-        Episodes' seeds and the agents' choices.
+        Draws the seeds of the episodes and the agents' choices.
     discount : float
         γ in [0, 1].
     learning_rate, epsilon, epsilon_decay, epsilon_floor : float
         As in `QLearning`.
     alpha0, weight, form, ties : float, float, str, str
-        As in `LifeSettings`.
+        As in `PriorSettings`.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
-        Set it to end early: the task in progress is given up, all finished ones are kept.
+        Set it to stop early: the task in progress is dropped, the finished tasks stay.
 
     Returns
     -------
     dict
-        The JSON document of `live`, with null for what a foreign world does not tell (map, goals, optimum,
-        collisions, steps and episodes to 80 %). Returns are discounted; ``final_return`` is the mean of
-        a task's last tenth of episodes, ``mean_return`` of all; ``reached``: an episode was ever terminated with a
-        positive reward. ``summary`` compares over the last third of the tasks; ``n_contexts``: contexts that
-        the prior knows at the end.
+        The JSON document of `live`, with null for the values that such a world does not give (map, goals,
+        optimum, collisions, steps and episodes to 80 %). Returns are discounted; ``final_return`` is the mean of
+        a task's last tenth of episodes, ``mean_return`` of all episodes; ``reached``: an episode terminated with
+        a positive reward. ``summary`` compares the agents over the last third of the tasks; ``n_contexts``: the
+        number of contexts in the prior at the end.
 
     Raises
     ------
     InputError
-        A setting breaks its rule; a reward that is not finite; a context without a stable code (see
-        `lifelore.agent.external_world.context_code.context_code`); no key for a memory.
+        A setting breaks its rule; a reward is not finite; a context has no stable code (see
+        `lifelore.agent.external_world.context_code.context_code`); a memory is given without a key.
     StoreError
-        Memory refuses; what was learnt before stays in it.
+        Memory cannot store the task; earlier tasks stay stored.
     """
     began = time.perf_counter()
     _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
     _check_world(world)
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     key = _key_of(world, key, needed=memory is not None)
-    settings = _Settings(tasks, robot, key, seed, discount, learning, Guidance(alpha0, weight, form, ties))
-    with open_memory(memory) if memory is not None else nullcontext() as kept:
-        life = _ForeignLife(world, settings, kept)
+    settings = _Settings(tasks, robot, key, seed, discount, learning, GuidanceSettings(alpha0, weight, form, ties))
+    with open_memory(memory) if memory is not None else nullcontext() as opened:
+        life = _ExternalLife(world, settings, opened)
         life.run(progress, stop or Event())
         return life.report(time.perf_counter() - began)
 
 
 @dataclass(frozen=True)
 class _Settings:
-    """What a life is told, checked; the whole numbers are checked before `QLearning` takes two of them."""
+    """Checked settings of a life."""
 
     tasks: int
     robot: str
@@ -126,17 +126,32 @@ class _Settings:
     seed: int
     discount: float
     learning: QLearning
-    guidance: Guidance
+    guidance: GuidanceSettings
 
     def __post_init__(self) -> None:
         if not 0 <= self.discount <= 1:
             raise InputError(f"discount must lie in [0, 1], got {self.discount}")
         if not self.robot.strip():
-            raise InputError("robot must have a name, got an empty one")
+            raise InputError("robot must have a name, got an empty text; name the robot")
 
     def to_dict(self) -> dict:
-        own = {name: getattr(self, name) for name in ("tasks", "robot", "key", "discount")}
-        return own | asdict(self.learning) | asdict(self.guidance)
+        learning, guidance = self.learning, self.guidance
+        return {
+            "tasks": self.tasks,
+            "robot": self.robot,
+            "key": self.key,
+            "discount": self.discount,
+            "episodes": learning.episodes,
+            "max_steps": learning.max_steps,
+            "learning_rate": learning.learning_rate,
+            "epsilon": learning.epsilon,
+            "epsilon_decay": learning.epsilon_decay,
+            "epsilon_floor": learning.epsilon_floor,
+            "alpha0": guidance.alpha0,
+            "weight": guidance.weight,
+            "form": guidance.form,
+            "ties": guidance.ties,
+        }
 
 
 def _check_whole(**settings: int) -> None:
@@ -149,7 +164,7 @@ def _check_world(world: World) -> None:
     if not isinstance(world, World):
         raise InputError(
             "world must have n_actions, reset, step and context (lifelore.core.protocols.World), got "
-            f"{type(world).__name__}; wrap an environment of Gymnasium in GymnasiumWorld"
+            f"{type(world).__name__}; wrap a Gymnasium environment in GymnasiumWorld"
         )
     if not 1 <= world.n_actions <= MOST_ACTIONS:
         raise InputError(f"world.n_actions must lie in [1, {MOST_ACTIONS}], got {world.n_actions}")
@@ -160,16 +175,18 @@ def _key_of(world: World, key: str | None, needed: bool) -> str | None:
         key = getattr(world, "context_key", None)
         if not key:
             raise InputError(
-                f"key must say what the contexts of {type(world).__name__} mean before a memory keeps them, "
+                f"key must name the meaning of the contexts of {type(world).__name__} for the memory, "
                 'got none; pass key="..."'
             )
     elif key is not None and not key.strip():
-        raise InputError("key must say what the contexts mean, got an empty one; leave it out for the world's own")
+        raise InputError(
+            "key must name the meaning of the contexts, got an empty text; leave it out for the key of the world"
+        )
     return key
 
 
-class _ForeignLife:
-    """The life under way: what it has learnt, and the memory that keeps it."""
+class _ExternalLife:
+    """A life in progress: its prior, and the memory that stores it."""
 
     def __init__(self, world: World, settings: _Settings, memory: Memory | None) -> None:
         self.world, self.settings, self.memory = world, settings, memory
@@ -194,28 +211,28 @@ class _ForeignLife:
         task = self._task(index, stop)
         learners = {name: self._learner(name, index) for name in AGENTS}
         agents = {name: task.live(learner) for name, learner in learners.items()}
-        news = self._learn(learners["lore"])
+        counts = self._learn(learners["lore"])
         if self.memory:
             about = {"index": index, "world": self.name}
-            records = [news] if len(news.slots) else []
+            records = [counts] if len(counts.slots) else []
             self.memory.contribute(self.settings.robot, records, process=self.process, seq=seq, task=about)
         for learner in learners.values():
             self.states.update(learner.q)
         self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})
 
-    def _task(self, index: int, stop: Event) -> ForeignTask:
+    def _task(self, index: int, stop: Event) -> ExternalTask:
         learning, discount = self.settings.learning, self.settings.discount
         drawn = stream(self.settings.seed, "task", index, "world").integers(2**31, size=learning.episodes)
-        return ForeignTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
+        return ExternalTask(self.world, self.codes, learning, discount, index, drawn.tolist(), stop)
 
-    def _learner(self, name: str, index: int) -> ForeignLearner:
-        # Equal streams of their own choices make the comparison of the two a paired one.
+    def _learner(self, name: str, index: int) -> ExternalLearner:
+        # Equal streams for both agents make their comparison paired.
         own = stream(self.settings.seed, "task", index, "own")
         prior = self.prior if name == "lore" else None
-        return ForeignLearner(self.world.n_actions, prior, self.settings.guidance, own)
+        return ExternalLearner(self.world.n_actions, prior, self.settings.guidance, own)
 
-    def _learn(self, learner: ForeignLearner) -> Record:
-        """Count a finished task's policy (Eq. 3.5, 3.7); the contribution."""
+    def _learn(self, learner: ExternalLearner) -> Record:
+        """Count the policy of a finished task (Eq. 3.5, 3.7); return the contribution."""
         news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.prior.key)
         news.update(*learner.best(), self.settings.guidance.weight)
         self.prior.merge(news)
@@ -238,7 +255,8 @@ class _ForeignLife:
 
 
 def _recalled(n_actions: int, settings: _Settings, memory: Memory | None) -> ActionPrior:
-    """What memory holds of these contexts and as many actions, or nothing yet."""
+    """The prior in memory for these contexts and this number of actions; an empty prior if there is none."""
+    # The text "foreign" is part of the key of stored priors.
     scope = hashlib.sha256(repr(("foreign", settings.key, n_actions)).encode()).hexdigest()[:32]
     known = memory.recall(PRIOR_KIND, scope, PRIOR_VERSION) if memory else None
     if known is None:
@@ -262,7 +280,7 @@ def _summarise(tasks: list[dict]) -> dict:
 
 
 def _difference(tasks: list[dict], measure: str) -> dict:
-    """The paired difference of lore and scratch, with their means beside."""
+    """The paired difference of lore and scratch, and their means."""
     values = np.array([[task["agents"][name][measure] for name in AGENTS] for task in tasks], float)
     raw = dict(zip(AGENTS, values.mean(axis=0).tolist(), strict=True))
     return plain(mean_estimate(values[:, 0] - values[:, 1])) | {"raw": raw}

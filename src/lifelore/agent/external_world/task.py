@@ -1,7 +1,7 @@
-"""One task lived in a foreign world: the Q-learning of `lifelore.core.learning.q_learning`, step by step.
+"""Learns one task in an external world by the Q-learning of `lifelore.core.learning.q_learning`, step by step.
 
-Nothing is known of such a world but what happens in it, so states and contexts get their rows as they are met,
-and returns are observed, not computed.
+Such a world has no tables: states and contexts get their rows when they are first met, and returns are observed,
+not computed.
 """
 
 import math
@@ -24,13 +24,13 @@ from lifelore.core.learning.q_learning import choose, cumulative
 from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.core.protocols import World
 
-LOOK_EVERY = 200
-"""Steps between looks at the stop sign."""
+STOP_CHECK = 200
+"""Steps between checks of the stop event."""
 
 
 @dataclass(frozen=True)
-class Guidance:
-    """How counts guide exploration: α⁰, w(π), the form of the prior, and how the greedy step breaks ties."""
+class GuidanceSettings:
+    """How counts guide exploration; the fields as in `lifelore.agent.live.life_settings.PriorSettings`."""
 
     alpha0: float = 0.1
     weight: float = 1.0
@@ -41,18 +41,20 @@ class Guidance:
         for name, known in {"form": FORMS, "ties": TIES}.items():
             if getattr(self, name) not in known:
                 raise InputError(f"{name} must be one of {', '.join(known)}, got '{getattr(self, name)}'")
-        # The prior has the rules for its own numbers.
+        # An empty prior checks its own numbers.
         ActionPrior(1, self.alpha0).update([], np.empty((0, 1)), self.weight)
 
 
-class ForeignLearner:
-    """One agent on one task: Q and the prior's rows for what it has met.
+class ExternalLearner:
+    """One agent on one task: its Q-values, and rows of the prior for the contexts met.
 
     q : state to (1, n_actions) values, 0 at first
     visited : the (state, context code) pairs in which it acted, in the order met
     """
 
-    def __init__(self, n_actions: int, prior: ActionPrior | None, guidance: Guidance, own: np.random.Generator):
+    def __init__(
+        self, n_actions: int, prior: ActionPrior | None, guidance: GuidanceSettings, own: np.random.Generator
+    ):
         self.n_actions, self.prior, self.guidance, self.generator = n_actions, prior, guidance, own
         self.random = random_state(own)
         self.q: dict[Hashable, NDArray[np.float64]] = defaultdict(lambda: np.zeros((1, n_actions)))
@@ -60,7 +62,7 @@ class ForeignLearner:
         self._rows: dict[int, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
 
     def act(self, state: Hashable, code: int, epsilon: float) -> int:
-        """The ε-greedy action (Alg. 2 line 5)."""
+        """Draw the ε-greedy action (Alg. 2, line 5)."""
         if code not in self._rows:
             self._rows[code] = self._rows_of(code)
         explore, ties = self._rows[code]
@@ -80,15 +82,15 @@ class ForeignLearner:
         return float(self.q[state].max())
 
     def best(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Contexts (n,) of the states visited, and the best actions there; rows not worth anything are False."""
+        """Contexts (n,) of the visited states, and their best actions; False where no value is positive."""
         codes = np.array([code for _, code in self.visited], np.int64)
         q = np.array([self.q[state][0] for state, _ in self.visited]).reshape(-1, self.n_actions)
         return codes, learnt_best_actions(q)
 
 
 @dataclass(frozen=True)
-class ForeignTask:
-    """One task that both agents are given, with the same seeds of its episodes, one for each."""
+class ExternalTask:
+    """One task that both agents learn; `seeds` holds the seed of each episode, the same for both."""
 
     world: World
     codes: ContextCodes
@@ -98,15 +100,15 @@ class ForeignTask:
     seeds: list[int]
     stop: Event
 
-    def live(self, learner: ForeignLearner) -> dict:
-        """Learn the task; its numbers as plain data.
+    def live(self, learner: ExternalLearner) -> dict:
+        """Learn the task; return the result as JSON data.
 
         Raises
         ------
         InputError
-            A reward that is not finite, a context without a code.
+            A reward is not finite, or a context has no code.
         Stopped
-            The stop sign is set.
+            The stop event is set.
         """
         epsilons = self.learning.schedule(self.discount).epsilon.tolist()
         episodes = [
@@ -122,11 +124,11 @@ class ForeignTask:
             **dict.fromkeys(("collisions", "steps_to_80", "episodes_to_80")),
         }
 
-    def _episode(self, learner: ForeignLearner, seed: int, epsilon: float) -> tuple[float, bool]:
+    def _episode(self, learner: ExternalLearner, seed: int, epsilon: float) -> tuple[float, bool]:
         """One episode: its discounted return, and whether it was terminated with a positive reward."""
         state, reward, total, factor = self.world.reset(self.index, seed), 0.0, 0.0, 1.0
         for step in range(self.learning.max_steps):
-            if step % LOOK_EVERY == 0 and self.stop.is_set():
+            if step % STOP_CHECK == 0 and self.stop.is_set():
                 raise Stopped
             code = self.codes[self.world.context(state, reward)]
             action = learner.act(state, code, epsilon)
@@ -144,5 +146,5 @@ class ForeignTask:
         if not math.isfinite(reward):
             raise InputError(
                 f"reward must be a finite number, got {reward} for action {action} in task {self.index}; "
-                "mend the world's step"
+                "correct the world's step"
             )

@@ -1,50 +1,61 @@
-"""Who lives beside whom: the agent, its halves, and the baselines it is held against."""
+"""The agents that can live a life: `lore`, its parts, and the baselines it is compared with."""
 
 from dataclasses import dataclass, field
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.learning.model_learning import Manner
+from lifelore.core.learning.model_learning import ExplorationStrategy
 
 
 @dataclass(frozen=True)
-class Kind:
-    """What an agent brings to a task.
+class AgentKind:
+    """What an agent uses in a task.
 
-    uses_prior : an action prior orders what is tried
-    remembers : transitions learnt in earlier tasks are still known
-    manner : how it looks for the goal
+    uses_prior : an action prior orders the moves that it tries
+    remembers : it still knows the transitions that it learnt in earlier tasks
+    exploration_strategy : how it searches for the goal
     """
 
     uses_prior: bool = False
     remembers: bool = False
-    manner: Manner = field(default_factory=Manner)
+    exploration_strategy: ExplorationStrategy = field(default_factory=ExplorationStrategy)
 
 
-ROSTER = {
-    "lore": Kind(uses_prior=True, remembers=True),
-    "model": Kind(remembers=True),
-    "prior": Kind(uses_prior=True),
-    "scratch": Kind(),
-    "undirected": Kind(manner=Manner(planned=False)),
-    "rmax": Kind(manner=Manner(exhaustive=True)),
-    "frontier": Kind(manner=Manner(senses=True)),
+AGENTS = {
+    "lore": AgentKind(uses_prior=True, remembers=True),
+    "model": AgentKind(remembers=True),
+    "prior": AgentKind(uses_prior=True),
+    "scratch": AgentKind(),
+    "undirected": AgentKind(exploration_strategy=ExplorationStrategy(planned=False)),
+    "rmax": AgentKind(exploration_strategy=ExplorationStrategy(exhaustive=True)),
+    "frontier": AgentKind(exploration_strategy=ExplorationStrategy(senses=True)),
 }
-"""`scratch` has everybody's planner and nothing else. `undirected` takes the least-tried move, unplanned; `rmax`
-prefers any unknown to a known goal; `frontier` is told what its sensors mean: a visit shows where moves lead."""
+"""`scratch` has the same planner as the others, without prior and memory. `undirected` does not plan: it takes the
+move that it has tried least. `rmax` prefers every unknown move to a known goal. `frontier` knows where all moves
+of a cell lead as soon as it has visited the cell."""
 
 Q_AGENTS = ("lore", "prior", "scratch")
-"""A Q-learner keeps no model: with the prior it is `lore` and `prior` alike, without it is scratch."""
+"""A Q-learner has no model: with the prior, `lore` and `prior` are the same agent; without it, it is `scratch`."""
 
 
-def companions(agent: str, learner: str) -> list[str]:
-    """Names of the agents that live when `agent` is asked for, the one that memory keeps first."""
-    if agent != "all" and agent not in ROSTER:
-        raise NotFoundError(f"agent must be one of {', '.join(ROSTER)}, all; got '{agent}'")
-    if learner == "q":
-        if agent not in (*Q_AGENTS, "all"):
-            raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
-        if agent == "all":
-            return ["lore", "scratch"]
-    if agent == "all":
-        return list(ROSTER)
-    return ["scratch"] if agent == "scratch" else [agent, "scratch"]
+def baselines_for(agent: str, learner: str) -> list[str]:
+    """Names of the agents that live the same tasks as `agent`, for comparison; ``all`` stands for `lore`.
+
+    Raises
+    ------
+    NotFoundError
+        No agent has this name.
+    InputError
+        This learner has no such agent.
+    """
+    if agent != "all" and agent not in AGENTS:
+        raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, all; got '{agent}'")
+    if learner == "q" and agent not in (*Q_AGENTS, "all"):
+        raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
+    if agent == "all" and learner == "model":
+        return [name for name in AGENTS if name != "lore"]
+    return [] if agent == "scratch" else ["scratch"]
+
+
+def agents_for(agent: str, learner: str) -> list[str]:
+    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge."""
+    return ["lore" if agent == "all" else agent, *baselines_for(agent, learner)]

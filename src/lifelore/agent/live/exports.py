@@ -1,4 +1,4 @@
-"""What a life leaves for other programs, in world metres: paths as CSV, the prior as a ROS map."""
+"""Writes the files for other programs, in metres: greedy paths as CSV, the prior as a ROS map."""
 
 import csv
 from collections.abc import Sequence
@@ -7,32 +7,32 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.live.greedy_paths import Ways
+from lifelore.agent.live.greedy_paths import GreedyPaths
 from lifelore.core.metrics import entropy
 from lifelore.domains.buildings.occupancy_map import write_occupancy_map
 from lifelore.domains.grids.grid_world import GridWorld
 
 NO_PRIOR = 255
-"""Grey of cells without a prior: not floor, or never met; `map_server` reads it as unknown."""
+"""Grey value of cells that are no floor or have no counts; `map_server` reads it as unknown."""
 _MEANING = (
     "# How decided the action prior is in each cell: 0 % all moves are equally likely, 100 % one is certain.\n"
     "# 255: no floor, or no experience. One pixel is one cell; read with mode raw.\n"
 )
 
 
-def write_paths(path: Path, world: GridWorld, ways: Sequence[Ways]) -> None:
-    """Greedy paths as CSV: task, path (from 0 in each task), step, x and y in metres of the map's frame."""
+def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths]) -> None:
+    """Write greedy paths as CSV: task, path (from 0 in each task), step, x and y in metres in the map's frame."""
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["task", "path", "step", "x", "y"])
-        for way in ways:
-            for number, states in enumerate(way.paths):
+        for task in tasks:
+            for number, states in enumerate(task.paths):
                 for step, (x, y) in enumerate(world.positions(states)):
-                    writer.writerow([way.task, number, step, f"{x:.4f}", f"{y:.4f}"])
+                    writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
 
 
 def decided_percent(world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_]) -> NDArray[np.uint8]:
-    """(rows, columns) uint8: 100 · (1 - entropy / log |A|) of a cell's prior, `NO_PRIOR` where there is none."""
+    """How decided the prior of each cell is, in percent: 100 · (1 - entropy / log |A|); (rows, columns) uint8."""
     nats = entropy(probs)
     percent = np.rint(100 * np.clip(1 - nats / np.log(probs.shape[1]), 0, 1))
     grey = np.full(world.shape, NO_PRIOR, np.uint8)
@@ -41,17 +41,17 @@ def decided_percent(world: GridWorld, probs: NDArray[np.float64], counted: NDArr
 
 
 def write_prior_map(path: Path, world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_]) -> None:
-    """The prior as a `map_server` map at the resolution of cells, with the origin and yaw of the world.
+    """Write the prior as a `map_server` map with one pixel a cell, and the origin and yaw of the world.
 
     Parameters
     ----------
     path : Path
-        The YAML file; the image is written beside it with the ending ``.pgm``.
+        The YAML file; the image has the same name with the ending ``.pgm``.
     world : GridWorld
     probs : (n_states, n_actions) float
         Rows sum to 1.
     counted : (n_states,) bool
-        States whose prior rests on counts.
+        States whose context has counts.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""The ways a learnt policy takes through a grid world."""
+"""Computes the paths that a learnt policy takes through a grid world."""
 
 from dataclasses import dataclass
 
@@ -9,13 +9,13 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 
 @dataclass(frozen=True, eq=False)
-class Ways:
+class GreedyPaths:
     """Greedy paths of one task.
 
     task : number of the task in the robot's life
     goal : state
     paths : states of each path, from its start on
-    arriving : share of the task's starts from which the policy arrives, in [0, 1]
+    arriving : share of the task's starts from which the policy reaches the goal, in [0, 1]
     """
 
     task: int
@@ -38,8 +38,8 @@ def greedy_path(world: GridWorld, policy: ArrayLike, start: int, goal: int) -> N
     Returns
     -------
     (n,) int32
-        Ends with `goal` if the policy gets there; else where it knows no move, meets a wall, or would come
-        back to a state of the path. No state occurs twice.
+        Ends with `goal` if the policy reaches it. Otherwise it ends where the policy has no action, hits a wall
+        or returns to a state of the path. No state occurs twice.
     """
     policy = np.asarray(policy)
     path, seen, state = [start], {start}, start
@@ -53,7 +53,7 @@ def greedy_path(world: GridWorld, policy: ArrayLike, start: int, goal: int) -> N
 
 
 def path_lengths(world: GridWorld, policy: ArrayLike, goal: int) -> NDArray[np.int32]:
-    """Moves that following `policy` takes from each state to `goal`, (n_states,); -1 where it never arrives."""
+    """Moves that `policy` needs from each state to `goal`, (n_states,); -1 where it never reaches the goal."""
     policy = np.asarray(policy)
     states = np.arange(world.n_states)
     following = world.neighbour[states, np.maximum(policy, 0)]
@@ -68,19 +68,19 @@ def path_lengths(world: GridWorld, policy: ArrayLike, goal: int) -> NDArray[np.i
     return length
 
 
-def ways_of(
+def greedy_paths_of(
     world: GridWorld, policy: ArrayLike, task: int, goal: int, start: int | None = None, n_paths: int = 3
-) -> Ways:
-    """The paths of a task from a few starts far from each other, the first as far from the goal as can be.
+) -> GreedyPaths:
+    """Paths of a task from up to `n_paths` starts that are far apart; the first is the farthest from the goal.
 
-    Starts from which the policy never arrives are passed over; `start` is the only one where it is given.
+    Starts from which the policy never reaches the goal are left out. If `start` is given, it is the only start.
     """
     length = path_lengths(world, policy, goal)
     starts = np.delete(np.arange(world.n_states), goal) if start is None else np.array([start])
     arriving = starts[length[starts] > 0]
     chosen = _far_apart(world, arriving, length, goal, n_paths)
     paths = [greedy_path(world, policy, state, goal) for state in chosen]
-    return Ways(task, goal, paths, len(arriving) / len(starts))
+    return GreedyPaths(task, goal, paths, len(arriving) / len(starts))
 
 
 def _far_apart(world: GridWorld, states: NDArray, length: NDArray, goal: int, n: int) -> list[int]:

@@ -1,12 +1,12 @@
-"""A life as a log folder that L2Logger's and L2Metrics' programs read (log format 1.1).
+"""Writes a life as a log folder that L2Logger and L2Metrics read (log format 1.1).
 
     FOLDER/SCENARIO-TIMESTAMP/
         logger_info.json     which columns are measures of performance, and the version of the format
-        scenario_info.json   anything about the scenario
-        worker-0/NUMBER-TYPE/data-log.tsv   one row an experience: nine standard columns, then our own by name
+        scenario_info.json   description of the scenario
+        worker-0/NUMBER-TYPE/data-log.tsv   one row an experience: nine standard columns, then ours by name
 
-A block is a run of experiences of one type, ``train`` (the agent learns) or ``test`` (it is looked at, and learns
-nothing). Format: github.com/lifelong-learning-systems/l2logger, docs/log_format.md and docs/interface.md.
+A block is a sequence of experiences of one type: ``train`` (the agent learns) or ``test`` (it only acts). Format:
+github.com/lifelong-learning-systems/l2logger, docs/log_format.md and docs/interface.md.
 """
 
 import csv
@@ -20,7 +20,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.agent.live.baselines import ROSTER
+from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.task_result import TaskResult
 from lifelore.core.errors import InputError, StoreError
 
@@ -37,18 +37,18 @@ _TIME = "%Y%m%dT%H%M%S.%f"
 
 
 class L2Log:
-    """One scenario's log, written as it is lived.
+    """The log of one scenario, written while it runs.
 
     Parameters
     ----------
     folder : path
-        Where the scenario's own folder is made.
+        The folder of the scenario is made in it.
     scenario : str
-        Letters, digits, ``_`` and ``-``; the moment is added to it.
+        Name of letters, digits, ``_`` and ``-``; the time is added to it.
     measures : iterable of str
-        Columns that performance can be read from, at least one; `add` must be given them.
+        Names of the columns that measure performance, at least one; each call of `add` needs them.
     info : mapping, optional
-        What else is to be known, as JSON. L2Metrics looks for ``author``, ``complexity`` (1-low, 2-intermediate,
+        Description as JSON. L2Metrics reads ``author``, ``complexity`` (1-low, 2-intermediate,
         3-high), ``difficulty`` (1-easy, 2-medium, 3-hard) and ``scenario_type`` (condensed, dispersed, permuted,
         alternating, ste, custom).
 
@@ -63,7 +63,7 @@ class L2Log:
     ) -> None:
         self.measures = list(measures)
         if not self.measures or set(self.measures) & set(STANDARD):
-            raise InputError(f"measures must be at least one column beside the standard ones, got {self.measures}")
+            raise InputError(f"measures must be at least one column that is not standard, got {self.measures}")
         if not _SCENARIO.fullmatch(scenario):
             raise InputError(f"scenario must be of letters, digits, _ and -, got '{scenario}'")
         moment = datetime.now().timestamp()
@@ -84,19 +84,19 @@ class L2Log:
         params: Mapping | None = None,
         complete: ArrayLike = True,
     ) -> None:
-        """Experiences of one task, in order; another `block_type` than the last one's begins a block.
+        """Add experiences of one task, in order; a `block_type` other than the last one begins a new block.
 
         Parameters
         ----------
         block_type : {"train", "test"}
         task_name : str
-            ``label_variant``, both of letters and digits; readers take it in lower case.
+            ``label_variant``, both of letters and digits; readers convert it to lower case.
         columns : mapping of str to (n,) numbers
-            The measures, and anything else; the same names at each call.
+            The measures and other columns; the same names at each call.
         params : mapping, optional
             The task's parameters, as JSON.
         complete : bool or (n,) bool
-            False where an experience was broken off; L2Metrics leaves it out.
+            False where an experience was interrupted; L2Metrics leaves it out.
         """
         rows = self._checked(block_type, task_name, columns)
         done = np.broadcast_to(np.asarray(complete, bool), len(rows))
@@ -112,7 +112,7 @@ class L2Log:
         self._experiences += len(written)
 
     def _checked(self, block_type: str, task_name: str, columns: Mapping[str, ArrayLike]) -> list[tuple]:
-        """The columns' numbers, row by row, columns in the order of their names."""
+        """The values row by row, columns in order of name."""
         if block_type not in TYPES:
             raise InputError(f"block_type must be one of {', '.join(TYPES)}, got '{block_type}'")
         if not _NAME.fullmatch(task_name):
@@ -143,7 +143,9 @@ def _make(folder: Path) -> None:
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except (FileExistsError, NotADirectoryError):
-        raise InputError(f"folder must be one to write into, got {folder}, in whose way is a file") from None
+        raise InputError(
+            f"folder must be a folder, but {folder} is a file or lies below a file; name another folder"
+        ) from None
     except OSError as error:
         raise StoreError(f"cannot write into {folder}: {error.strerror}; choose another folder") from None
 
@@ -158,7 +160,7 @@ def _write(file: Path, text: str) -> None:
 
 
 class LifeLog:
-    """A whole life of `live`: one scenario an agent; of an agent that keeps nothing, one a task: its expert.
+    """The log of a life: one scenario for each agent with memory, one for each task of an agent without memory.
 
     Parameters
     ----------
@@ -168,17 +170,17 @@ class LifeLog:
 
     Examples
     --------
-    ``live(settings, watch=LifeLog("logs", settings.domain).add)``
+    ``live(settings, watch=LifeLog("logs", settings.world.domain).add)``
     """
 
     def __init__(self, folder: str | Path, domain: str) -> None:
         self.folder, self._label = Path(folder), re.sub("[^0-9a-zA-Z]", "", domain) or "task"
         self._lives: dict[str, L2Log] = {}
-        # Before a long run rather than after its first task.
+        # A folder that cannot be made fails here, before the long run.
         _make(self.folder)
 
     def add(self, task: Mapping, results: Mapping[str, TaskResult]) -> None:
-        """Log one finished task; the `Watcher` of `live`."""
+        """Log one finished task; pass it to `live` as ``watch``."""
         row, column = task["goal"]
         for name, result in results.items():
             self._of(name, task["index"]).add(
@@ -191,7 +193,7 @@ class LifeLog:
 
     def _of(self, name: str, index: int) -> L2Log:
         measures = ("reward", "performance", "reached")
-        if not (ROSTER[name].uses_prior or ROSTER[name].remembers):
+        if not (AGENTS[name].uses_prior or AGENTS[name].remembers):
             return L2Log(self.folder, f"{name}-task{index}", measures, {"scenario_type": "ste", "agent": name})
         if name not in self._lives:
             info = {"scenario_type": "custom", "agent": name}

@@ -1,18 +1,19 @@
-"""`live`: an agent lives through a stream of tasks, each better because of what the earlier ones taught."""
+"""`live`: an agent lives through a stream of tasks and uses what it learnt in the earlier ones."""
 
 import os
 import time
 import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field
+from pathlib import Path
 from threading import Event
 
 import numpy as np
 
 from lifelore.action.priors.back_off import posterior_mean
 from lifelore.action.priors.exploration import prior_rows, try_costs
-from lifelore.agent.live.baselines import ROSTER, Kind, companions
+from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.model_task import live_model_task
@@ -30,26 +31,26 @@ from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.worlds import WorldSettings, world_from_settings
+from lifelore.domains.worlds import world_from_settings
 from lifelore.memory import Memory, open_memory
 
-KEPT = 4
-"""Last tasks whose policies are kept for pictures: a long life in a large world must not fill the machine."""
+TASKS_WITH_POLICY = 4
+"""Last tasks whose policies stay in main memory for the pictures; more cost an array of the world's size each."""
 
 
 @dataclass
 class Life:
-    """A finished (or stopped) life: the report, and what pictures are made from.
+    """A finished (or stopped) life: the report, and the data for the pictures.
 
     report : dict
         The JSON document of ``lifelore live``.
     world : GridWorld
     results : list of dict
-        For each task: agent name to `TaskResult`; policies only in the last `KEPT`.
+        For each task: agent name to `TaskResult`; policies only in the last `TASKS_WITH_POLICY`.
     lore : Lore
-        What the first agent knows at the end.
+        Knowledge of the first agent at the end.
     stopped : bool
-        The person asked to stop; the report covers the tasks finished by then.
+        Whether the user asked to stop; the report covers the tasks finished before.
     """
 
     report: dict
@@ -60,7 +61,7 @@ class Life:
 
 
 Watcher = Callable[[dict, dict[str, TaskResult]], None]
-"""Called with a finished task's entry of the report, and what each agent made of the task."""
+"""Called with the report's entry of a finished task, and with the result of each agent."""
 
 
 def live(
@@ -70,7 +71,7 @@ def live(
     stop: Event | None = None,
     watch: Watcher | None = None,
 ) -> Life:
-    """Live through ``settings.tasks`` tasks and keep what was learnt.
+    """Live through ``settings.tasks`` tasks and store what is learnt in memory.
 
     Parameters
     ----------
@@ -78,46 +79,40 @@ def live(
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
-        Set it to end early: the task in progress is given up, all finished ones are kept.
+        Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
-        Called as ``watch(task, results)`` with each task, once memory has it; see `Watcher`.
+        Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
 
     Raises
     ------
     InputError, NotFoundError
-        A setting breaks its rule, or the map does.
+        A setting or the map breaks its rule.
     StoreError
-        Memory refuses; what was learnt before stays in it.
+        Memory cannot store the task; earlier tasks stay stored.
     """
     stop = stop or Event()
     began = time.perf_counter()
-    names = companions(settings.agent, settings.learner)
-    world = world_from_settings(_world_settings(settings))
-    with open_memory(settings.memory) as memory:
-        life = _Living(settings, world, names, memory)
+    names = agents_for(settings.agent, settings.learning.learner)
+    world = world_from_settings(settings.world)
+    with open_memory(settings.memory.location) as memory:
+        life = _RunningLife(settings, world, names, memory)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)
-        report = _report(settings, world, life, results, time.perf_counter() - began)
+        report = _report(settings, world, life, time.perf_counter() - began)
     return Life(report, world, results, life.lores[names[0]], stop.is_set())
 
 
-def _world_settings(settings: LifeSettings) -> WorldSettings:
-    """Every setting that the world knows too; what it has no use for it refuses."""
-    names = {field.name for field in fields(WorldSettings)} & {field.name for field in fields(LifeSettings)}
-    return WorldSettings(**{name: getattr(settings, name) for name in names})
-
-
-class _Living:
-    """The life under way: everybody's lore, and the memory it is kept in."""
+class _RunningLife:
+    """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
     def __init__(self, settings: LifeSettings, world: GridWorld, names: list[str], memory: Memory) -> None:
         self.settings, self.world, self.names, self.memory = settings, world, names, memory
         self.stream = TaskStream(world, settings)
-        self.scope = prior_scope(world, settings.prior)
-        # Every agent starts from the same lore and then lives its own life; only the first one's is kept.
-        first = Lore.recalled(world, self.scope, settings.alpha0, memory)
+        self.scope = prior_scope(world, settings.prior.condition)
+        # Every agent starts from the same knowledge and then learns by itself; only the first one's is stored.
+        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory)
         self.lores = {name: first.copy() if i else first for i, name in enumerate(names)}
-        self.tasks_before = memory.tasks(settings.robot)
+        self.tasks_before = memory.tasks(settings.memory.robot)
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.finished: list[dict] = []
 
@@ -133,8 +128,8 @@ class _Living:
                 results.append(self._live_task(self.tasks_before + done, done, pool, stop))
                 if watch:
                     watch(self.finished[-1], results[-1])
-                if done >= KEPT:
-                    for result in results[done - KEPT].values():
+                if done >= TASKS_WITH_POLICY:
+                    for result in results[done - TASKS_WITH_POLICY].values():
                         result.drop_arrays()
             except Stopped:
                 break
@@ -148,12 +143,12 @@ class _Living:
         optimal = mean_start_value(tables, optimal_q(tables, task.domain.discount).max(axis=1))
         if optimal <= 0:
             raise InputError(
-                f"discount must leave some of task {index}'s goal at its starts, got {task.domain.discount}; "
-                "use a larger one"
+                f"discount must leave the goal of task {index} a positive value at its starts, "
+                f"got {task.domain.discount}; use a larger discount"
             )
-        trial = _Trial(self, task, tables, optimal, index, stop)
+        shared = _SharedTask(self, task, tables, optimal, index, stop)
         try:
-            futures = {name: pool.submit(trial.live, name) for name in self.names}
+            futures = {name: pool.submit(shared.live, name) for name in self.names}
             results = {name: future.result() for name, future in futures.items()}
         except BaseException:
             stop.set()
@@ -162,27 +157,27 @@ class _Living:
         records = {name: self._learn(name, results[name], goal) for name in self.names}
         about = {"index": index, "goal": self.world.cells[goal].tolist(), "world": self.world.fingerprint}
         self.memory.contribute(
-            self.settings.robot, records[self.names[0]], process=self.process, seq=seq, task=about
+            self.settings.memory.robot, records[self.names[0]], process=self.process, seq=seq, task=about
         )
         agents = {name: result.to_dict() for name, result in results.items()}
         self.finished.append({"index": index, "goal": about["goal"], "optimal_return": optimal, "agents": agents})
         return results
 
     def _learn(self, name: str, result: TaskResult, goal: int) -> list[Record]:
-        """Draw one agent's lessons from a finished task; the records are what its memory gains."""
-        kind, lore, records = ROSTER[name], self.lores[name], []
-        if kind.uses_prior and self.settings.prior != "none":
-            records.append(lore.learn_prior(result.best, goal, self.settings.weight))
-        if kind.remembers and self.settings.learner == "model":
+        """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
+        kind, lore, records = AGENTS[name], self.lores[name], []
+        if kind.uses_prior and self.settings.prior.condition != "none":
+            records.append(lore.learn_prior(result.best, goal, self.settings.prior.weight))
+        if kind.remembers and self.settings.learning.learner == "model":
             records.append(lore.model_news())
         return [record for record in records if len(record.slots)]
 
 
 @dataclass(frozen=True)
-class _Trial:
-    """One task that every agent is given, on the same random streams."""
+class _SharedTask:
+    """One task that every agent learns, on the same random streams."""
 
-    living: _Living
+    life: _RunningLife
     task: Task
     tables: Tables
     optimal: float
@@ -190,20 +185,20 @@ class _Trial:
     stop: Event
 
     def live(self, name: str) -> TaskResult:
-        kind, lore = ROSTER[name], self.living.lores[name]
-        if self.living.settings.learner == "q":
+        kind, lore = AGENTS[name], self.life.lores[name]
+        if self.life.settings.learning.learner == "q":
             return self._with_q(kind, lore)
         return self._with_model(kind, lore)
 
-    def _with_model(self, kind: Kind, lore: Lore) -> TaskResult:
-        settings, world = self.living.settings, self.living.world
+    def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
+        settings, world = self.life.settings, self.life.world
         if not kind.remembers:
             lore.model = blank_model(world.n_states, self.tables.n_actions)
         explorer = new_explorer(
             world.n_states,
             self.tables.n_actions,
-            self.living.stream.world_stream(self.index),
-            self.living.stream.own_stream(self.index),
+            self.life.stream.world_stream(self.index),
+            self.life.stream.own_stream(self.index),
         )
         return live_model_task(
             self.tables,
@@ -211,68 +206,100 @@ class _Trial:
             self.task.domain.discount,
             lore.model,
             self._perceived(kind, lore),
-            kind.manner,
+            kind.exploration_strategy,
             explorer,
             settings.episode_cap(world.n_states),
             settings.step_cap,
             self.stop,
         )
 
-    def _perceived(self, kind: Kind, lore: Lore) -> Perceived:
-        percepts = self.living.world.percepts
-        if not kind.uses_prior or self.living.settings.prior == "none":
+    def _perceived(self, kind: AgentKind, lore: Lore) -> Perceived:
+        percepts = self.life.world.percepts
+        if not kind.uses_prior or self.life.settings.prior.condition == "none":
             return Perceived(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
         codes, row = np.unique(lore.scope.contexts, return_inverse=True)
         probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
         return Perceived(percepts, row.astype(np.int32), try_costs(probs))
 
-    def _with_q(self, kind: Kind, lore: Lore) -> TaskResult:
-        settings = self.living.settings
-        own = self.living.stream.own_stream(self.index)
+    def _with_q(self, kind: AgentKind, lore: Lore) -> TaskResult:
+        settings = self.life.settings
+        own = self.life.stream.own_stream(self.index)
         rows = uniform_rows(self.tables)
-        if kind.uses_prior and settings.prior != "none":
-            # A stream of its own: drawing a prior must not move the choices shared with the other agents.
+        if kind.uses_prior and settings.prior.condition != "none":
+            # A separate stream: a draw of the prior must not change the choices shared with the other agents.
             drawn = stream(settings.seed, "task", self.index, "prior")
             rows = prior_rows(
                 self.tables,
                 lore.scope.contexts,
-                lambda codes: lore.prior.probs(codes, settings.form, generator=drawn),
-                settings.ties,
+                lambda codes: lore.prior.probs(codes, settings.prior.form, generator=drawn),
+                settings.prior.ties,
             )
         method = QLearning(
             settings.episode_cap(self.tables.n_states),
             settings.step_cap,
-            settings.learning_rate,
-            settings.epsilon,
-            settings.epsilon_decay,
-            settings.epsilon_floor,
+            settings.learning.learning_rate,
+            settings.learning.epsilon,
+            settings.learning.epsilon_decay,
+            settings.learning.epsilon_floor,
         )
         learner = new_learner(
-            self.tables.n_states, self.tables.n_actions, self.living.stream.world_stream(self.index), own
+            self.tables.n_states, self.tables.n_actions, self.life.stream.world_stream(self.index), own
         )
         return live_q_task(
             self.tables, self.optimal, rows, method.schedule(self.task.domain.discount), learner, self.stop
         )
 
 
-def _report(settings: LifeSettings, world: GridWorld, life: _Living, results: list[dict], seconds: float) -> dict:
+def _report(settings: LifeSettings, world: GridWorld, life: _RunningLife, seconds: float) -> dict:
     return {
-        "domain": settings.domain,
-        "map": settings.map,
+        "domain": settings.world.domain,
+        "map": _text(settings.world.map),
         "n_states": world.n_states,
         "seed": settings.seed,
-        "settings": asdict(settings)
-        | world.about
-        | {
-            "discount": world.discount,
-            "goal_reward": world.goal_reward,
-            "wall_reward": world.wall_reward,
-            "episodes": settings.episode_cap(world.n_states),
-            "max_steps": settings.step_cap,
-            "memory": life.memory.location,
-        },
+        "settings": _settings_document(settings, world, life.memory.location),
         "tasks": life.finished,
         "summary": summarise(life.finished) if life.finished else {},
-        "memory": {"tasks_before": life.tasks_before, "tasks_after": life.memory.tasks(settings.robot)},
+        "memory": {"tasks_before": life.tasks_before, "tasks_after": life.memory.tasks(settings.memory.robot)},
         "seconds": round(seconds, 3),
     }
+
+
+def _settings_document(settings: LifeSettings, world: GridWorld, location: str) -> dict:
+    """All settings in one flat dictionary, with the defaults of the world and the learner filled in."""
+    learning, prior = settings.learning, settings.prior
+    document = {
+        "domain": settings.world.domain,
+        "map": _text(settings.world.map),
+        "tasks": settings.tasks,
+        "cell": settings.world.cell,
+        "robot_radius": settings.world.robot_radius,
+        "destinations": settings.destinations,
+        "learner": learning.learner,
+        "prior": prior.condition,
+        "agent": settings.agent,
+        "robot": settings.memory.robot,
+        "start": settings.start,
+        "memory": location,
+        "episodes": settings.episode_cap(world.n_states),
+        "max_steps": settings.step_cap,
+        "seed": settings.seed,
+        "jobs": settings.jobs,
+        "density": settings.world.density,
+        "discount": world.discount,
+        "goal_reward": world.goal_reward,
+        "wall_reward": world.wall_reward,
+        "alpha0": prior.alpha0,
+        "weight": prior.weight,
+        "form": prior.form,
+        "ties": prior.ties,
+        "learning_rate": learning.learning_rate,
+        "epsilon": learning.epsilon,
+        "epsilon_decay": learning.epsilon_decay,
+        "epsilon_floor": learning.epsilon_floor,
+    }
+    sizes = {"size": settings.world.size, "loops": settings.world.loops}
+    return document | {name: value for name, value in sizes.items() if value is not None} | world.about
+
+
+def _text(path: str | Path | None) -> str | None:
+    return None if path is None else str(path)

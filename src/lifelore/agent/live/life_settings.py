@@ -1,140 +1,228 @@
-"""Everything a life can be told, with the defaults that work."""
+"""Settings of `live`, in four groups: the world, the learner, the action prior and the memory."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from math import ceil, isfinite
 
 from lifelore.action.priors.action_prior import FORMS
+from lifelore.action.priors.exploration import TIES
 from lifelore.core.errors import InputError
+from lifelore.domains.worlds import WorldSettings
 
 LEARNERS = ("model", "q")
-PRIORS = ("observation", "state", "none")
-WHOLE = {
-    "tasks": (1, 10**6),
-    "destinations": (0, 10**9),
-    "episodes": (1, 10**6),
-    "max_steps": (1, 10**9),
-    "jobs": (1, 256),
-}
-"""Least and most of the whole numbers."""
-LARGEST = {
-    "cell": 1e3, "robot_radius": 1e3, "discount": 1.0, "goal_reward": 1e6, "wall_reward": 1e6,
-    "density": 1.0, "alpha0": 1e6, "weight": 1e6,
-}  # fmt: skip
-"""Magnitudes beyond which a number is a slip, or drowns the others in rounding; the rules of those who use it
-are narrower."""
-SHARES = ("learning_rate", "epsilon", "epsilon_decay", "epsilon_floor")
+CONDITIONS = ("observation", "state", "none")
+MOST_LENGTH = 1e3
+"""Largest cell side and robot radius, in metres: a larger number is a typing mistake."""
+MOST_REWARD = 1e6
+"""Largest magnitude of rewards and of the prior's weights: a larger number hides the others by rounding."""
+LONGEST_NAME = 200
 
 
 @dataclass(frozen=True)
-class LifeSettings:
-    """Settings of `live`; None means the default of the domain or learner.
+class LearningSettings:
+    """How the agents learn one task; None means the default of the learner.
 
     Parameters
     ----------
-    domain : str
-        One of `lifelore.domains.worlds.domain_names()`: building, lattice, noise, advice.
-    map : str, optional
-        ROS map (YAML); None generates an office from `seed`.
-    tasks : int
-        Tasks to live through now, ≥ 1.
-    cell, robot_radius : float, optional
-        Metres, in buildings: 0.5 and 0.2.
-    destinations : int
-        Goals lie among this many recurring places; 0: anywhere.
     learner : {"model", "q"}
-    prior : {"observation", "state", "none"}
-        What action priors are conditioned on.
-    agent : str
-        Who lives; ``scratch`` always lives beside. ``all``: everybody.
-    robot : str
-        Name under which memory keeps this life; one for each robot that runs at a time.
-    start : (row, column), optional
-        Every episode starts here; None: anywhere.
-    memory : str, optional
-        SQLite file or postgresql:// URL; None: the user's own memory.
+        Plan on a learnt model of the moves, or learn by Q-learning as in the thesis.
     episodes, max_steps : int, optional
-        At most so many episodes a task, of at most so many steps; their product is the cap.
-    seed : int
-    jobs : int
-        Threads; results do not depend on it.
-    density : float, optional
-        Share of obstacles in a noise maze, in (0, 1).
-    discount, goal_reward, wall_reward : float, optional
-    alpha0, weight : float
-        Pseudo-count α⁰ and weight w(π) of the prior (Eq. 3.4).
-    form, ties : str
-        `learner="q"`: form of the prior, and how the greedy step breaks ties (uniform or prior).
+        Maximum number of episodes of a task, and of steps of an episode; see `LifeSettings.episode_cap` and
+        `LifeSettings.step_cap` for the defaults.
     learning_rate, epsilon, epsilon_decay, epsilon_floor : float
-        `learner="q"`: α, and ε = max(floor, epsilon · decay^episode).
+        Q-learning alone: α, and ε = max(epsilon_floor, epsilon · epsilon_decay^episode); each in [0, 1].
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
     """
 
-    domain: str = "building"
-    map: str | None = None
-    tasks: int = 30
-    cell: float | None = None
-    robot_radius: float | None = None
-    destinations: int = 0
     learner: str = "model"
-    prior: str = "observation"
-    agent: str = "lore"
-    robot: str = "robot"
-    start: tuple[int, int] | None = None
-    memory: str | None = None
     episodes: int | None = None
     max_steps: int | None = None
-    seed: int = 0
-    jobs: int = 2
-    density: float | None = None
-    discount: float | None = None
-    goal_reward: float | None = None
-    wall_reward: float | None = None
-    alpha0: float = 0.1
-    weight: float = 1.0
-    form: str = "proportion"
-    ties: str = "uniform"
     learning_rate: float = 0.5
     epsilon: float = 1.0
     epsilon_decay: float = 0.98
     epsilon_floor: float = 0.01
 
     def __post_init__(self) -> None:
-        for name, known in {
-            "learner": LEARNERS,
-            "prior": PRIORS,
-            "form": FORMS,
-            "ties": ("uniform", "prior"),
-        }.items():
-            if getattr(self, name) not in known:
-                raise InputError(f"{name} must be one of {', '.join(known)}, got '{getattr(self, name)}'")
-        for name, (least, most) in WHOLE.items():
-            value = getattr(self, name)
-            if value is not None and not (isinstance(value, int) and least <= value <= most):
-                raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
-        # Also what this life has no use for: it stands in the report.
-        for name, most in LARGEST.items():
-            value = getattr(self, name)
-            if value is not None and not isfinite(value):
-                raise InputError(f"{name} must be a finite number, got {value}")
-            if value is not None and abs(value) > most:
-                raise InputError(f"{name} must be of magnitude {most:g} at most, got {value}")
-        for name in SHARES:
-            if not 0 <= getattr(self, name) <= 1:
-                raise InputError(f"{name} must lie in [0, 1], got {getattr(self, name)}")
-        if self.goal_reward is not None and self.goal_reward <= 0:
-            raise InputError(f"goal_reward must be positive, got {self.goal_reward}")
-        if self.wall_reward is not None and self.wall_reward > 0:
-            raise InputError(f"wall_reward must be at most 0, got {self.wall_reward}")
-        if not (self.robot.strip() and self.robot.isprintable() and len(self.robot) <= 200):
-            raise InputError(f"robot must be a name of 1 to 200 printable characters, got {self.robot[:40]!r}")
+        _check_choice("learner", self.learner, LEARNERS)
+        _check_whole("episodes", self.episodes, 1, 10**6)
+        _check_whole("max_steps", self.max_steps, 1, 10**9)
+        _check_share("learning_rate", self.learning_rate)
+        _check_share("epsilon", self.epsilon)
+        _check_share("epsilon_decay", self.epsilon_decay)
+        _check_share("epsilon_floor", self.epsilon_floor)
+
+
+@dataclass(frozen=True)
+class PriorSettings:
+    """How finished tasks become an action prior, and how the prior guides exploration (Eq. 3.4, §3.2.2.1).
+
+    Parameters
+    ----------
+    condition : {"observation", "state", "none"}
+        The prior is conditioned on what the agent observes in a cell, or on the cell itself; or there is no prior.
+    alpha0 : float
+        Pseudo-count α⁰ of every action, > 0.
+    weight : float
+        Weight w(π) of each finished task, ≥ 0.
+    form : str
+        Q-learning alone: how counts become probabilities, see `lifelore.action.priors.action_prior.FORMS`.
+    ties : {"uniform", "prior"}
+        Q-learning alone: how the greedy step breaks ties.
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
+    """
+
+    condition: str = "observation"
+    alpha0: float = 0.1
+    weight: float = 1.0
+    form: str = "proportion"
+    ties: str = "uniform"
+
+    def __post_init__(self) -> None:
+        _check_choice("prior", self.condition, CONDITIONS)
+        _check_choice("form", self.form, FORMS)
+        _check_choice("ties", self.ties, TIES)
+        _check_magnitude("alpha0", self.alpha0, MOST_REWARD)
+        _check_magnitude("weight", self.weight, MOST_REWARD)
+
+
+@dataclass(frozen=True)
+class MemorySettings:
+    """Where the life is stored, and under which name.
+
+    Parameters
+    ----------
+    location : str, optional
+        SQLite file or ``postgresql://`` URL; None: the user's own memory.
+    robot : str
+        Name of the robot in memory, 1 to 200 printable characters. Robots that run at the same time need
+        different names.
+
+    Raises
+    ------
+    InputError
+        The name breaks its rule.
+    """
+
+    location: str | None = None
+    robot: str = "robot"
+
+    def __post_init__(self) -> None:
+        if not (self.robot.strip() and self.robot.isprintable() and len(self.robot) <= LONGEST_NAME):
+            raise InputError(
+                f"robot must be a name of 1 to {LONGEST_NAME} printable characters, got {self.robot[:40]!r}"
+            )
+
+
+@dataclass(frozen=True)
+class LifeSettings:
+    """Settings of `live`.
+
+    Parameters
+    ----------
+    world : WorldSettings
+        The world to live in; `world.seed` draws the tasks and the agents' choices too.
+    learning : LearningSettings
+    prior : PriorSettings
+    memory : MemorySettings
+    agent : str
+        The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
+        `scratch` lives the same tasks for comparison. ``all``: `lore` and every baseline.
+    tasks : int
+        Tasks to live through now, ≥ 1.
+    destinations : int
+        Number of recurring places that goals are drawn from; 0: every place.
+    start : (row, column), optional
+        Cell in which every episode starts; None: any cell.
+    jobs : int
+        Threads; results do not depend on it.
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
+
+    Examples
+    --------
+    >>> settings = LifeSettings(WorldSettings("lattice", seed=3), LearningSettings("q"), tasks=5)
+    >>> settings.seed, settings.step_cap, settings.episode_cap(n_states=342)
+    (3, 1000, 1000)
+    """
+
+    world: WorldSettings = field(default_factory=WorldSettings)
+    learning: LearningSettings = field(default_factory=LearningSettings)
+    prior: PriorSettings = field(default_factory=PriorSettings)
+    memory: MemorySettings = field(default_factory=MemorySettings)
+    agent: str = "lore"
+    tasks: int = 30
+    destinations: int = 0
+    start: tuple[int, int] | None = None
+    jobs: int = 2
+
+    def __post_init__(self) -> None:
+        _check_whole("tasks", self.tasks, 1, 10**6)
+        _check_whole("destinations", self.destinations, 0, 10**9)
+        _check_whole("jobs", self.jobs, 1, 256)
+        _check_world(self.world)
+
+    @property
+    def seed(self) -> int:
+        """The seed of the world, the tasks and the agents' choices."""
+        return self.world.seed
 
     def episode_cap(self, n_states: int) -> int:
-        """Episodes of a task at most in a world of `n_states`: 1,000 for learner q; for learner model 100, or as
-        many as ten steps a state need where that is more."""
-        if self.episodes is not None:
-            return self.episodes
-        return max(100, ceil(10 * n_states / self.step_cap)) if self.learner == "model" else 1000
+        """Maximum number of episodes of a task in a world of `n_states`.
+
+        The default of learner q is 1,000. The default of learner model is 100, or the number of episodes that
+        gives ten steps to each state where that is more.
+        """
+        if self.learning.episodes is not None:
+            return self.learning.episodes
+        return max(100, ceil(10 * n_states / self.step_cap)) if self.learning.learner == "model" else 1000
 
     @property
     def step_cap(self) -> int:
-        """Steps of an episode at most: 2,000 in buildings, 1,000 in the thesis's worlds."""
-        return self.max_steps or (2000 if self.domain == "building" else 1000)
+        """Maximum number of steps of an episode; by default 2,000 in buildings, 1,000 in the thesis's worlds."""
+        return self.learning.max_steps or (2000 if self.world.domain == "building" else 1000)
+
+
+def _check_world(world: WorldSettings) -> None:
+    """Check also the numbers that this domain does not use, because the report repeats them."""
+    _check_magnitude("cell", world.cell, MOST_LENGTH)
+    _check_magnitude("robot_radius", world.robot_radius, MOST_LENGTH)
+    _check_magnitude("discount", world.discount, 1.0)
+    _check_magnitude("goal_reward", world.goal_reward, MOST_REWARD)
+    _check_magnitude("wall_reward", world.wall_reward, MOST_REWARD)
+    _check_magnitude("density", world.density, 1.0)
+    if world.goal_reward is not None and world.goal_reward <= 0:
+        raise InputError(f"goal_reward must be positive, got {world.goal_reward}")
+    if world.wall_reward is not None and world.wall_reward > 0:
+        raise InputError(f"wall_reward must be at most 0, got {world.wall_reward}")
+
+
+def _check_choice(name: str, value: str, known: tuple[str, ...]) -> None:
+    if value not in known:
+        raise InputError(f"{name} must be one of {', '.join(known)}, got '{value}'")
+
+
+def _check_whole(name: str, value: int | None, least: int, most: int) -> None:
+    if value is not None and not (isinstance(value, int) and least <= value <= most):
+        raise InputError(f"{name} must be a whole number from {least} to {most:,}, got {value}")
+
+
+def _check_magnitude(name: str, value: float | None, most: float) -> None:
+    if value is not None and not isfinite(value):
+        raise InputError(f"{name} must be a finite number, got {value}")
+    if value is not None and abs(value) > most:
+        raise InputError(f"{name} must be of magnitude {most:g} at most, got {value}")
+
+
+def _check_share(name: str, value: float) -> None:
+    if not 0 <= value <= 1:
+        raise InputError(f"{name} must lie in [0, 1], got {value}")

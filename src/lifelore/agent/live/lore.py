@@ -1,4 +1,4 @@
-"""What one agent has learnt so far in its life: action priors that travel, transitions that belong to a place."""
+"""`Lore`: the knowledge of one agent, an action prior for many places and the transitions of one place."""
 
 import hashlib
 from dataclasses import dataclass, field
@@ -18,10 +18,10 @@ from lifelore.memory import Memory
 
 @dataclass(frozen=True)
 class PriorScope:
-    """What an action prior is conditioned on, and under which key it is kept.
+    """Contexts of an action prior, and the key under which memory stores it.
 
     contexts : (n_states,) int64 code of each state
-    coarser : masks of simpler features that rare contexts back off to
+    coarser : bit masks of simpler contexts, used where a context has few counts
     """
 
     kind: str
@@ -30,10 +30,13 @@ class PriorScope:
     coarser: tuple[int, ...]
 
 
-def prior_scope(world: GridWorld, prior: str) -> PriorScope:
-    """Observation priors are keyed by the percept's definition and the actions, so they travel; state priors
-    by the world's fingerprint, so another map never mixes in."""
-    if prior == "state":
+def prior_scope(world: GridWorld, condition: str) -> PriorScope:
+    """Contexts and key of the prior of a world; `condition` as in `PriorSettings`.
+
+    The key of an observation prior is the definition of the percept and the actions, so that other worlds share
+    it. The key of a state prior is the fingerprint of the world, so that no other world shares it.
+    """
+    if condition == "state":
         return PriorScope("state", world.fingerprint, transitions.cells_of(world), ())
     definition = repr((PERCEPT, MOVE_NAMES)).encode()
     key = hashlib.sha256(definition).hexdigest()[:32]
@@ -42,7 +45,7 @@ def prior_scope(world: GridWorld, prior: str) -> PriorScope:
 
 @dataclass
 class Lore:
-    """One agent's lore in one world. `learn_prior` and `model_news` give what the last task added, for memory."""
+    """Knowledge of one agent in one world. `learn_prior` and `model_news` return what the last task added."""
 
     world: GridWorld
     scope: PriorScope
@@ -52,7 +55,7 @@ class Lore:
 
     @classmethod
     def recalled(cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Memory) -> "Lore":
-        """What memory holds that bears on this world."""
+        """The knowledge in memory about this world."""
         n_actions = world.neighbour.shape[1]
         record = memory.recall(PRIOR_KIND, scope.key, PRIOR_VERSION)
         prior = (
@@ -69,13 +72,13 @@ class Lore:
         return cls(world, scope, prior, model, stored)
 
     def copy(self) -> "Lore":
-        """An independent copy: an agent that goes on from the same lore."""
+        """An independent copy for another agent."""
         prior = ActionPrior.merged([self.prior])
         model = Model(self.model.target.copy(), self.model.percept.copy())
         return Lore(self.world, self.scope, prior, model, self._stored.copy())
 
     def learn_prior(self, best: NDArray[np.bool_], goal: int, weight: float) -> Record:
-        """Count a finished task's policy (Eq. 3.5, 3.7) and return the contribution; the goal row never counts."""
+        """Count the policy of a finished task without its goal row (Eq. 3.5, 3.7); return the contribution."""
         best = best.copy()
         best[goal] = False
         news = ActionPrior(self.prior.n_actions, self.prior.alpha0, self.scope.key)
@@ -84,7 +87,7 @@ class Lore:
         return news.to_record({"prior": self.scope.kind, "actions": list(MOVE_NAMES)})
 
     def model_news(self) -> Record:
-        """Transitions known otherwise than memory has them."""
+        """Transitions that differ from those in memory, as a record."""
         table = transitions.model_table(self.world, self.model)
         record = transitions.to_record(self.world, table, self._stored)
         self._stored = table
@@ -92,7 +95,7 @@ class Lore:
 
 
 def same_place(world: GridWorld, memory: Memory) -> Record | None:
-    """The remembered transitions of this place before it changed, if memory has them."""
+    """Stored transitions of an earlier version of this place; None if there are none."""
     best, best_share = None, transitions.SAME_PLACE
     for key, version, about in memory.keys(transitions.KIND):
         if version != transitions.VERSION or about.get("frame") != transitions.frame_key(world):

@@ -1,4 +1,4 @@
-"""One task lived by the model-based learner."""
+"""Learns one task with the model-based learner."""
 
 from threading import Event
 
@@ -8,12 +8,18 @@ from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, Tas
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import Model, best_known_actions, known_policy
-from lifelore.core.learning.model_learning import Explorer, Manner, Perceived, check_deterministic, explore
+from lifelore.core.learning.model_learning import (
+    ExplorationStrategy,
+    Explorer,
+    Perceived,
+    check_deterministic,
+    explore,
+)
 from lifelore.core.mdp import Tables
 
 NEAR = 1e-9
-"""Share of the optimal return within which the exact value decides about the threshold; far more than rounding
-can move the value that is kept up to date."""
+"""Share of the optimal return around the threshold within which the exact value decides. It is far larger than the
+rounding error of the value that is updated step by step."""
 
 
 def live_model_task(
@@ -22,13 +28,13 @@ def live_model_task(
     discount: float,
     model: Model,
     perceived: Perceived,
-    manner: Manner,
+    strategy: ExplorationStrategy,
     explorer: Explorer,
     episodes: int,
     max_steps: int,
     stop: Event,
 ) -> TaskResult:
-    """Explore until the greedy policy is worth 80 % of `optimal` or the cap is met; `model` learns in place."""
+    """Explore until the greedy policy has 80 % of the `optimal` value or the cap is reached; changes `model`."""
     check_deterministic(tables)
     curve = new_curve(episodes)
     known = KnownValue(tables, model, explorer, discount)
@@ -36,7 +42,7 @@ def live_model_task(
     while value < THRESHOLD * optimal:
         if stop.is_set():
             raise Stopped
-        steps = explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, CHECK_EVERY)
+        steps = explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, CHECK_EVERY)
         if steps == 0:
             break
         total += steps

@@ -1,4 +1,4 @@
-"""One task lived by ε-greedy Q-learning, its exploration guided by the prior (Alg. 2, 4)."""
+"""Learns one task by ε-greedy Q-learning whose exploration the prior guides (Alg. 2, 4)."""
 
 from threading import Event
 
@@ -11,13 +11,13 @@ from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import greedy_policy, learnt_best_actions, mean_start_value, policy_values
 
 CHUNK = 100_000
-"""Steps between looks at the stop sign once the threshold is behind: a few milliseconds."""
+"""Steps between checks of the stop event after the threshold is reached: a few milliseconds."""
 
 
 def live_q_task(
     tables: Tables, optimal: float, rows: Rows, schedule: Schedule, learner: Learner, stop: Event
 ) -> TaskResult:
-    """All episodes of the schedule; the threshold is looked for every 100 steps until it is met."""
+    """Run all episodes of the schedule; check the threshold every `CHECK_EVERY` steps until it is reached."""
     curve = new_curve(len(schedule.epsilon))
     reached_at: tuple[int, int, int] | None = None
     total, trace, steps = 0, [], 1

@@ -1,4 +1,4 @@
-"""What `lifelore live --out` writes: the report, pictures of the life, and exports for other programs."""
+"""Writes the folder of `lifelore live --out`: the report, pictures, and files for other programs."""
 
 import json
 import os
@@ -6,10 +6,10 @@ import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
-from lifelore.agent.live.baselines import ROSTER
+from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.exports import write_paths, write_prior_map
-from lifelore.agent.live.greedy_paths import Ways, ways_of
-from lifelore.agent.live.life import KEPT, Life
+from lifelore.agent.live.greedy_paths import GreedyPaths, greedy_paths_of
+from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
@@ -21,18 +21,18 @@ from lifelore.figures.world_map import draw_world_map
 
 PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml")
 FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES)
-"""All that a portfolio may hold; the prior's files only where the agent has one."""
+"""Files of the folder; the files of the prior are there only if the agent has a prior."""
 
 
 def check_folder(path: str) -> None:
-    """Make the folder and try to write into it, before a long run rather than after it.
+    """Make the folder and test that it can be written to, before a long run.
 
     Raises
     ------
     InputError
-        `path` is empty, a file, or lies below one; or a folder stands where a file is to be written.
+        `path` is empty, a file or below a file; or a folder has the name of a file to write.
     StoreError
-        The disk refuses: read-only, full, not permitted.
+        The folder cannot be written: the disk is full or read-only, or permission is missing.
     """
     folder = _folder(path)
     try:
@@ -41,20 +41,20 @@ def check_folder(path: str) -> None:
             probe.write(b"\0")
     except (FileExistsError, NotADirectoryError):
         raise InputError(
-            f"out must name a folder, got {path}, which is or lies below a file; name another"
+            f"out must name a folder, got {path}, which is or lies below a file; name another folder"
         ) from None
     except OSError as error:
         raise StoreError(f"cannot write into {path}: {error.strerror}; choose another folder with --out") from None
     for name in FILES:
         if (folder / name).is_dir():
-            raise InputError(f"out must have no folder named {name}, {path} has one; choose another folder")
+            raise InputError(f"out must have no folder named {name}, but {path} has it; choose another folder")
 
 
 def write_portfolio(life: Life, out: str) -> list[str]:
-    """Write the portfolio of a life into the folder `out`, made if need be.
+    """Write report, pictures and exports of a life into the folder `out`, which is made if it is missing.
 
-    Every file appears whole or not at all. Files of an earlier portfolio are replaced; those that this life
-    has none of are removed. A life without a finished task leaves only its report.
+    Every file is written completely or not at all. Files of an earlier life are replaced, or removed if this life
+    has no such file. A life without a finished task has only its report.
 
     Parameters
     ----------
@@ -100,17 +100,17 @@ def _write_all(life: Life, folder: Path) -> None:
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     if not life.results:
         return
-    ways = _ways(life)
+    paths = _last_paths(life)
     save_figure(_life_figure(life), folder / "life.png")
     save_figure(_task_figure(life), folder / "learning_curves.png")
-    save_figure(_world_figure(life, ways), folder / "world.png")
-    write_paths(folder / "paths.csv", life.world, ways)
+    save_figure(_world_figure(life, paths), folder / "world.png")
+    write_paths(folder / "paths.csv", life.world, paths)
     if _has_prior(life):
         _write_prior(life, folder)
 
 
 def _agents(life: Life) -> list[str]:
-    """Names of those who lived, the one whose lore is kept first."""
+    """Names of the agents; memory stores the knowledge of the first."""
     return list(life.results[0])
 
 
@@ -122,7 +122,7 @@ def _place(life: Life) -> str:
 
 
 def _metres(life: Life) -> float | None:
-    """Side of a cell where cells have a size in the world."""
+    """Side of a cell in metres, in buildings; else None."""
     return life.world.frame.cell if life.report["domain"] == "building" else None
 
 
@@ -146,20 +146,23 @@ def _life_figure(life: Life):
 
 
 def _headline(life: Life) -> str:
-    """The life in one line, with its ratios to scratch where there are any."""
+    """The life in one line, with its ratios to scratch if it has any."""
     title = f"{_count(len(life.results), 'task')} in {_place(life)}"
     name = _agents(life)[0]
-    beside = life.report["summary"].get(f"{name}_vs_scratch")
-    if not beside:
+    ratios_to_scratch = life.report["summary"].get(f"{name}_vs_scratch")
+    if not ratios_to_scratch:
         return title
-    ratios = {"steps": beside["steps_to_80_ratio"]["value"], "collisions": beside["collisions_ratio"]["value"]}
-    words = [f"{what} × {_factor(value)}" for what, value in ratios.items() if value is not None]
-    part = "last third" if len(life.results) > 2 else "last task"
-    return f"{title} — {name} against scratch, {part}: {', '.join(words)}" if words else title
+    ratios = {
+        "steps": ratios_to_scratch["steps_to_80_ratio"]["value"],
+        "collisions": ratios_to_scratch["collisions_ratio"]["value"],
+    }
+    parts = [f"{measure} × {_factor(value)}" for measure, value in ratios.items() if value is not None]
+    period = "last third" if len(life.results) > 2 else "last task"
+    return f"{title} — {name} compared with scratch, {period}: {', '.join(parts)}" if parts else title
 
 
 def _factor(value: float) -> str:
-    """Two decimals, unless those would make nothing of something."""
+    """Two decimals; one significant digit for values that two decimals would show as zero."""
     return f"{value:.2f}" if value >= 0.005 or value == 0 else f"{value:.1g}"
 
 
@@ -168,9 +171,9 @@ def _task_figure(life: Life):
     if len(life.results) > 1:
         parts = {"First third of the life": third(life.results, "first"), **parts}
     else:
-        parts = {"The one task": life.results}
+        parts = {"The only task": life.results}
     panels = {f"{words} ({_count(len(part), 'task')})": _traces(life, part) for words, part in parts.items()}
-    title = f"Learning within a task, in {_place(life)}: mean, and band of the middle half of the tasks"
+    title = f"Learning within a task, in {_place(life)}: mean, and band of the middle 50 % of the tasks"
     return draw_task_curves(panels, threshold=THRESHOLD, title=title)
 
 
@@ -178,37 +181,37 @@ def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
     return {name: [r[name].trace for r in results] for name in _agents(life)}
 
 
-def _ways(life: Life) -> list[Ways]:
-    """Paths of the first agent in the last tasks."""
+def _last_paths(life: Life) -> list[GreedyPaths]:
+    """Greedy paths of the first agent in the last tasks."""
     world, name = life.world, _agents(life)[0]
     start = life.report["settings"]["start"]
     fixed = None if start is None else int(world.state_of[tuple(start)])
-    last = zip(life.report["tasks"][-KEPT:], life.results[-KEPT:], strict=True)
+    last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
     return [
-        ways_of(world, result[name].policy, task["index"], int(world.state_of[tuple(task["goal"])]), fixed)
+        greedy_paths_of(world, result[name].policy, task["index"], int(world.state_of[tuple(task["goal"])]), fixed)
         for task, result in last
     ]
 
 
-def _world_figure(life: Life, ways: Sequence[Ways]):
+def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     world = life.world
     shown = [
         {
-            "label": f"task {way.task}, reached from {_percent(way.arriving)} of starts",
-            "goal": world.cells[way.goal],
-            "paths": [world.cells[path] for path in way.paths],
+            "label": f"task {task.task}, reached from {_percent(task.arriving)} of starts",
+            "goal": world.cells[task.goal],
+            "paths": [world.cells[path] for path in task.paths],
         }
-        for way in ways
+        for task in last
     ]
-    earlier = [task["goal"] for task in life.report["tasks"][: -len(ways)]]
-    title = f"{_place(life)}: ways that {_agents(life)[0]} takes in its last {_count(len(ways), 'task')}"
+    earlier = [task["goal"] for task in life.report["tasks"][: -len(last)]]
+    title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
     )
 
 
 def _percent(share: float) -> str:
-    """Rounded down, so that only all are 100 %."""
+    """Percent, rounded down, so that 100 % means all."""
     return f"{int(100 * share)} %"
 
 
@@ -216,15 +219,15 @@ def _percent(share: float) -> str:
 
 
 def _has_prior(life: Life) -> bool:
-    lore, wanted = life.lore, life.report["settings"]["prior"] != "none"
-    uses = ROSTER[_agents(life)[0]].uses_prior
-    return wanted and uses and not lore.prior.unseen(lore.scope.contexts).all()
+    lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
+    uses = AGENTS[_agents(life)[0]].uses_prior
+    return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
 
 
 def _write_prior(life: Life, folder: Path) -> None:
     lore, world = life.lore, life.world
     probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
-    given = "what is around a cell" if lore.scope.kind == "observation" else "the cell"
+    given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
     title = f"{_place(life)}: the action prior given {given}"
     figure = draw_prior_map(
         world.shape, world.cells, world.neighbour, probs, counted, cell=_metres(life), title=title

@@ -1,4 +1,4 @@
-"""The end of a life in numbers: each agent over thirds of the tasks, and each beside `scratch`."""
+"""Summary of a life: means of each agent over thirds of the tasks, and ratios to `scratch`."""
 
 import math
 
@@ -9,7 +9,7 @@ MEASURES = ("steps_to_80", "collisions", "episodes_to_80", "first_return")
 
 
 def plain(estimate: Estimate) -> dict:
-    """An estimate as JSON data; a ratio to nothing is null."""
+    """An estimate as JSON data; NaN becomes null."""
     data = estimate.to_dict()
     return {k: None if isinstance(v, float) and math.isnan(v) else v for k, v in data.items()}
 
@@ -21,7 +21,7 @@ def third(tasks: list[dict], which: str) -> list[dict]:
 
 
 def summarise(tasks: list[dict]) -> dict:
-    """Ratios to scratch over the last third, raw means beside; and each agent's own first and last third.
+    """Ratios to scratch with raw means over the last third, and means of each agent over the first and last third.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ def summarise(tasks: list[dict]) -> dict:
     if "scratch" in agents:
         for name in agents:
             if name != "scratch":
-                summary[f"{name}_vs_scratch"] = _beside_scratch(last, name)
+                summary[f"{name}_vs_scratch"] = _compared_with_scratch(last, name)
     summary["agents"] = {name: _own(tasks, name) for name in agents}
     return summary
 
@@ -43,7 +43,7 @@ def _column(tasks: list[dict], agent: str, measure: str) -> list[float]:
     return [task["agents"][agent][measure] for task in tasks]
 
 
-def _beside_scratch(tasks: list[dict], name: str) -> dict:
+def _compared_with_scratch(tasks: list[dict], name: str) -> dict:
     steps, other_steps = _column(tasks, name, "steps_to_80"), _column(tasks, "scratch", "steps_to_80")
     hits, other_hits = _column(tasks, name, "collisions"), _column(tasks, "scratch", "collisions")
     first, other_first = _column(tasks, name, "first_return"), _column(tasks, "scratch", "first_return")

@@ -1,4 +1,4 @@
-"""What one agent's life through one task leaves: the numbers, and the arrays that pictures are made from."""
+"""Result of one agent on one task: the numbers of the report and the arrays for the pictures."""
 
 from dataclasses import dataclass, field
 
@@ -10,24 +10,24 @@ from lifelore.core.learning.curve import Curve, new_curve
 THRESHOLD = 0.8
 """Share of the optimal return at which a task counts as learnt (thesis §3.4.1, Fig. 3.3)."""
 CHECK_EVERY = 100
-"""Steps between looks at the greedy policy's exact value; the same for every agent."""
+"""Steps between two evaluations of the greedy policy; the same for every agent."""
 
 
 @dataclass
 class TaskResult:
-    """One task of one agent.
+    """Result of one agent on one task.
 
     first_return : discounted return of the first episode
     collisions : refused moves until the threshold (or the cap)
-    steps_to_80, episodes_to_80 : until the greedy policy's exact value, averaged over starts, is ≥ 80 % of
-        optimal; where it never is, the cap: all episodes at their full length
-    reached : whether it ever was
-    final_return : that exact value at the end
+    steps_to_80, episodes_to_80 : steps and episodes until the greedy policy's exact value, averaged over the
+        starts, is ≥ 80 % of the optimum; the cap (all episodes at full length) if it never is
+    reached : whether the threshold was reached
+    final_return : exact value of the greedy policy at the end
     policy : (n_states,) greedy action, -1 where none is known
-    best : (n_states, n_actions) which actions the learnt policy holds best; rows it does not know are False
-    trace : (n_checks, 2) steps and share of optimal at each check
-    curve : the episodes begun
-    complete : how many of them ended; fewer only where the last was broken off
+    best : (n_states, n_actions) best or tied-best actions of the learnt policy; False in states without a policy
+    trace : (n_checks, 2) steps and share of the optimum at each check
+    curve : the episodes that began
+    complete : number of episodes that ended; one less if the last was interrupted
     """
 
     first_return: float
@@ -43,12 +43,12 @@ class TaskResult:
     complete: int = field(repr=False)
 
     def drop_arrays(self) -> None:
-        """Forget the policy, which is as large as the world, and the episodes."""
+        """Drop the episodes and the arrays of the world's size."""
         self.policy, self.best = np.empty(0, np.int32), np.empty((0, 0), np.bool_)
         self.curve, self.complete = new_curve(0), 0
 
     def to_dict(self) -> dict:
-        """The numbers as plain data."""
+        """The numbers as JSON data."""
         return {
             "first_return": self.first_return,
             "collisions": self.collisions,
@@ -60,4 +60,4 @@ class TaskResult:
 
 
 class Stopped(Exception):
-    """The person asked to stop; the task in progress is given up."""
+    """The user asked to stop; the task in progress is dropped."""

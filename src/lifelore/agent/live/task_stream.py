@@ -1,4 +1,4 @@
-"""The tasks of a life: goals hidden by seed and task number, so that a continued life never repeats itself."""
+"""The tasks of a life, drawn by seed and task number, so that a continued life gets new tasks."""
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 
 class TaskStream:
-    """Task number to task, in one world."""
+    """Makes the task of each number, in one world."""
 
     def __init__(self, world: GridWorld, settings: LifeSettings) -> None:
         self.world, self.seed = world, settings.seed
@@ -20,30 +20,30 @@ class TaskStream:
         if settings.destinations > len(places):
             raise InputError(
                 f"destinations must be at most the {len(places)} free places of this world, "
-                f"got {settings.destinations}"
+                f"got {settings.destinations}; use fewer"
             )
         if settings.destinations:
-            # Drawn over all cells of the frame: a map that changed in places keeps its destinations.
+            # Drawn from all cells of the frame, so that a map with small changes has the same destinations.
             order = stream(self.seed, "destinations", frame_key(world)).permutation(world.state_of.size)
             states = world.state_of.ravel()[order]
             places = states[np.isin(states, places)][: settings.destinations]
         self._places = places
 
     def goal(self, index: int) -> int:
-        """The hidden goal of task `index`."""
+        """State of the goal of task `index`, which the agents do not know."""
         return int(stream(self.seed, "task", index, "goal").choice(self._places))
 
     def task(self, index: int) -> Task:
-        """Task `index`."""
+        """Goal and starts of task `index`."""
         starts = None if self._start is None else np.array([self._start], np.int32)
         return self.world.task(self.goal(index), starts)
 
     def world_stream(self, index: int) -> np.random.Generator:
-        """Where episodes start; the same for every agent."""
+        """Random stream of the episodes' starts; the same for every agent."""
         return stream(self.seed, "task", index, "world")
 
     def own_stream(self, index: int) -> np.random.Generator:
-        """An agent's own choices; equal streams make the comparison a paired one."""
+        """Random stream of an agent's choices; equal for all agents, which makes their comparison paired."""
         return stream(self.seed, "task", index, "own")
 
 

@@ -1,8 +1,8 @@
-"""A learnt model of a grid as a record of memory, and back; and the same place after it changed.
+"""Converts a learnt model of a grid to a record of memory and back, also after the place has changed.
 
-Slots are cells, not state numbers, and cells are counted from the frame's lower left corner, so that a model still
-fits when a changed map numbers its states anew or its picture has grown:
-slot = cell · (actions + 1) + action holds the cell a move leads to, and action = n_actions holds the percept.
+A slot is cell · (n_actions + 1) + action. It holds the cell to which the move leads; action = n_actions holds the
+percept. Cells are numbered from the lower left corner of the frame, because a changed map may number its states
+differently or have a larger picture.
 """
 
 import hashlib
@@ -16,14 +16,14 @@ from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 
 KIND, VERSION = "transitions", 1
 COLUMN_BITS = 20
+"""Bits of a cell number that hold the column."""
 SAME_PLACE = 0.8
-"""A remembered grid of the same frame is the same place, changed, where at least this share of its remembered
-cells still shows what it showed. Two different buildings on one frame agree in far fewer: by chance about a
-third, most of it open floor."""
+"""Least share of the stored cells whose percepts are unchanged if two grids on one frame are the same place. Two
+different buildings agree in about a third of their cells, most of them open floor."""
 
 
 def cells_of(world: GridWorld) -> NDArray[np.int64]:
-    """One number for each state's cell, (n_states,): 2²⁰ · row from the bottom + column."""
+    """The number of each state's cell, (n_states,): 2²⁰ · row from the bottom + column."""
     return ((world.shape[0] - 1 - world.cells[:, 0].astype(np.int64)) << COLUMN_BITS) | world.cells[:, 1]
 
 
@@ -36,20 +36,20 @@ def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
 
 
 def frame_key(world: GridWorld) -> str:
-    """Hash of all that two versions of one place share: frame, actions, settings; not the grid nor its size."""
+    """Hash of the properties that two versions of one place share: frame, actions and settings, not the grid."""
     parts = (world.name, world.frame, MOVE_NAMES, sorted(world.about.items()))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
 def model_table(world: GridWorld, model: Model) -> NDArray[np.int64]:
-    """(n_states, n_actions + 1): cells that moves lead to, then the percept; UNKNOWN where not known."""
+    """Cells to which the moves lead, then the percept: (n_states, n_actions + 1); UNKNOWN where not known."""
     cells = cells_of(world)
     targets = np.where(model.target >= 0, cells[model.target], UNKNOWN)
     return np.column_stack([targets, model.percept])
 
 
 def to_record(world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64]) -> Record:
-    """What is known otherwise than `before`, as a record in which the newest wins."""
+    """The entries of `table` that differ from `before`, as a record in which the newest value counts."""
     width = table.shape[1]
     state, column = np.nonzero(table != before)
     slots = cells_of(world)[state] * width + column
@@ -59,7 +59,7 @@ def to_record(world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int
 
 
 def from_record(world: GridWorld, record: Record | None) -> Model:
-    """The model that a record holds of this world; what no longer has a place in it is left out."""
+    """The model of this world in a record, without the cells that the world no longer has."""
     model = blank_model(world.n_states, world.neighbour.shape[1])
     if record is None:
         return model
@@ -73,7 +73,7 @@ def from_record(world: GridWorld, record: Record | None) -> Model:
 
 
 def agreement(world: GridWorld, record: Record) -> float:
-    """Share of the record's cells that still show what they showed, in [0, 1]."""
+    """Share of the record's cells whose percepts are unchanged in this world, in [0, 1]."""
     width = world.neighbour.shape[1] + 1
     percepts = (record.slots % width == width - 1) & (record.values >= 0)
     state = states_in(world, record.slots[percepts] // width)

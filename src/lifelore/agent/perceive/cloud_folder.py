@@ -1,4 +1,4 @@
-"""New clouds of a folder, each read when its file is whole; found by polling, which works on every file system."""
+"""Finds new clouds of a folder by polling, and reads each when its file is complete."""
 
 import os
 import time
@@ -11,19 +11,20 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 
 SUFFIXES = (".pcd", ".ply", ".npz", ".npy")
 LOOK_EVERY = 0.1
-"""Seconds between two looks at the folder."""
+"""Seconds between two scans of the folder."""
 SETTLED = 0.3
-"""Seconds without a change after which a file is read. Shorter answers sooner; longer waits for slower writers."""
-PATIENCE = 5.0
-"""Seconds without a change after which a file that cannot be read is given up: its writer may have paused."""
+"""Seconds without a change after which a file is read; fewer give results sooner, more allow slower writers."""
+RETRY_AFTER = 5.0
+"""Seconds without a change after which a file that could not be read is tried a last time; its writer may
+pause."""
 
 Version = tuple[int, int, int]
-"""Inode, bytes and time of the last change (ns) of a file: another version differs in one of them."""
+"""Inode, size in bytes and time of the last change (ns) of a file; versions differ in one of them."""
 
 
 @dataclass
 class _Waiting:
-    """A version that was not perceived yet, since when it is unchanged, and when to try it."""
+    """A version not yet read, the time since when it is unchanged, and the time to read it."""
 
     version: Version
     since: float
@@ -36,12 +37,12 @@ def new_clouds(
     stop: Event,
     clock: Callable[[], float] = time.monotonic,
 ) -> Iterator[tuple[str, PointCloud | LifeloreError]]:
-    """Each file that appears in a folder or changes there, with its cloud or why it is none.
+    """Each new or changed file of a folder, with its cloud or the error of reading it.
 
-    A file is read once it has not changed for `SETTLED` seconds, and its cloud counts only if the file is the same
-    after it was read; a file that cannot be read is tried again after `PATIENCE`. So a half-written file is not
-    taken for a cloud. No version is given twice. Files that are in the folder at the start are left alone until
-    they change, and so are hidden files and those of other kinds than `SUFFIXES`.
+    A file is read when it has not changed for `SETTLED` seconds, and its cloud counts only if the file has not
+    changed during reading. A file that cannot be read is tried again after `RETRY_AFTER`. So an incomplete file
+    does not give a cloud. Each version is given once. Files that are in the folder at the start are ignored until
+    they change. Hidden files and files without one of the `SUFFIXES` are always ignored.
 
     Parameters
     ----------
@@ -51,12 +52,12 @@ def new_clouds(
     stop : Event
         Ends the iterator.
     clock : callable
-        Seconds that never run backwards.
+        Gives monotonic seconds.
 
     Raises
     ------
     InputError
-        At once where the folder does not exist; later where it has gone.
+        The folder does not exist: at once, or later if it disappears.
     """
     return _arrivals(folder, read, stop, clock, _versions(folder))
 
@@ -72,28 +73,28 @@ def _arrivals(
     pause = LOOK_EVERY
     while not stop.wait(pause):
         began = time.perf_counter()
-        there = _versions(folder)
-        # A folder of ten thousand recordings must not keep a core busy.
+        present = _versions(folder)
+        # Scans of a large folder take at most a tenth of the time.
         pause = max(LOOK_EVERY, 10 * (time.perf_counter() - began))
-        done = {path: version for path, version in done.items() if path in there}
-        waiting = {path: one for path, one in waiting.items() if path in there}
-        for path, version in sorted(there.items()):
+        done = {path: version for path, version in done.items() if path in present}
+        waiting = {path: entry for path, entry in waiting.items() if path in present}
+        for path, version in sorted(present.items()):
             if done.get(path) == version or stop.is_set():
                 continue
             now = clock()
-            one = waiting.get(path)
-            if one is None or one.version != version:
+            entry = waiting.get(path)
+            if entry is None or entry.version != version:
                 waiting[path] = _Waiting(version, now, now + SETTLED)
-            elif now >= one.due:
-                found = _attempt(read, path)
+            elif now >= entry.due:
+                cloud = _attempt(read, path)
                 if _version(path) != version:
-                    continue  # it changed meanwhile: the next look sees another version
-                if isinstance(found, LifeloreError) and one.due < one.since + PATIENCE:
-                    one.due = one.since + PATIENCE
+                    continue  # it changed during reading: the next scan finds another version
+                if isinstance(cloud, LifeloreError) and entry.due < entry.since + RETRY_AFTER:
+                    entry.due = entry.since + RETRY_AFTER
                     continue
                 done[path] = version
                 del waiting[path]
-                yield path, found
+                yield path, cloud
 
 
 def _attempt(read: Callable[[str], PointCloud], path: str) -> PointCloud | LifeloreError:

@@ -1,4 +1,4 @@
-"""The verb `learn-relations`: scenes and what was said of them in, a model of the words out; kept in memory."""
+"""Trains a relation model on labelled scenes and stores it in memory or in a file (`lifelore learn-relations`)."""
 
 import hashlib
 from collections import Counter
@@ -38,32 +38,33 @@ SUFFIXES = (".pcd", ".ply", ".npz", ".npy")
 
 
 @dataclass(frozen=True)
-class RelationLesson:
-    """What is to be learnt from, and how; see `RelationClassifier`.
+class LearnRelationsSettings:
+    """Training scenes, and settings of `RelationClassifier`.
 
     Parameters
     ----------
     folder : str
-        Holds a cloud of each scene, ``NAME.pcd`` (or ply, npz, npy), and may hold `planes.csv`.
+        Folder with a cloud of each scene, ``NAME.pcd`` (or ply, npz, npy), and optionally `planes.csv`.
     truth : str
         CSV with columns scene, a, b, relation, confidence.
     name : str
-        Under which memory keeps the model; not the name of a file (`MODEL_SUFFIX`).
+        Name of the model in memory; must not end in `MODEL_SUFFIX`, which means a file.
     method : {"trees", "displacement"}
     adjacent_gap : float
-        Metres.
+        Largest gap between adjacent objects, in metres.
     several : bool
-        Several relations may hold of one pair.
+        Whether a pair may have several relations.
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     units : {"m", "mm"}
     up : "table", "z", or (3,) numbers, optional
-        Where up is in each cloud's frame, see `to_scene`; default as `planes.csv` has it, else the table's plane.
+        Upward direction in each cloud's frame, see `to_scene`; default: from `planes.csv`, else the table's
+        normal.
 
     Raises
     ------
     InputError
-        The name is that of a file.
+        The name means a file.
     """
 
     folder: str
@@ -84,36 +85,37 @@ class RelationLesson:
 
 
 def learn_relations(
-    lesson: RelationLesson,
+    settings: LearnRelationsSettings,
     memory: str | None = None,
     out: str | None = None,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """Train a model on a folder of scenes; keep it in memory, and in the file `out` where one is named.
+    """Train a model on a folder of scenes; store it in memory, and in the file `out` if it is given.
 
-    Without `memory` and with `out` no memory is opened. `notice` is called with one line for a person where labels
-    were guessed to be parts of objects.
+    With `out` and without `memory`, no memory is opened. `notice` is called with one line for the user if labels
+    were interpreted as parts of objects.
 
     Returns
     -------
     dict
-        ``name``, ``scenes``, ``pairs`` (labels learnt from, by relation), ``not_near`` (labels that are certain
-        enough, but of things too far apart to be learnt from; by relation), ``relations``, ``symmetric``,
+        ``name``, ``scenes``, ``pairs`` (number of labels used, by relation), ``not_near`` (number of labels with
+        enough confidence but of objects too far apart, by relation), ``relations``, ``symmetric``,
         ``method``, ``adjacent_gap``, ``out``, ``memory``.
 
     Raises
     ------
     InputError
-        A file breaks its rule, a scene of the truth has no cloud, or a label names an object that is not there.
+        A file breaks its rule, a scene of the truth has no cloud, or a label names an object that the cloud does
+        not have.
     """
-    model = RelationClassifier(lesson.method, adjacent_gap=lesson.adjacent_gap, multi_label=lesson.several)
+    model = RelationClassifier(settings.method, adjacent_gap=settings.adjacent_gap, multi_label=settings.several)
     if out is not None:
         _check_out(out)
-    truths = read_relations(lesson.truth)
-    scenes, n_from_parts = look_at(lesson, truths, progress)
+    truths = read_relations(settings.truth)
+    scenes, n_from_parts = read_scenes(settings, truths, progress)
     model.fit_pairs(scenes, list(truths.values()))
-    report = _report(lesson, model, truths)
+    report = _report(settings, model, truths)
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
     about["lifelore"] = version("lifelore")
     if out is not None:
@@ -122,35 +124,35 @@ def learn_relations(
     if memory is not None or out is None:
         with open_memory(memory) as opened:
             where = opened.location
-            remember(opened, lesson.name, model, about)
-    if notice is not None and n_from_parts and lesson.labels == "auto":
+            store_model(opened, settings.name, model, about)
+    if notice is not None and n_from_parts and settings.labels == "auto":
         notice(f"the labels of {n_from_parts} of {len(scenes)} clouds {PARTS_NOTICE}")
     return {**report, "out": out, "memory": where}
 
 
 def _check_out(out: str) -> None:
     if not out.endswith(MODEL_SUFFIX):
-        raise InputError(f"out must end in {MODEL_SUFFIX}, by which perceive knows a model's file, got '{out}'")
+        raise InputError(f"out must end in {MODEL_SUFFIX}, by which perceive recognises a model file, got '{out}'")
     check_model_path(out)
 
 
-def look_at(
-    lesson: RelationLesson, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
+def read_scenes(
+    settings: LearnRelationsSettings, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
 ) -> tuple[list[ScenePairs], int]:
-    """Read the clouds that the truths speak of, find their near pairs; and how many had parts for labels."""
-    folder = Path(lesson.folder)
+    """Near pairs of the cloud of each scene in the truths, and the number of clouds labelled by parts."""
+    folder = Path(settings.folder)
     planes_file = folder / "planes.csv"
-    planes = read_planes(planes_file) if lesson.up is None and planes_file.is_file() else {}
+    planes = read_planes(planes_file) if settings.up is None and planes_file.is_file() else {}
     paths = [_cloud_of(folder, scene) for scene in truths]
-    found, n_from_parts = [], 0
+    scenes, n_from_parts = [], 0
     for number, (scene, path) in enumerate(zip(truths, paths, strict=True)):
-        cloud = read_cloud(path, units=lesson.units, labels=lesson.labels)
+        cloud = read_cloud(path, units=settings.units, labels=settings.labels)
         n_from_parts += cloud.from_parts
-        up = planes[scene][:3] if scene in planes else "table" if lesson.up is None else lesson.up
-        found.append(scene_pairs(_upright(scene, cloud, up, truths[scene])))
+        up = planes[scene][:3] if scene in planes else "table" if settings.up is None else settings.up
+        scenes.append(scene_pairs(_upright(scene, cloud, up, truths[scene])))
         if progress is not None:
             progress(number + 1, len(paths), scene)
-    return found, n_from_parts
+    return scenes, n_from_parts
 
 
 def _upright(scene: str, cloud: PointCloud, up: Up, truth: Sequence[PairLabel]) -> LabelledCloud:
@@ -168,30 +170,32 @@ def _cloud_of(folder: Path, scene: str) -> Path:
     for suffix in SUFFIXES:
         if (path := folder / f"{scene}{suffix}").is_file():
             return path
-    raise InputError(f"the truth speaks of scene '{scene}', but {folder} has no {scene}.pcd (nor ply, npz, npy)")
+    raise InputError(
+        f"the truth names scene '{scene}', but {folder} has no {scene}.pcd (nor ply, npz, npy); add the cloud"
+    )
 
 
-def _check_labels(scene: str, truth: Sequence[PairLabel], there: set[int]) -> None:
+def _check_labels(scene: str, truth: Sequence[PairLabel], present: set[int]) -> None:
     for label in truth:
-        if not {label.a, label.b} <= there:
+        if not {label.a, label.b} <= present:
             raise InputError(
                 f"scene '{scene}': {label.relation}({label.a}, {label.b}) names an object that the cloud does not"
-                f" have; it has {', '.join(map(str, sorted(there)))}"
+                f" have; it has {', '.join(map(str, sorted(present)))}"
             )
 
 
 def _report(
-    lesson: RelationLesson, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
+    settings: LearnRelationsSettings, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
 ) -> dict[str, Any]:
-    said = Counter(
+    labelled = Counter(
         label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
     )
     learnt = Counter(model.learnt_from)
     return {
-        "name": lesson.name,
+        "name": settings.name,
         "scenes": len(truths),
         "pairs": {name: learnt[name] for name in model.names},
-        "not_near": dict(sorted((said - learnt).items())),
+        "not_near": dict(sorted((labelled - learnt).items())),
         "relations": list(model.names),
         "symmetric": sorted(model.symmetric),
         "method": model.method,
@@ -199,8 +203,8 @@ def _report(
     }
 
 
-def remember(memory: Memory, name: str, model: RelationClassifier, about: dict[str, Any]) -> None:
-    """Keep a model under a name; the newest of a name is the one that is recalled."""
+def store_model(memory: Memory, name: str, model: RelationClassifier, about: dict[str, Any]) -> None:
+    """Store a model in memory under a name; a newer model replaces it."""
     words = as_words(model_bytes(model, about))
     record = Record(
         KIND, model_key(name), VERSION, "newest", np.arange(len(words)), words, {**about, "name": name}
@@ -209,12 +213,12 @@ def remember(memory: Memory, name: str, model: RelationClassifier, about: dict[s
 
 
 def recall_relations(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassifier:
-    """The newest model of that name.
+    """The newest model of this name in memory.
 
     Raises
     ------
     NotFoundError
-        There is none.
+        There is no such model.
     """
     record = memory.recall(KIND, model_key(name), VERSION)
     if record is None:
@@ -225,19 +229,19 @@ def recall_relations(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassi
 
 
 def model_key(name: str) -> str:
-    """Under which key memory keeps the models of a name."""
+    """The key of a model name in memory."""
     return hashlib.sha256(name.encode()).hexdigest()[:32]
 
 
 def as_words(content: bytes) -> NDArray[np.int64]:
-    """Bytes as 64-bit numbers, the first their length: what a record can hold.
+    """Bytes as 64-bit integers for a record; the first integer is the number of bytes.
 
-    A shorter model leaves the tail of a longer one behind it; the length says where it ends.
+    A shorter model does not overwrite the end of a longer one, so the reader needs the length.
     """
     padded = content + bytes(-len(content) % 8)
     return np.concatenate([[len(content)], np.frombuffer(padded, "<i8")]).astype(np.int64)
 
 
 def as_bytes(words: NDArray[np.int64]) -> bytes:
-    """The bytes of `as_words`."""
+    """Bytes of the integers of `as_words`."""
     return words[1:].astype("<i8").tobytes()[: int(words[0])]

@@ -1,4 +1,4 @@
-"""The verb `perceive`: a cloud in, what bears on what out; as plain data, and as files for planners and people."""
+"""Perceives the objects, contacts and spatial relations of a point cloud (`lifelore perceive`)."""
 
 import os
 import time
@@ -24,32 +24,32 @@ from lifelore.perception.segmentation.distance_segmentation import SegmentationS
 from lifelore.perception.segmentation.table_frame import Up, to_scene
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
-"""A cloud that `read_cloud` reads, or one that was read before."""
+"""A source for `read_cloud`, or a cloud."""
 STAGES = ("reading", "finding objects", "finding contacts and relations", "drawing conclusions", "writing")
 
 
 @dataclass(frozen=True)
 class PerceiveSettings:
-    """How a cloud is read and judged.
+    """How a cloud is read, segmented and classified.
 
     Parameters
     ----------
     up : "table", "z", or (3,) numbers
-        Where up is in the cloud's frame, see `to_scene`.
+        Upward direction in the cloud's frame, see `to_scene`.
     units : {"m", "mm"}
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     segmentation : SegmentationSettings, optional
-        How a cloud without labels is cut, default by distance; a cloud with labels is refused where it is given.
+        Segmentation of a cloud without labels, default by distance; with a labelled cloud it is an error.
     model : str, optional
-        A file of ``learn-relations --out``, or the name of a model in memory; default the shipped one.
+        A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
-        Where a named model is kept.
+        Memory that holds the named model.
 
     Raises
     ------
     InputError
-        `memory` is given without the name of a model in it.
+        `memory` is given without the name of a model.
     """
 
     up: Up = "table"
@@ -62,13 +62,13 @@ class PerceiveSettings:
     def __post_init__(self) -> None:
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
             raise InputError(
-                "memory is where a model kept under a name is looked up, and"
-                f" {'none is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
+                "memory needs the name of a model in it, but"
+                f" {'no model is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
             )
 
 
 def is_file_name(model: str) -> bool:
-    """Whether a model so called is a file, not a name in memory."""
+    """Whether the name of a model means a file, not a model in memory."""
     return model.endswith(MODEL_SUFFIX)
 
 
@@ -91,8 +91,7 @@ def perceive(
     Parameters
     ----------
     source : path, (n, 3) array or PointCloud
-        A cloud of any kind that `read_cloud` knows; one that was read already (from a rosbag, say) is taken as
-        it is.
+        A source that `read_cloud` reads, or a cloud (for example from a rosbag).
     settings : PerceiveSettings
     pddl, dot, plot : str, optional
         Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
@@ -100,19 +99,19 @@ def perceive(
     progress : Progress, optional
         Called as each of the `STAGES` begins.
     notice : callable, optional
-        Called with one line for a person where labels were guessed to be parts of objects.
+        Called with one line for the user if labels were interpreted as parts of objects.
 
     Returns
     -------
     dict
-        The document of `scene_json`; contact points are those of pairs that bear on or stand beside each other.
+        The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other.
 
     Raises
     ------
     InputError
-        The cloud, a setting or a file name breaks its rule, or two files are one.
+        The cloud, a setting or a file name breaks its rule, or two files have the same path.
     NotFoundError
-        Memory has no model of that name, or there is no memory.
+        Memory has no model of this name, or there is no memory.
     StoreError
         A file cannot be written.
     """
@@ -129,19 +128,19 @@ def perceived(
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """As `perceive`, with the model of `model_of` at hand and files that were checked before."""
+    """As `perceive`, with a loaded model and checked files."""
     began = time.perf_counter()
-    _tell(progress, 0)
+    _report_stage(progress, 0)
     cloud = _read(source, settings)
-    _tell(progress, 1)
+    _report_stage(progress, 1)
     labelled = to_scene(cloud, settings.up, settings.segmentation)
-    _tell(progress, 2)
-    # A skeleton shows where a thing is used: near pairs that do not bear on each other have no place in it.
+    _report_stage(progress, 2)
+    # Near pairs without support or adjacency do not belong to the contact network.
     scene = perceived_scene(labelled, model).bearing
-    _tell(progress, 3)
+    _report_stage(progress, 3)
     document = scene_document(scene)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
-    _tell(progress, 4)
+    _report_stage(progress, 4)
     write_scene_files(files, scene, document)
     if notice is not None and cloud.from_parts and settings.labels == "auto":
         notice(f"the labels {PARTS_NOTICE}")
@@ -149,12 +148,12 @@ def perceived(
 
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
-    """The files that are read, the model's among them: none of them may be written over."""
+    """Paths of the files that are read, with the model's; they must not be overwritten."""
     read = [*sources, settings.model if settings.model and is_file_name(settings.model) else None]
     return [path for path in read if isinstance(path, str | os.PathLike)]
 
 
-def _tell(progress: Progress | None, stage: int) -> None:
+def _report_stage(progress: Progress | None, stage: int) -> None:
     if progress is not None:
         progress(stage, len(STAGES), STAGES[stage])
 
@@ -164,13 +163,13 @@ def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
         source = read_cloud(source, units=settings.units, labels=settings.labels)
     if settings.segmentation is not None and source.is_labelled:
         raise InputError(
-            "segmentation (--segment) cuts a cloud without labels, and this one has some: leave it out"
+            "segmentation (--segment) needs a cloud without labels, but this cloud has labels: leave it out"
         )
     return source
 
 
 def model_of(settings: PerceiveSettings) -> RelationClassifier:
-    """The relation model that the settings name; a memory is only looked into."""
+    """Load the relation model of the settings; a memory is only read."""
     if settings.model is None:
         return shipped_model()
     if is_file_name(settings.model):

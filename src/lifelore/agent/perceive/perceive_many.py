@@ -1,7 +1,7 @@
-"""`perceive` for many clouds in one process: a list of them, or each new cloud that appears in a folder.
+"""Perceives many clouds in one process: a list of clouds, or each new cloud of a folder.
 
-The relation model is loaded once, and kernels stay warm: a further cloud takes a fraction of a process's time. A
-cloud that cannot be perceived stops none of the others.
+The relation model and the kernels are loaded once, so a further cloud takes a fraction of the time of a new
+process. A cloud that cannot be perceived does not stop the others.
 """
 
 import os
@@ -44,41 +44,41 @@ def perceive_many(
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Iterator[Entry]:
-    """Perceive clouds one after another, each when the iterator is asked for it.
+    """Perceive clouds one after another, each when the iterator reaches it.
 
     Parameters
     ----------
     sources : sequence of str
-        Files of any kind that `read_cloud` knows, and what `read` knows.
+        Files that `read_cloud` reads, or sources of `read`.
     settings : PerceiveSettings
     pddl, dot, plot : str, optional
         As for `perceive`; ``{name}`` stands for the name of each cloud's file without its suffix.
     read : callable, optional
-        Gives for one of `sources` what `perceive` shall take in its place (a cloud out of a rosbag, say).
+        Maps one of `sources` to a source for `perceive` (for example a cloud of a rosbag).
     stop : Event, optional
-        No further cloud is begun once it is set.
+        Set it to stop before the next cloud.
     progress : Progress, optional
         Called as each of the `perceive.STAGES` of each cloud begins.
     notice : callable, optional
-        As for `perceive`; each line begins with its cloud.
+        As for `perceive`; each line begins with the name of the cloud.
 
     Returns
     -------
     iterator of dict
-        For each of `sources` in order ``{"source", …}`` with the document of `perceive`; or, with one line,
-        ``{"source", "error"}`` where this cloud cannot be perceived or its files cannot be written.
+        For each of `sources` in order: ``{"source", …}`` with the document of `perceive`, or ``{"source",
+        "error"}`` with one line if the cloud cannot be perceived or its files cannot be written.
 
     Raises
     ------
     InputError, NotFoundError
-        At once, before any cloud: a setting breaks its rule, there is no such model, or the names of the files to
-        write are without ``{name}``, cannot be written, or stand for two clouds.
+        Before the first cloud: a setting breaks its rule, the model does not exist, or a file to write has no
+        ``{name}``, cannot be written, or is the same for two clouds.
     """
-    _check_words(settings)
+    _check_settings(settings)
     files = [named_files(source, pddl, dot, plot) for source in sources]
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
-        _check_twins(sources)
+        _check_equal_names(sources)
     check_files_of_scenes(files, files_read(sources, settings))
     model = model_of(settings)
 
@@ -107,27 +107,28 @@ def perceive_folder(
     plot: str | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> Iterator[Entry]:
-    """Perceive each new cloud of a folder when it is whole, until `stop` is set; see `new_clouds`.
+    """Perceive each new cloud of a folder when its file is complete, until `stop` is set; see `new_clouds`.
 
     Parameters
     ----------
     folder : path
     settings, pddl, dot, plot, notice
-        As for `perceive_many`. A new version of a cloud writes over the files of the one before it.
+        As for `perceive_many`. A new version of a cloud overwrites the files of the version before.
     stop : Event
-        The cloud in work is finished first.
+        Set it to stop after the current cloud.
 
     Returns
     -------
     iterator of dict
-        As of `perceive_many`, in the order in which the clouds become whole.
+        As of `perceive_many`, in the order in which the clouds become complete.
 
     Raises
     ------
     InputError, NotFoundError
-        At once: as `perceive_many`, or there is no such folder. Later: the folder has gone.
+        Before the first cloud: as `perceive_many`, or the folder does not exist. Later: the folder has
+        disappeared.
     """
-    _check_words(settings)
+    _check_settings(settings)
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
     check_scene_files(named_files(NAME, pddl, dot, plot), files_read([], settings))
@@ -163,35 +164,35 @@ def _entry(source: str, document: Callable[[], dict[str, Any]]) -> Entry:
     except LifeloreError as error:
         return {"source": source, "error": str(error).removeprefix(f"{Path(source)}: ")}
     except MemoryError:
-        return {"source": source, "error": "does not fit into memory: thin the cloud out"}
+        return {"source": source, "error": "does not fit into memory: reduce the number of points"}
 
 
-def _check_words(settings: PerceiveSettings) -> None:
-    """Refuse, once, what every cloud would be refused for."""
+def _check_settings(settings: PerceiveSettings) -> None:
+    """Check the settings that would fail for every cloud."""
     check_units(settings.units)
     check_rule(settings.labels)
     check_up(settings.up)
 
 
-def _check_twins(sources: Sequence[str]) -> None:
-    """Refuse two clouds whose files would have one name."""
+def _check_equal_names(sources: Sequence[str]) -> None:
+    """Refuse two clouds whose files would have the same name."""
     first: dict[str, str] = {}
     for source in sources:
         other = first.setdefault(Path(source).stem, source)
         if Path(other) != Path(source):
             raise InputError(
-                f"'{other}' and '{source}' would be written to one file, their name being"
+                f"'{other}' and '{source}' would be written to the same file, because both are named"
                 f" '{Path(source).stem}': rename one of them, or perceive them one by one"
             )
 
 
 def _claim(owner: dict[str, str], source: str, files: SceneFiles) -> None:
-    """Note that `files` and `source` itself belong to `source`; refuse to write what another cloud owns."""
+    """Record that `files` and `source` itself belong to `source`; refuse to overwrite files of another cloud."""
     written = [os.path.realpath(path) for path in files.paths]
     for path in written:
         other = owner.get(path, source)
         if other != source and os.path.exists(other):
-            raise InputError(f"'{source}' would write over '{other}' or a file of it, {path}: rename one of them")
+            raise InputError(f"'{source}' would overwrite '{other}' or a file of it, {path}: rename one of them")
     owner.update(dict.fromkeys([*written, os.path.realpath(source)], source))
 
 

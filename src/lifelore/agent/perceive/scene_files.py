@@ -1,4 +1,4 @@
-"""What a perceived scene is written to: a planning problem with its domain, a graph, a picture."""
+"""Writes the files of a perceived scene: a planning problem with its domain, a graph, a picture."""
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
@@ -9,12 +9,12 @@ from lifelore.core.errors import InputError, StoreError
 from lifelore.perception.scene import Scene
 
 NAME = "{name}"
-"""In the name of a file: where the name of the cloud's own file stands."""
+"""Placeholder in the name of a file for the name of the cloud."""
 
 
 @dataclass(frozen=True)
 class SceneFiles:
-    """Files to write; those left out are not.
+    """Files to write; None: do not write.
 
     Parameters
     ----------
@@ -32,19 +32,19 @@ class SceneFiles:
 
     @property
     def paths(self) -> tuple[str, ...]:
-        """All that are written, the domain among them."""
+        """All files to write, with the domain."""
         domain = None if self.pddl is None else domain_path(self.pddl)
         return tuple(path for path in (self.pddl, domain, self.dot, self.plot) if path is not None)
 
 
 def domain_path(problem: str) -> str:
-    """Where the domain of a problem file is written: beside it, as ``NAME-domain.pddl``."""
+    """Path of the domain of a problem file: ``NAME-domain.pddl`` in the same folder."""
     path = Path(problem)
     return str(path.with_name(f"{path.stem}-domain.pddl")) if path.name else ""
 
 
 def named_files(name: str, pddl: str | None, dot: str | None, plot: str | None) -> SceneFiles:
-    """The files of one cloud: `NAME` in each is replaced by the name of the cloud's file without its suffix.
+    """The files of a cloud: the placeholder `NAME` is replaced by the name of the cloud's file without suffix.
 
     >>> named_files("clouds/cup.pcd", None, "graphs/{name}.dot", None).dot
     'graphs/cup.dot'
@@ -54,22 +54,22 @@ def named_files(name: str, pddl: str | None, dot: str | None, plot: str | None) 
 
 
 def check_names(files: SceneFiles) -> None:
-    """Refuse one file for many clouds."""
-    for option, path in vars(files).items():
+    """Refuse a file name without placeholder, which would be the same for all clouds."""
+    for option, path in (("pddl", files.pddl), ("dot", files.dot), ("plot", files.plot)):
         if path is not None and NAME not in path:
             raise InputError(
-                f"{option} names one file for many clouds, '{path}': write {NAME} where each cloud's own name"
-                f" shall stand, such as --{option} {NAME}.{'png' if option == 'plot' else option}"
+                f"{option} names one file for many clouds, '{path}': write {NAME} for the name of each cloud,"
+                f" such as --{option} {NAME}.{'png' if option == 'plot' else option}"
             )
 
 
 def check_scene_files(files: SceneFiles, sources: Sequence[str | os.PathLike[str]]) -> None:
-    """Refuse, before the work, files that cannot be written, or would overwrite one another or the `sources`.
+    """Refuse files that cannot be written, or that would overwrite each other or the `sources`.
 
     Raises
     ------
     InputError
-        Its line names the file.
+        The message names the file.
     """
     check_files_of_scenes([files], sources)
 
@@ -82,14 +82,14 @@ def check_files_of_scenes(many: Iterable[SceneFiles], sources: Sequence[str | os
             _check_writable(path)
         if files.plot is not None and not files.plot.lower().endswith(".png"):
             raise InputError(f"plot must name a PNG file, such as scene.png, got '{files.plot}'")
-    taken = {os.path.realpath(path) for path in sources if many}
+    used = {os.path.realpath(path) for path in sources if many}
     for path in (path for files in many for path in files.paths):
-        if os.path.realpath(path) in taken:
+        if os.path.realpath(path) in used:
             raise InputError(
-                f"'{path}' would be written over: the cloud, the model, plot, dot, pddl and the domain beside it"
+                f"'{path}' would be overwritten: the cloud, the model, plot, dot, pddl and the domain beside it"
                 " must be different files"
             )
-        taken.add(os.path.realpath(path))
+        used.add(os.path.realpath(path))
 
 
 def _check_writable(path: str) -> None:
@@ -101,12 +101,12 @@ def _check_writable(path: str) -> None:
 
 
 def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> None:
-    """Write a scene, and its document of `scene_json` for the picture.
+    """Write the files of a scene; `document` of `scene_json` is used for the picture.
 
     Raises
     ------
     StoreError
-        The disk refuses.
+        A file cannot be written.
     """
     if files.pddl is not None:
         from lifelore.perception.reasoning.planning_problem import DOMAIN, planning_problem
@@ -128,4 +128,4 @@ def _write_text(path: str, text: str) -> None:
     try:
         Path(path).write_text(text, encoding="utf-8")
     except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None
+        raise StoreError(f"cannot write {path}: {error.strerror}; choose another folder") from None

@@ -1,4 +1,4 @@
-"""The verb behind `lifelore scenes`: simulated scenes of things on a table, written as a folder of clouds."""
+"""Writes simulated scenes of objects on a table as a folder of clouds (`lifelore scenes`)."""
 
 import time
 from collections import Counter
@@ -36,7 +36,7 @@ def make_scenes(
     n : int
         At least 1.
     out : str or Path
-        A folder that holds no scenes yet.
+        A folder without scenes.
     seed : int
         The same seed gives the same files, for any number of jobs.
     mix, camera, shapes, arrangement, meshes
@@ -49,14 +49,15 @@ def make_scenes(
     Returns
     -------
     dict
-        ``scenes``, ``out``, ``seconds``, ``attempts`` (draws, those for scenes refused for the mix included),
-        ``pairs`` (of things, by relation), ``mix`` (their shares), ``mix_missed`` (whether they are off the wanted
-        ones by more than `tabletop_quota` allows) and ``with_table`` (by relation).
+        ``scenes``, ``out``, ``seconds``, ``attempts`` (number of draws, with scenes rejected for the mix),
+        ``pairs`` (number of pairs of objects, by relation), ``mix`` (their shares), ``mix_missed`` (whether the
+        shares differ from `mix` by more than `lifelore.domains.tabletop.quota` allows) and ``with_table`` (number
+        of pairs with the table, by relation).
 
     Raises
     ------
     InputError, MissingExtraError, StoreError
-        An argument breaks its rule; MuJoCo is missing; the disk refuses.
+        An argument breaks its rule; MuJoCo is missing; the folder cannot be written.
     """
     if n < 1 or jobs < 1:
         raise InputError(f"n and jobs must be at least 1, got {n} and {jobs}")

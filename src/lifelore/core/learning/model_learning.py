@@ -32,7 +32,7 @@ MOST_NEWS = 1024
 ALL_NEW = -1
 
 
-class Manner(NamedTuple):
+class ExplorationStrategy(NamedTuple):
     """How to look for the goal.
 
     planned : plan the search; else always the least-tried move of the state one is in
@@ -107,7 +107,7 @@ def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
 
 
 @kernel(allocates=False)
-def explore(tables, model, perceived, manner, explorer, curve, max_steps, discount, budget):
+def explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
     The tables must be deterministic (one outcome). Episodes end at a terminal event or after `max_steps`.
@@ -115,7 +115,7 @@ def explore(tables, model, perceived, manner, explorer, curve, max_steps, discou
     next_state, reward_of, event_of, _, starts = tables
     target, seen = model
     percept, cost_row, try_cost = perceived
-    planned, exhaustive, senses = manner
+    planned, exhaustive, senses = strategy
     place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = explorer
     returns, rewards, steps, collisions, reached = curve
     n_actions = target.shape[1]

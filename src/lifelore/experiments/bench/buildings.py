@@ -32,19 +32,20 @@ _LIFE = """
 import json, resource, sys, time
 from pathlib import Path
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.domains.buildings.occupancy_map import write_occupancy_map
 from lifelore.domains.buildings.office import RESOLUTION, office_map
-from lifelore.domains.worlds import make_world
+from lifelore.domains.worlds import WorldSettings, make_world
 
 width, height, cell, tasks, folder = *map(float, sys.argv[1:4]), int(sys.argv[4]), Path(sys.argv[5])
-live(LifeSettings(tasks=1, memory=str(folder / "warm.db")))
+live(LifeSettings(memory=MemorySettings(str(folder / "warm.db")), tasks=1))
 office = office_map(0, width, height)
 write_occupancy_map(folder / "office.yaml", office.grey, RESOLUTION, (0.0, 0.0, 0.0))
 began = time.perf_counter()
 make_world("building", map=str(folder / "office.yaml"), cell=cell)
 reading, times = time.perf_counter() - began, []
-settings = LifeSettings(map=str(folder / "office.yaml"), cell=cell, tasks=tasks, memory=str(folder / "life.db"))
+world = WorldSettings(map=str(folder / "office.yaml"), cell=cell)
+settings = LifeSettings(world, memory=MemorySettings(str(folder / "life.db")), tasks=tasks)
 began = time.perf_counter()
 report = live(settings, progress=lambda *_: times.append(time.perf_counter() - began)).report
 print(json.dumps({

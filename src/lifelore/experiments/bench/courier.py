@@ -10,10 +10,11 @@ from pathlib import Path
 from statistics import median
 
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.summary import third
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
+from lifelore.domains.worlds import WorldSettings
 from lifelore.experiments.bench.rounds import at_most, row
 
 TASKS, VISITS = 30, 3
@@ -32,10 +33,15 @@ def bench_courier(repeats: int, progress: Progress, map: str | None = None) -> d
     lives, visits = [], []
     for seed in range(repeats):
         with tempfile.TemporaryDirectory() as folder:
-            told = LifeSettings(map=map, tasks=TASKS, agent="all", seed=seed, memory=str(Path(folder) / "life.db"))
-            lives.append(live(told).report)
+            path = str(Path(folder) / "life.db")
+            at_home = LifeSettings(
+                WorldSettings(map=map, seed=seed), memory=MemorySettings(path), agent="all", tasks=TASKS
+            )
+            lives.append(live(at_home).report)
             progress(2 * seed + 1, 2 * repeats, f"life {seed}")
-            away = LifeSettings(tasks=VISITS, seed=AWAY + seed, memory=told.memory, robot="guest")
+            away = LifeSettings(
+                WorldSettings(seed=AWAY + seed), memory=MemorySettings(path, "guest"), tasks=VISITS
+            )
             visits.append(live(away).report)
             progress(2 * seed + 2, 2 * repeats, f"visit {seed}")
     home = [task for report in lives for task in third(report["tasks"], "last")]

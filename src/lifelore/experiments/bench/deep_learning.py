@@ -10,7 +10,7 @@ import gymnasium
 from threadpoolctl import threadpool_limits
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.bridges.minigrid_view import open_ways, solved_layout
+from lifelore.bridges.minigrid_view import open_directions, solved_layout
 from lifelore.experiments.bench.deep_worlds import layout_seed, one_layout
 
 STEPS, EVERY = 15_000, 500
@@ -61,7 +61,7 @@ def learnt(name: str, run: int, prior: ActionPrior | None, steps: int = STEPS, e
         if prior is None:
             model = DQN("MlpPolicy", env, **about)
         else:
-            model = PriorDQN("MlpPolicy", env, prior=prior, contexts=open_ways, **about)
+            model = PriorDQN("MlpPolicy", env, prior=prior, contexts=open_directions, **about)
         model.learn(steps, callback=look)
     return {"scores": scores, "goals": goals, "shortest": shortest}
 

@@ -8,7 +8,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_ways
+from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_directions
 from lifelore.experiments.bench.deep_worlds import new_world
 from lifelore.experiments.bench.rounds import Rates, interleaved
 
@@ -50,7 +50,7 @@ def _exploring(prior: ActionPrior, epsilon: float) -> dict[str, Any]:
         "device": "cpu",
     }
     env = SymbolicView(new_world(WORLD))
-    guided = PriorDQN("MlpPolicy", env, prior=prior, contexts=open_ways, **about)
+    guided = PriorDQN("MlpPolicy", env, prior=prior, contexts=open_directions, **about)
     return {PLAIN: DQN("MlpPolicy", SymbolicView(new_world(WORLD)), **about), PRIOR: guided}
 
 
@@ -63,7 +63,7 @@ def _masked(prior: ActionPrior) -> dict[str, Any]:
 
     ones = np.ones(N_MOVES, bool)
     free = ActionMasker(SymbolicView(new_world(WORLD)), lambda env: ones)
-    masked = PriorMask(SymbolicView(new_world(WORLD)), prior, open_ways)
+    masked = PriorMask(SymbolicView(new_world(WORLD)), prior, open_directions)
     return {
         who: MaskablePPO("MlpPolicy", env, n_steps=BLOCK, seed=0, device="cpu")
         for who, env in ((PLAIN, free), (PRIOR, masked))

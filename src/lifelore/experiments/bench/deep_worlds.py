@@ -7,7 +7,7 @@ import gymnasium
 import numpy as np
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_ways, solved_layout
+from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_directions, solved_layout
 from lifelore.core.streams import stream
 
 SOURCES = ("SimpleCrossingS9N2", "SimpleCrossingS9N3")
@@ -49,7 +49,7 @@ def crossing_prior() -> ActionPrior:
         for number in range(LAYOUTS):
             env.reset(seed=layout_seed(name, number))
             layout = solved_layout(env)
-            prior.update(layout.ways[layout.passed], layout.best[layout.passed])
+            prior.update(layout.open_directions[layout.passed], layout.best[layout.passed])
     return prior
 
 
@@ -65,7 +65,7 @@ def exploring(name: str, prior: ActionPrior, episodes: int) -> dict[str, list[in
     ways: dict[str, tuple[gymnasium.Env, Callable[[Any], int]]] = {
         SEVEN: (world, lambda seen: int(random.integers(7))),
         UNIFORM: (walker, lambda seen: int(random.integers(N_MOVES))),
-        GUIDED: (walker, lambda seen: int(prior.sample(open_ways(seen[None]), random)[0])),
+        GUIDED: (walker, lambda seen: int(prior.sample(open_directions(seen[None]), random)[0])),
     }
     return {
         who: [_steps_to_goal(env, choose, layout_seed(name, "exploring", k)) for k in range(episodes)]
@@ -91,6 +91,6 @@ def excluded_best(name: str, prior: ActionPrior, layouts: int, threshold: float 
     for number in range(layouts):
         env.reset(seed=layout_seed(name, "exploring", number))
         layout = solved_layout(env)
-        ways.append(layout.ways[layout.passed])
+        ways.append(layout.open_directions[layout.passed])
         best.append(layout.best[layout.passed])
     return prior.exclusion_rate(np.concatenate(ways), np.concatenate(best), threshold)

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.action.advice.advised_walk import Walk, advised_walk
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Tabulated
-from lifelore.action.advice.goal_model import Purpose, Trajectory, stitched
+from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
@@ -91,21 +91,21 @@ def errands_of(maze: Maze, n: int) -> list[Errand]:
     return [maze.errands[goals[i]] for i in drawn]
 
 
-def purposes_of(settings: Mapping, maze: Maze, experts: str) -> list[Purpose]:
+def purposes_of(settings: Mapping, maze: Maze, experts: str) -> list[GoalModel]:
     """What experts of a kind, bound for each goal in turn, left behind."""
     return [_purpose(settings, maze, goal, experts) for goal in maze.errands]
 
 
-def _purpose(settings: Mapping, maze: Maze, goal: int, experts: str) -> Purpose:
+def _purpose(settings: Mapping, maze: Maze, goal: int, experts: str) -> GoalModel:
     found = maze.errands[goal]
     if experts == "policies":
-        return Purpose.from_best_actions(found.best, [goal], found.steps)
+        return GoalModel.from_best_actions(found.best, [goal], found.steps)
     random = stream(*maze.names, "experts", experts, goal)
     others = np.array([g for g in maze.errands if g != goal])
     starts = others if experts == "trips" else found.tables.starts
     n = settings["few_walks" if experts == "few walks" else "expert_walks"]
     walks = [expert_walk(maze.world, found, int(start), random) for start in random.choice(starts, n)]
-    return Purpose.from_trajectories(walks, maze.world.n_states, 4, [goal])
+    return GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal])
 
 
 def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.Generator) -> Trajectory:
@@ -118,14 +118,14 @@ def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.G
     return Trajectory(np.array(states), np.array(actions))
 
 
-def thesis_advisor(settings: Mapping, purposes: Sequence[Purpose], kappa: float | None = None) -> Advisor:
+def thesis_advisor(settings: Mapping, purposes: Sequence[GoalModel], kappa: float | None = None) -> Advisor:
     """M₁ pooled over all goals, M₂ uniform."""
     kappa = settings["kappa"] if kappa is None else kappa
     return Advisor.of_thesis(purposes, AdviceSettings(kappa, settings["window"]))
 
 
 def better_advisor(
-    settings: Mapping, world: GridWorld, purposes: Sequence[Purpose], explorers: bool = True
+    settings: Mapping, world: GridWorld, purposes: Sequence[GoalModel], explorers: bool = True
 ) -> Advisor:
     """Goals apart, at most 40 steps in 100 advised; `explorers`: whether it knows how each of them walks."""
     chosen = replace(BETTER, kappa=settings["kappa"], window=settings["window"])
@@ -133,7 +133,7 @@ def better_advisor(
     if explorers:
         bugs = [Tabulated(explorer_probs(world, "bug", purpose.goals[0])) for purpose in purposes]
         others = [*(Tabulated(explorer_probs(world, name)) for name in EXPLORERS if name != "bug"), bugs]
-    return Advisor(stitched(purposes, world.neighbour), others, chosen)
+    return Advisor(extend_goal_models(purposes, world.neighbour), others, chosen)
 
 
 def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64]:
@@ -155,4 +155,4 @@ def walk(
 ) -> Walk:
     """An agent's walk on the maze's errand `number`: the same start and random numbers whoever walks."""
     random = stream(*maze.names, "walk", number)
-    return advised_walk(found.tables, policy, advisor, random, max_steps, heeds=heeds)
+    return advised_walk(found.tables, policy, advisor, random, max_steps, follows_advice=heeds)

@@ -9,7 +9,7 @@ import numpy as np
 
 from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor, exploration_rows
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.domains.advice.explorers import EXPLORERS
 from lifelore.experiments.chapter3.advice_grid import (
     AGENTS,
@@ -44,11 +44,11 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             walks += _walks(settings, maze, dict.fromkeys(maze.errands, advisor), experts, way)
         if {"loops": cell["loops"], "experts": experts} == settings["default"]:
             walks += _walks(settings, maze, _lacking(settings, maze, purposes), experts, GOAL_UNKNOWN)
-        learners += _learners(settings, maze, experts, Purpose.pooled(purposes))
+        learners += _learners(settings, maze, experts, GoalModel.pooled(purposes))
     return {**cell, "walks": walks, "learners": learners}
 
 
-def _lacking(settings: Mapping, maze: Maze, purposes: Sequence[Purpose]) -> dict[int, Advisor]:
+def _lacking(settings: Mapping, maze: Maze, purposes: Sequence[GoalModel]) -> dict[int, Advisor]:
     """For each goal a better advisor who saw only the experts bound for the others."""
     return {
         goal: better_advisor(settings, maze.world, [p for p in purposes if goal not in p.goals])
@@ -76,7 +76,7 @@ def _walks(settings, maze: Maze, advisors: Mapping[int, Advisor], experts, way: 
     return found
 
 
-def _learners(settings: Mapping, maze: Maze, experts: str | None, pooled: Purpose | None = None) -> list[dict]:
+def _learners(settings: Mapping, maze: Maze, experts: str | None, pooled: GoalModel | None = None) -> list[dict]:
     learning = settings["q_learning"]
     advice = None if pooled is None else exploration_rows(pooled, settings["kappa"])
     final = []

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.advice.advisor import exploration_rows
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Learner, uniform_rows
@@ -78,7 +78,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     maze = maze_of(settings, cell, seed)
     advice: dict[str | None, NDArray | None] = {None: None}
     for experts in settings["experts"]:
-        pooled = Purpose.pooled(purposes_of(settings, maze, experts))
+        pooled = GoalModel.pooled(purposes_of(settings, maze, experts))
         advice[experts] = exploration_rows(pooled, settings["kappa"])
     learners = [
         {"starts": starts, "schedule": schedule, "experts": experts}

@@ -11,7 +11,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.advice.goal_model import Purpose, Trajectory
+from lifelore.action.advice.goal_model import GoalModel, Trajectory
 from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, maze_goals
 from lifelore.domains.factory.layout import factory
@@ -54,7 +54,7 @@ def walked() -> dict:
     for walk in WALKS:
         actions = [moves[tuple((cells[b] - cells[a]).tolist())] for a, b in pairwise(walk)]
         ways.append(Trajectory(np.array(walk), np.array(actions)))
-    theta = Purpose.from_trajectories(ways, len(cells), 4).theta
+    theta = GoalModel.from_trajectories(ways, len(cells), 4).theta
     shape = {"shape": (REGION, REGION), "cells": cells, "probs": theta}
     return shape | {"title": "a prior from three walks (3.18)", "walks": [cells[list(walk)] for walk in WALKS]}
 

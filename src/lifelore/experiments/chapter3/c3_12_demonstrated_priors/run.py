@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_ways
+from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_paths
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
-from lifelore.action.demonstrations.simulated_person import shown_by_person
+from lifelore.action.demonstrations.simulated_person import simulated_demonstration
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import TIES, prior_rows
 from lifelore.core.errors import InputError
@@ -80,7 +80,7 @@ def run_of(settings: Mapping, seed: int, number: int) -> Run:
         best = {str(i): shown.best for i, shown in enumerate(training)}
         weights[people, "equal"] = dict.fromkeys({one.agent for one in done}, 1.0)
         weights[people, "by steps"] = competence_by_steps(done, lambda name, b=best: b[name])
-        weights[people, "by ways"] = competence_by_ways(done)
+        weights[people, "by ways"] = competence_by_paths(done)
     return Run(training, weights, [_met(settings, (*own, "testing", i)) for i in range(settings["test_tasks"])])
 
 
@@ -105,7 +105,7 @@ def _shown(settings: Mapping, names: tuple, number: int) -> Shown:
 def show(tables: Tables, best, skills: Sequence[float], number: int, names: tuple) -> Demonstration | None:
     """Task `number`, shown by whose turn it is; None where that person gives up."""
     turn = number % len(skills)
-    return shown_by_person(
+    return simulated_demonstration(
         tables, best, skills[turn], stream(*names, "person"),
         task=str(number), agent=f"person {turn}", most_steps=PATIENCE,
     )  # fmt: skip

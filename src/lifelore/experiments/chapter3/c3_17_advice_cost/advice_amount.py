@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.advice.goal_model import Purpose
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.metrics import entropy
 from lifelore.experiments.chapter3.advice_grid import (
     AGENTS,
@@ -35,7 +35,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     amounts, ceilings = [], []
     for experts in settings["experts"]:
         purposes = purposes_of(settings, maze, experts)
-        pooled = Purpose.pooled(purposes)
+        pooled = GoalModel.pooled(purposes)
         top, known = ceiling(pooled), pooled.theta.any(axis=1)
         passed = []
         for agent, of_errands in policies.items():
@@ -50,7 +50,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "amounts": amounts, "ceilings": ceilings}
 
 
-def ceiling(pooled: Purpose) -> NDArray[np.float64]:
+def ceiling(pooled: GoalModel) -> NDArray[np.float64]:
     """The greatest gain possible in each state (n_states,), nats; 0 where the advisor is silent."""
     theta = pooled.theta
     known = theta.any(axis=1)

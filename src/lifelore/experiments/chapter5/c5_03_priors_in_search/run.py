@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import FORMS, ActionPrior
 from lifelore.action.search import bandit
-from lifelore.action.search.depth_first import Found, depth_first, iterative_deepening, preferences
-from lifelore.action.search.tree_search import SearchSettings, guidance, play
+from lifelore.action.search.depth_first import DepthFirstResult, depth_first, iterative_deepening, preferences
+from lifelore.action.search.tree_search import SearchSettings, search_guidance, play
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
@@ -132,7 +132,7 @@ def _searches(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
     ways += [(*which, *way) for which, way in product(maze.probs_of, WAYS)]
     for simulations, (kind, form, guides, move) in product(settings["simulations"], ways):
         probs = None if kind is None else maze.probs_of[kind, form]
-        guide = guidance(maze.tables, probs, rollout="prior" if guides == BOTH else "uniform")
+        guide = search_guidance(maze.tables, probs, rollout="prior" if guides == BOTH else "uniform")
         numbers = settings["depth"], settings["exploration"], settings["discount"]
         how = SearchSettings(simulations, *numbers, by_mean=move == MEAN)
         randoms = stream(*names, "world"), stream(*names, "search")
@@ -163,7 +163,7 @@ def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterat
             yield {"search": PRUNED, "kind": kind, "form": form, **pruned}
 
 
-def _means(found: list[Found]) -> dict:
+def _means(found: list[DepthFirstResult]) -> dict:
     return {
         "expanded": float(np.mean([f.expanded for f in found])),
         "reached": float(np.mean([f.reached for f in found])),

@@ -1,4 +1,4 @@
-"""`lifelore doctor --warm`: compile the kernels of `live`, `perceive` and `reuse` before their first use."""
+"""Compiles the kernels of `live`, `perceive` and `reuse` before their first use (`lifelore doctor --warm`)."""
 
 import tempfile
 import time
@@ -13,8 +13,8 @@ from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Progress
 
 
-def warm(progress: Progress | None = None) -> dict[str, Any]:
-    """Run each of `VERBS` once on something small; what it compiles stays in the kernel cache.
+def compile_kernels(progress: Progress | None = None) -> dict[str, Any]:
+    """Run each of `VERBS` once on small inputs, so that the kernel cache holds its compiled kernels.
 
     Parameters
     ----------
@@ -24,12 +24,13 @@ def warm(progress: Progress | None = None) -> dict[str, Any]:
     Returns
     -------
     dict
-        ``folder``; ``compiled``: kernels that were not there yet; ``kernels`` there now; ``seconds``.
+        ``folder`` of the cache; ``compiled``: number of new kernels; ``kernels``: number of all kernels;
+        ``seconds``.
 
     Raises
     ------
     StoreError
-        Nothing was stored: the folder cannot be written, or compiling is switched off.
+        No kernel was stored: the folder cannot be written, or compiling is switched off.
     """
     began, before = time.perf_counter(), _compiled()
     with tempfile.TemporaryDirectory() as folder:
@@ -57,11 +58,12 @@ def _compiled() -> set[str]:
 
 def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
-    from lifelore.agent.live.life_settings import LifeSettings
+    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
 
     for learner in ("model", "q"):
-        memory = str(folder / f"{learner}.db")
-        live(LifeSettings(tasks=2, agent="all", learner=learner, memory=memory, episodes=3, max_steps=50))
+        learning = LearningSettings(learner, episodes=3, max_steps=50)
+        memory = MemorySettings(str(folder / f"{learner}.db"))
+        live(LifeSettings(learning=learning, memory=memory, agent="all", tasks=2))
 
 
 def _perceive(folder: Path) -> None:
@@ -76,7 +78,7 @@ def _perceive(folder: Path) -> None:
 
 
 def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
-    """Points (n, 3) in metres and labels (n,), 0 the table: a box on a box, seen from above and in front."""
+    """Points (n, 3) in metres and labels (n,), 0 the table: a box on a box, seen from the front and above."""
     random = np.random.default_rng(0)
 
     def face(n: int, low: tuple, high: tuple) -> np.ndarray:
@@ -89,7 +91,7 @@ def _two_boxes_on_a_table() -> tuple[np.ndarray, np.ndarray]:
         return np.vstack([above, front])
 
     parts = [face(6000, (-0.4, -0.4, 0), (0.4, 0.4, 0)), box(0.0, 0.12), box(0.12, 0.1)]
-    # The table behind and below the boxes is not seen.
+    # The camera does not see the table behind and below the boxes.
     parts[0] = parts[0][~((abs(parts[0][:, 0]) < 0.06) & (parts[0][:, 1] > -0.06) & (parts[0][:, 1] < 0.2))]
     return np.vstack(parts), np.repeat(np.arange(3), [len(part) for part in parts])
 
@@ -115,9 +117,9 @@ def _reuse(folder: Path) -> None:
             fit([log], memory, FitSettings(model=model))
             study = open_study(memory)
             for _ in range(2):
-                made = choose(memory, study, "new")
-                update(memory, study, made["decision"], 1.0)
+                chosen = choose(memory, study, "new")
+                update(memory, study, chosen["decision"], 1.0)
 
 
 VERBS: dict[str, Callable[[Path], None]] = {"live": _live, "perceive": _perceive, "reuse": _reuse}
-"""Verbs whose kernels somebody would wait for."""
+"""Verbs with kernels, each with a function that runs it in an empty folder."""

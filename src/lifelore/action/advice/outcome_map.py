@@ -1,7 +1,8 @@
-"""Actions of different agents are compared by what comes of them.
+"""`OutcomeMap`: translates between the actions of an agent and the actions of the experts, by their outcomes.
 
-An agent with other actions than the experts' (diagonal moves, a lift, two ways to go north) is watched and advised
-over outcomes common to all. Thesis: §3.7.1.
+Use it to watch and advise an agent that has other actions than the experts (diagonal moves, a lift, two actions
+with the same outcome): pass `common(state, action)` to `Advisor.observe`, and give the agent `own_theta(state,
+theta)`. Thesis: §3.7.1.
 """
 
 from dataclasses import dataclass
@@ -16,15 +17,15 @@ NO_OUTCOME = -1
 
 @dataclass(frozen=True, eq=False)
 class OutcomeMap:
-    """From an agent's own actions to the advisor's.
+    """Maps the actions of an agent to the actions of the advisor.
 
     Parameters
     ----------
     outcome : (n_own,) or (n_states, n_own) int
-        The advisor's action of the same outcome, everywhere or state by state; -1 where there is none: such an
-        action is no evidence, and is never advised.
+        The advisor's action with the same outcome, in every state or for each state; -1: none. Actions without
+        an outcome are no evidence and are never advised.
     n_actions : int
-        Of the advisor.
+        Number of the advisor's actions.
 
     Examples
     --------
@@ -53,7 +54,7 @@ class OutcomeMap:
         return outcome if outcome.ndim == 1 else outcome[state]
 
     def common(self, state: int, action: int) -> int:
-        """The advisor's action of the same outcome, or -1."""
+        """The advisor's action with the same outcome, or -1."""
         row = self._row(state)
         if not 0 <= action < len(row):
             raise InputError(f"action must be one of the agent's own in [0, {len(row)}), got {action}")
@@ -62,8 +63,8 @@ class OutcomeMap:
     def own_theta(self, state: int, theta: ArrayLike) -> NDArray[np.float64]:
         """Advice over the agent's own actions, (n_own,).
 
-        Actions of one outcome share its mass; outcomes the agent cannot bring about lose theirs, and the rest sums
-        to 1 again. All zeros where nothing of the advice is within its reach.
+        Actions with the same outcome share its probability. Outcomes that the agent cannot produce are dropped,
+        and the rest is normalised to 1; all zeros if the agent can produce no advised outcome.
         """
         theta = np.asarray(theta, np.float64)
         row = self._row(state)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.action.demonstrations.outcome_map import OutcomeMap
+from lifelore.action.advice.outcome_map import OutcomeMap
 from lifelore.core.errors import InputError
 
 
