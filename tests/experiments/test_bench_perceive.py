@@ -12,7 +12,7 @@ from lifelore.experiments.bench import perceive
 from lifelore.experiments.bench.perceive import bench_perceive
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_json import scene_document
 
 

@@ -4,8 +4,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.scene import Scene
 
 

@@ -19,7 +19,7 @@ from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, 
 from lifelore.experiments.bench.rounds import at_most, row
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 
 THINGS, POINTS = 15, 100_000
 SEED = 7003

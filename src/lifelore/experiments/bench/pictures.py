@@ -20,7 +20,7 @@ from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes, re
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import object_name
 from lifelore.perception.scene_json import scene_document
 

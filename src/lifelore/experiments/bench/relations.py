@@ -38,7 +38,7 @@ from lifelore.experiments.chapter2.relation_learners import (
     taught,
 )
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference, score, share
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 
 LEARNT_SCENES, JUDGED_SCENES = 60, 40
 """A round; four to five pairs of things each."""

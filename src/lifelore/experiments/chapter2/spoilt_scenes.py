@@ -32,7 +32,7 @@ from lifelore.perception.contacts.interface import DEFAULT, Interface, interface
 from lifelore.perception.contacts.near_pairs import near_pairs, split_objects
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.relations import relation_model_file
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.separation.separator import separate
 
 DISCARDED, NOISE, BORDER, MASKS = "discarded", "noise", "border", "masks"

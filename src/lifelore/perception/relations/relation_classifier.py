@@ -6,6 +6,7 @@ inferred. ``method="displacement"`` is the thesis's own classifier.
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Self
 
@@ -15,7 +16,6 @@ from lifelore.core.protocols import Progress
 from lifelore.core.relations import ADJACENT_GAP, PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT, Interface
-from lifelore.perception.pairs import gap_rule
 from lifelore.perception.pairs.directed_label import REVERSED
 from lifelore.perception.pairs.pair_class import LEAST_CONFIDENCE as LEAST_CONFIDENCE
 from lifelore.perception.pairs.pair_class import pair_class
@@ -25,12 +25,18 @@ from lifelore.perception.relations.displacement_relations import NeighbourSettin
 from lifelore.perception.relations.label_relations import fit_labels, label_shares
 from lifelore.perception.relations.pair_belief import PairBelief
 from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation_model import (
+    OBJECTS,
+    WITH_TABLE,
+    RelationModel,
+    check_options,
+    learned_vocabulary,
+)
+from lifelore.perception.relations.relation_model_file import SHIPPED, read_model, write_model
 from lifelore.perception.relations.symmetric_names import symmetric_names
 from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
 from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
 
-METHODS = ("trees", "displacement")
-OBJECTS, WITH_TABLE = "objects", "table"
 DEFAULT_TREES = TreeSettings()
 
 
@@ -83,12 +89,7 @@ class RelationClassifier:
         settings: ContactSettings = DEFAULT,
         trees: TreeSettings = DEFAULT_TREES,
     ) -> None:
-        if method not in METHODS:
-            raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
-        if multi_label and method != "trees":
-            raise InputError("multi_label needs method 'trees', got 'displacement'; drop one of the two")
-        if adjacent_gap is not None and not 0 < adjacent_gap < 1:
-            raise InputError(f"adjacent_gap must be metres in (0, 1), got {adjacent_gap!r}; 0.0225 is 22.5 mm")
+        check_options(method, adjacent_gap, multi_label)
         self.method = method
         self.adjacent_gap = adjacent_gap
         self.multi_label = multi_label
@@ -159,7 +160,7 @@ class RelationClassifier:
                     pair_class(said, int(first), self.symmetric)
 
     def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
-        words = self.words
+        words = self.vocabulary
         if self.multi_label:
             columns = (*TURNING_COLUMNS, *VIEW_COLUMNS)
             return dict(fit_labels(scenes, truths, words, columns, self.trees, LEAST_CONFIDENCE))
@@ -173,12 +174,9 @@ class RelationClassifier:
         return {kind: model for kind, model in ((OBJECTS, objects), (WITH_TABLE, table)) if model is not None}
 
     @property
-    def words(self) -> Vocabulary:
-        """What is learnt: names, which are symmetric, and the limit of *adjacent* where it applies."""
-        applies = (
-            gap_rule.applies(self.names, self.adjacent_gap) and self.method == "trees" and not self.multi_label
-        )
-        return Vocabulary(self.names, self.symmetric, self.adjacent_gap if applies else None)
+    def vocabulary(self) -> Vocabulary:
+        """The learned names, which are symmetric, and the limit of *adjacent* where it applies."""
+        return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names, self.symmetric)
 
     def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included; then of every object with the table.
@@ -227,17 +225,68 @@ class RelationClassifier:
                 self.models[kind].shares(moved) if kind in self.models else {}
                 for kind, moved in zip(kinds, scene.displacements, strict=True)
             ]
-        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.words)
+        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.vocabulary)
+
+    def to_model(self) -> RelationModel:
+        """Everything learned, as plain data.
+
+        Raises
+        ------
+        InputError
+            The classifier is not fitted.
+        """
+        if not self.models:
+            raise InputError("a classifier must be fitted before it is saved; call fit first")
+        return RelationModel(
+            self.method,
+            self.adjacent_gap,
+            self.multi_label,
+            self.settings,
+            self.neighbours,
+            self.names,
+            self.symmetric,
+            self.models,
+        )
+
+    @classmethod
+    def from_model(cls, model: RelationModel) -> Self:
+        """The fitted classifier that `to_model` described; another `fit` uses the same options."""
+        classifier = cls(
+            model.method,
+            adjacent_gap=model.adjacent_gap,
+            multi_label=model.multi_label,
+            symmetric=model.symmetric,
+            settings=model.settings,
+            **asdict(model.neighbours),
+        )
+        classifier.names, classifier.symmetric = model.names, model.symmetric
+        classifier.models = dict(model.models)
+        return classifier
 
     def save(self, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
-        """Write the fitted classifier to an npz file, see `relation_model_file`."""
-        from lifelore.perception.relations.relation_model_file import save_model
+        """Write the fitted classifier to an npz file; `about` holds notes for people, as JSON values.
 
-        save_model(self, path, about)
+        Raises
+        ------
+        InputError
+            The classifier is not fitted.
+        StoreError
+            The disk refuses.
+        """
+        write_model(self.to_model(), path, about)
 
-    @staticmethod
-    def load(path: str | Path) -> "RelationClassifier":
-        """Read what `save` wrote."""
-        from lifelore.perception.relations.relation_model_file import load_model
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read the classifier that `save` wrote.
 
-        return load_model(path)
+        Raises
+        ------
+        InputError
+            The file is missing, damaged, newer, or no relation model.
+        """
+        return cls.from_model(read_model(path))
+
+
+def shipped_model() -> RelationClassifier:
+    """The classifier that comes with the package, trained on simulated tabletop scenes alone."""
+    return RelationClassifier.load(SHIPPED)

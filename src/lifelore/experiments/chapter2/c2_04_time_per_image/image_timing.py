@@ -20,8 +20,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.experiments.chapter2.tabletop_pairs import MIX
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
 
 CAMERAS = ("stereo", "kinect")

@@ -31,7 +31,7 @@ from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.reasoning.geometric_relations import geometric_relations
 from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 
 LOT = 8
