@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 
 from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 
 README = Path(__file__).parents[1] / "README.md"
 
@@ -34,7 +34,7 @@ def test_the_ten_lines_of_python(tmp_path):
 
 
 def test_a_cloud_becomes_a_scene(tmp_path):
-    scene = draw_scene(3, 0, TabletopSettings(n_objects=(2, 2)))
+    scene = sample_scene(3, 0, TabletopSettings(n_objects=(2, 2)))
     save_cloud(tmp_path / "scene.pcd", scene)
     said = run(next(block for block in python_blocks() if "perceived_scene" in block), tmp_path)
     assert "Relation(a=2, b=1, relation='on'" in said

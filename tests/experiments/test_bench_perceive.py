@@ -52,7 +52,7 @@ def test_stages_together_are_the_whole_way(cloud, monkeypatch):
     monkeypatch.setattr(perceive, "scene_document", lambda scene, seconds: documents.append(scene_document(scene)))
     model = shipped_model()
     assert set(timed_stages(cloud, model)) == set(STAGES)
-    assert documents == [scene_document(perceived_scene(cloud, model).bearing)]
+    assert documents == [scene_document(perceived_scene(cloud, model).without_unrelated_contacts)]
 
 
 @pytest.mark.parametrize("n", [500, 5000])

@@ -7,7 +7,7 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, ON
 from lifelore.experiments.chapter2.c2_09_substructure.run import measure
 from lifelore.experiments.chapter2.c2_09_substructure.skeleton_pairs import HOSTS, found_in, witness_is_right
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene

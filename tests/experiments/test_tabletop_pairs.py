@@ -227,7 +227,7 @@ def drawn(monkeypatch, blocks):
         sure = 3 if len(asked) % 3 == 0 else 1
         return SimpleNamespace(cloud=blocks, truth=[PairLabel(2, 4, NONE, sure), PairLabel(2, 1, ON, 1)])
 
-    monkeypatch.setattr(tabletop_pairs, "draw_scene", draw_scene)
+    monkeypatch.setattr(tabletop_pairs, "sample_scene", draw_scene)
     return asked
 
 

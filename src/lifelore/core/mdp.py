@@ -2,7 +2,7 @@
 
 A domain is one pure scalar function ``step(params, s, a, u) -> (s2, reward, event)``. From it come the
 tables that every kernel and the exact solver read, and the Gymnasium environment. `u` is one uniform in
-[0, 1); a deterministic domain ignores it. `event` says what happened beside the reward.
+[0, 1); a deterministic domain ignores it. `event` holds the bits `TERMINAL` and `COLLISION`.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,19 +15,19 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 
 NOTHING, TERMINAL, COLLISION = 0, 1, 2
-"""Bits of an event: the episode ends here; the move was refused by the world (a wall, say)."""
+"""Events: none; the episode ends; the world refused the move, for instance by a wall. The last two are bits."""
 
 Step = Callable[[tuple, int, int, float], tuple[int, float, int]]
 
 
 class Tables(NamedTuple):
-    """A task enumerated: the lingua franca of kernels, solver and checks.
+    """A task enumerated: the form that kernels, solvers and checks read.
 
     next_state : (n_states, n_actions, n_outcomes) int32
     reward : (n_states, n_actions, n_outcomes) float64
     event : (n_states, n_actions, n_outcomes) uint8, bits TERMINAL | COLLISION
     outcome_cum : (n_outcomes,) float64, cumulative outcome probabilities, last one 1
-    starts : (n_starts,) int32, an episode starts in one of them, each as likely
+    starts : (n_starts,) int32, initial states, equally likely
     """
 
     next_state: NDArray[np.int32]
@@ -47,7 +47,7 @@ class Tables(NamedTuple):
 
 @dataclass(frozen=True)
 class Domain:
-    """What stays the same over tasks: states, actions, transitions, discount.
+    """The part that tasks share: states, actions, transitions, discount.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ class Domain:
         where the domain is deterministic.
     tabulate : callable, optional
         ``tabulate(params, midpoints) -> (next_state, reward, event)``: the same table from a compiled
-        loop. Must equal the table enumerated through `step`, which is what happens without it.
+        loop. Must equal the table enumerated through `step`, the default.
 
     Thesis: §3.2.2.
     """
@@ -96,7 +96,7 @@ class Task:
     ----------
     domain : Domain
     params : tuple
-        Arrays and numbers handed to the domain's `step`; the only thing tasks of one domain differ in.
+        Arrays and numbers passed to the domain's `step`; tasks of one domain differ in these alone.
     starts : (n_starts,) int
         Initial states S₀, drawn uniformly.
     goal : int, optional
@@ -125,7 +125,7 @@ class Task:
 
 
 def _enumerate_with(domain: Domain) -> Callable:
-    """The plain enumeration of `step`; what `Domain.tabulate` replaces where it would be slow."""
+    """Enumerate by calling `step`; `Domain.tabulate` replaces this where it would be slow."""
     step = getattr(domain.step, "py_func", domain.step)
 
     def enumerate_all(params: tuple, midpoints: NDArray[np.float64]):

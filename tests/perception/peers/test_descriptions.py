@@ -14,7 +14,7 @@ from lifelore.perception.peers.centroid_neighbours import centroid_displacement
 from lifelore.perception.peers.closest_point import closest_displacement
 from lifelore.perception.peers.majority import Majority
 from lifelore.perception.peers.orientation_histogram import orientation_histogram
-from lifelore.perception.peers.peer import SeenPair
+from lifelore.perception.peers.peer import DescribedPair
 
 from .conftest import box
 
@@ -95,8 +95,8 @@ def test_boxes_by_hand():
     assert overlap == pytest.approx(0.5)
 
 
-def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[SeenPair]:
-    return (SeenPair(2, b, gap, np.array(rows, float)),)
+def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[DescribedPair]:
+    return (DescribedPair(2, b, gap, np.array(rows, float)),)
 
 
 @pytest.mark.parametrize(

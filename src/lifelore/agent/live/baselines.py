@@ -3,7 +3,7 @@
 from dataclasses import dataclass, field
 
 from lifelore.core.errors import InputError, NotFoundError
-from lifelore.core.learning.model_learning import Manner
+from lifelore.core.learning.model_learning import ExplorationStrategy
 
 
 @dataclass(frozen=True)
@@ -17,7 +17,7 @@ class Kind:
 
     uses_prior: bool = False
     remembers: bool = False
-    manner: Manner = field(default_factory=Manner)
+    manner: ExplorationStrategy = field(default_factory=ExplorationStrategy)
 
 
 ROSTER = {
@@ -25,9 +25,9 @@ ROSTER = {
     "model": Kind(remembers=True),
     "prior": Kind(uses_prior=True),
     "scratch": Kind(),
-    "undirected": Kind(manner=Manner(planned=False)),
-    "rmax": Kind(manner=Manner(exhaustive=True)),
-    "frontier": Kind(manner=Manner(senses=True)),
+    "undirected": Kind(manner=ExplorationStrategy(planned=False)),
+    "rmax": Kind(manner=ExplorationStrategy(exhaustive=True)),
+    "frontier": Kind(manner=ExplorationStrategy(senses=True)),
 }
 """`scratch` has everybody's planner and nothing else. `undirected` takes the least-tried move, unplanned; `rmax`
 prefers any unknown to a known goal; `frontier` is told what its sensors mean: a visit shows where moves lead."""

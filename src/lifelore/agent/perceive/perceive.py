@@ -136,7 +136,7 @@ def perceived(
     labelled = to_scene(cloud, settings.up, settings.segmentation)
     _tell(progress, 2)
     # A skeleton shows where a thing is used: near pairs that do not bear on each other have no place in it.
-    scene = perceived_scene(labelled, model).bearing
+    scene = perceived_scene(labelled, model).without_unrelated_contacts
     _tell(progress, 3)
     document = scene_document(scene)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)

@@ -64,7 +64,7 @@ def draw_and_judge(scene: RealScene, out: Path) -> dict:
     from lifelore.figures.scene_picture import draw_scene
     from lifelore.figures.style import save_figure
 
-    perceived = perceived_scene(scene.cloud, shipped_model()).bearing
+    perceived = perceived_scene(scene.cloud, shipped_model()).without_unrelated_contacts
     figure = draw_scene(scene.cloud, scene_document(perceived), title=scene.name)
     _fewer_colours(save_figure(figure, out / f"{scene.name}.png"))
     return {"scene": scene.name, **judge(scene.truth, perceived.relations)}

@@ -11,7 +11,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, scenes
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
 from lifelore.experiments.bench.relation_scenes import (
     HALF,
     HELD_OUT,
@@ -67,7 +67,7 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
         _estimate_row(f"{SHIPPED + LOGIC}, simulated, exact lost, {way}", estimate)
         for way, estimate in lost.items()
     ]
-    rows += [line for where, scenes in networks.items() for line in _network_rows(where, scenes)]
+    rows += [line for where, tabletop_scenes in networks.items() for line in _network_rows(where, tabletop_scenes)]
     return {"rows": rows, "goals": _goals(answers, lost, networks)}
 
 
@@ -87,20 +87,20 @@ def _counter(progress: Progress, repeats: int, real: int) -> Callable[[str], Non
 def _drawn(n: int, which: tuple[int, str], after: Callable[[str], None]) -> Iterator[TabletopScene]:
     """Simulated scenes one by one: their points are many, and nobody keeps them."""
     seed, shapes = which
-    for scene in scenes(n, seed, TabletopSettings(shapes=shapes)):
+    for scene in tabletop_scenes(n, seed, TabletopSettings(shapes=shapes)):
         yield scene
         after("scenes drawn and seen")
 
 
-def _from_lessons(lessons: Sequence[SeenScene], scenes: Sequence[SeenScene], after) -> Answers:
+def _from_lessons(lessons: Sequence[SeenScene], tabletop_scenes: Sequence[SeenScene], after) -> Answers:
     """Everybody's answers after learning from `lessons`, and those of the shipped model."""
-    if not scenes:
+    if not tabletop_scenes:
         return {}
     answers: Answers = {}
     for name in LEARNERS:
-        answers |= asked(name, taught(name, lessons), scenes)
+        answers |= asked(name, taught(name, lessons), tabletop_scenes)
         after(f"{name} judged")
-    return answers | asked(SHIPPED, shipped_model(), scenes)
+    return answers | asked(SHIPPED, shipped_model(), tabletop_scenes)
 
 
 def _leaving_one_out(lessons: Sequence[SeenScene], real: Sequence[SeenScene], after) -> Answers:

@@ -12,7 +12,7 @@ says so, and `load_library` takes the model again.
 from pathlib import Path
 from typing import Any
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
@@ -37,7 +37,7 @@ def save_library(library: PolicyLibrary, path: str | Path) -> None:
     """
     content = library_bytes(library)
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
@@ -33,7 +33,7 @@ VERSION = 1
 SUFFIX = ".npz"
 """End of the name of every relation model file."""
 LARGEST = 2**28
-"""Bytes that a model may unpack to: a stranger's file must not fill the memory."""
+"""Largest size of a model after unpacking, in bytes, so that no file fills the memory."""
 SHIPPED = Path(__file__).parent / "models" / "tabletop.npz"
 DAMAGED = "is no relation model that can be read ({}); write it anew with `lifelore learn-relations --out`"
 
@@ -50,18 +50,18 @@ def write_model(model: RelationModel, path: str | Path, about: Mapping[str, Any]
     """
     content = model_bytes(model, about)
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StoreError(f"the model cannot be written to {path}: {error.strerror}") from None
 
 
 def check_model_path(path: str | Path) -> None:
-    """Refuse a place that no model can be written to, before hours are spent on one."""
+    """Raise InputError for a path that no model can be written to, before hours of training."""
     place = Path(path)
     if place.is_dir() or not place.parent.is_dir():
-        what = "is a folder" if place.is_dir() else "lies in a folder that does not exist"
-        raise InputError(f"out must be a file to write the model to; {path} {what}")
+        reason = "is a folder" if place.is_dir() else "lies in a folder that does not exist"
+        raise InputError(f"out must be a file to write the model to; {path} {reason}")
 
 
 def read_model(path: str | Path) -> RelationModel:
