@@ -84,7 +84,7 @@ def naive_angles(first, second):
 def test_angle_distance_histogram_is_its_plain_twin(seed):
     rng = np.random.default_rng(seed)
     first, second = rng.uniform(0, 0.2, (30, 3)), rng.uniform(0, 0.2, (40, 3)) + np.array([0, 0, 0.1])
-    coarse_first, coarse_second = (angles.coarse(points, angles.GRAIN) for points in (first, second))
+    coarse_first, coarse_second = (angles.mean_of_voxels(points, angles.GRAIN) for points in (first, second))
     assert angle_distance_histogram(first, second) == pytest.approx(naive_angles(coarse_first, coarse_second))
 
 

@@ -67,7 +67,7 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
         _estimate_row(f"{SHIPPED + LOGIC}, simulated, exact lost, {way}", estimate)
         for way, estimate in lost.items()
     ]
-    rows += [line for where, tabletop_scenes in networks.items() for line in _network_rows(where, tabletop_scenes)]
+    rows += [line for where, scenes in networks.items() for line in _network_rows(where, scenes)]
     return {"rows": rows, "goals": _goals(answers, lost, networks)}
 
 
@@ -92,15 +92,15 @@ def _drawn(n: int, which: tuple[int, str], after: Callable[[str], None]) -> Iter
         after("scenes drawn and seen")
 
 
-def _from_lessons(lessons: Sequence[SeenScene], tabletop_scenes: Sequence[SeenScene], after) -> Answers:
+def _from_lessons(lessons: Sequence[SeenScene], scenes: Sequence[SeenScene], after) -> Answers:
     """Everybody's answers after learning from `lessons`, and those of the shipped model."""
-    if not tabletop_scenes:
+    if not scenes:
         return {}
     answers: Answers = {}
     for name in LEARNERS:
-        answers |= asked(name, taught(name, lessons), tabletop_scenes)
+        answers |= asked(name, taught(name, lessons), scenes)
         after(f"{name} judged")
-    return answers | asked(SHIPPED, shipped_model(), tabletop_scenes)
+    return answers | asked(SHIPPED, shipped_model(), scenes)
 
 
 def _leaving_one_out(lessons: Sequence[SeenScene], real: Sequence[SeenScene], after) -> Answers:
