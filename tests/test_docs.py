@@ -15,7 +15,7 @@ from lifelore import make_world
 from lifelore.action.priors.prior_file import load_prior
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
@@ -74,7 +74,7 @@ def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
 
 def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
     (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "start" / "robots.md").read_text("utf-8"), flags=re.S)
-    save_cloud(tmp_path / "scene.pcd", draw_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
+    save_cloud(tmp_path / "scene.pcd", sample_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
     said = run([sys.executable, "-W", "error", "-c", code], tmp_path)
     assert "Relation(a=2, b=1, relation='on'" in said
     assert "relation='in_front_of'" in said

@@ -23,8 +23,8 @@ def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
     from lifelore.core.compiled.random_state import next_uniform, random_state
     from lifelore.core.learning.curve import new_curve
-    from lifelore.core.learning.known_world import best_known_actions, blank_model
-    from lifelore.core.learning.model_learning import ExplorationStrategy, Perceived, explore, new_explorer
+    from lifelore.core.learning.known_world import best_known_actions, unknown_world
+    from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
     from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
     from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
     from lifelore.core.planning.planning import optimal_q, policy_values
@@ -49,14 +49,14 @@ def all_arrays() -> dict[str, np.ndarray]:
         plan = LayeredPlan(_rows_of(tables, 3), 4, 3, 0.9)
         out |= _named(f"layers {n_outcomes}", (layered_q(tables, 3, 0.9), *(plan.q(i) for i in range(4))))
     tables = random_world(1, n_states=15, n_actions=3)
-    seen = Perceived(np.arange(15), np.zeros(15, np.int32), np.array([[0.0, 1.0, 4.0]]))
+    seen = StateInfo(np.arange(15), np.zeros(15, np.int32), np.array([[0.0, 1.0, 4.0]]))
     for strategy in (
         ExplorationStrategy(),
         ExplorationStrategy(planned=False),
         ExplorationStrategy(exhaustive=True),
         ExplorationStrategy(senses=True),
     ):
-        model, explorer = blank_model(15, 3), new_explorer(15, 3, stream(2, "w"), stream(2, "o"))
+        model, explorer = unknown_world(15, 3), new_model_learner(15, 3, stream(2, "w"), stream(2, "o"))
         curve = new_curve(12)
         while explore(tables, model, seen, strategy, explorer, curve, 30, 0.9, 50):
             pass

@@ -2,13 +2,13 @@
 
 import pytest
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 
 
 def test_the_file_takes_its_place_when_the_block_ends(tmp_path):
     path = tmp_path / "kept"
     path.write_bytes(b"old")
-    with whole_file(path) as file:
+    with atomic_write(path) as file:
         file.write(b"new")
         file.flush()
         assert path.read_bytes() == b"old"
@@ -25,7 +25,7 @@ def test_a_block_that_ends_badly_changes_nothing(tmp_path, why):
         file.write(b"half")
         raise why
 
-    with pytest.raises(why), whole_file(path) as file:
+    with pytest.raises(why), atomic_write(path) as file:
         half(file)
     assert path.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [path]
@@ -35,7 +35,7 @@ def test_a_link_stays_one(tmp_path):
     path, link = tmp_path / "kept", tmp_path / "link"
     path.write_bytes(b"old")
     link.symlink_to(path)
-    with whole_file(link) as file:
+    with atomic_write(link) as file:
         file.write(b"new")
     assert link.is_symlink()
     assert path.read_bytes() == b"new"
@@ -43,6 +43,6 @@ def test_a_link_stays_one(tmp_path):
 
 def test_a_folder_that_is_missing_or_in_the_way_is_an_error(tmp_path):
     for path in (tmp_path / "none" / "kept", tmp_path):
-        with pytest.raises(OSError), whole_file(path) as file:
+        with pytest.raises(OSError), atomic_write(path) as file:
             file.write(b"new")
     assert list(tmp_path.iterdir()) == []

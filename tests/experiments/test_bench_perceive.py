@@ -13,7 +13,7 @@ from lifelore.experiments.bench.perceive import bench_perceive
 from lifelore.experiments.chapter2 import perception_stages
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_json import scene_document
 
 
@@ -55,7 +55,7 @@ def test_stages_together_are_the_whole_way(cloud, monkeypatch):
     )
     model = shipped_model()
     assert set(timed_stages(cloud, model)) == set(STAGES)
-    assert documents == [scene_document(perceived_scene(cloud, model).bearing)]
+    assert documents == [scene_document(perceived_scene(cloud, model).without_unrelated_contacts)]
 
 
 @pytest.mark.parametrize("n", [500, 5000])

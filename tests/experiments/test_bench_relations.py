@@ -54,7 +54,7 @@ def small(monkeypatch):
     drawn = lambda n, seed, settings: (made(number, seed) for number in range(n))  # noqa: E731
     real = [RealScene(one.name, one.cloud, one.truth) for one in (made(0, 3), made(1, 3))]
     few = {name: LEARNERS[name] for name in FEW}
-    monkeypatch.setattr(relations, "scenes", drawn)
+    monkeypatch.setattr(relations, "tabletop_scenes", drawn)
     monkeypatch.setattr(relations, "LEARNT_SCENES", 4)
     monkeypatch.setattr(relations, "JUDGED_SCENES", 4)
     monkeypatch.setattr(relations, "LEARNERS", few)

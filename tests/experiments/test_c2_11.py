@@ -17,7 +17,7 @@ from lifelore.experiments.chapter2.c2_11_distant_objects.measure import (
 )
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.contacts.contact_points import linked
-from lifelore.perception.contacts.interface import DEFAULT
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
 
 C2_11 = claim_of("C2.11")
@@ -154,8 +154,10 @@ def test_two_points_are_two_support_vectors_however_far_apart(distance):
 
 @pytest.mark.parametrize("apart", [1.0, 2.0])
 def test_far_apart_a_separator_describes_each_thing_by_its_own_corners(apart):
-    side = DEFAULT.length
-    found = separate(cube(side, 0, 0, side + apart), cube(side), length=side, cost=DEFAULT.cost, tolerance=1e-6)
+    side = DEFAULT_CONTACT_SETTINGS.length
+    found = separate(
+        cube(side, 0, 0, side + apart), cube(side), length=side, cost=DEFAULT_CONTACT_SETTINGS.cost, tolerance=1e-6
+    )
     corners = {tuple(map(float, corner)) for corner in np.ndindex(2, 2, 2)}
     for points, alpha, foot in (
         (found.points_first, found.alpha_first, side + apart),
@@ -166,7 +168,9 @@ def test_far_apart_a_separator_describes_each_thing_by_its_own_corners(apart):
         # Eight alike: α times the sum of a corner's kernels with all of them, (1 + e^-1/2)³, is 1.
         assert alpha == pytest.approx(np.full(8, (1 + np.exp(-0.5)) ** -3), abs=1e-5)
         # Each is a contact of its own, of one support vector: the rule of 7 removes them, not the distance.
-        assert np.bincount(linked(np.ascontiguousarray(points), DEFAULT.linkage)).tolist() == [1] * 8
+        assert (
+            np.bincount(linked(np.ascontiguousarray(points), DEFAULT_CONTACT_SETTINGS.linkage)).tolist() == [1] * 8
+        )
 
 
 @pytest.mark.parametrize("length", [0.03, 0.06, 0.12, 0.25, 1.0])
@@ -187,7 +191,10 @@ def test_no_kernel_leaves_a_side_without_support_vectors(length, cost):
 def test_a_long_kernel_takes_few_points_far_apart_and_hundreds_near():
     def strongest(gap: float) -> tuple[int, int]:
         found = separate(cube(0.06, 0, 0, 0.06 + gap, step=0.003), cube(0.06, step=0.003), length=0.25, cost=10.0)
-        sizes = [np.bincount(linked(side, DEFAULT.linkage)) for side in (found.points_first, found.points_second)]
+        sizes = [
+            np.bincount(linked(side, DEFAULT_CONTACT_SETTINGS.linkage))
+            for side in (found.points_first, found.points_second)
+        ]
         return max(map(len, (found.points_first, found.points_second))), int(max(map(max, sizes)))
 
     near, far = strongest(0.006), strongest(1.0)

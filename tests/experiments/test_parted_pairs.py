@@ -157,7 +157,7 @@ def test_a_cell_parts_every_bearing_pair_of_its_scenes(monkeypatch):
         drawn.append(number)
         return SimpleNamespace(cloud=cloud, truth=truth)
 
-    monkeypatch.setattr(parted_pairs, "draw_scene", draw)
+    monkeypatch.setattr(parted_pairs, "sample_scene", draw)
     found = run_cell({**SETTINGS, "pairs": 6, "gaps": [1.0]}, {"first": 4}, 0)
     assert drawn == [4, 5]
     assert found["kind"] == "simulated"

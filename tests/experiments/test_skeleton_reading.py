@@ -10,7 +10,7 @@ from lifelore.core.relations import ADJACENT, NONE, ON
 from lifelore.experiments.chapter2.scene_example import scene_of_row, scene_row
 from lifelore.experiments.chapter2.skeleton_reading import NEAR, RELATED, SUPPORT, only, predicates, reading
 from lifelore.experiments.chapter2.stack_skeletons import Three, is_path
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
@@ -51,7 +51,7 @@ def test_readings_by_hand():
 def test_all_near_pairs_say_nothing_of_strangers():
     near = reading(tower(), NEAR)
     assert near.relations == ()
-    assert points_of(near.bearing) == points_of(near)
+    assert points_of(near.without_unrelated_contacts) == points_of(near)
 
 
 def test_predicates_leave_out_none():

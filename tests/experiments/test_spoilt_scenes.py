@@ -130,7 +130,7 @@ def made(monkeypatch) -> SimpleNamespace:
     truth = (PairLabel(3, 2, "on", 2), PairLabel(2, TABLE, "on"))
     gaps = (SimpleNamespace(a=2, b=3, visible=0.003),)
     scene = SimpleNamespace(name="made", cloud=cloud, truth=truth, gaps=gaps)
-    monkeypatch.setattr(spoilt_scenes, "draw_scene", lambda seed, number, settings: scene)
+    monkeypatch.setattr(spoilt_scenes, "sample_scene", lambda seed, number, settings: scene)
     return scene
 
 

@@ -222,12 +222,12 @@ def drawn(monkeypatch, blocks):
     """Every third scene is beyond doubt; the seeds, numbers and settings that were asked for."""
     asked: list[tuple] = []
 
-    def draw_scene(seed, number, settings):
+    def sample_scene(seed, number, settings):
         asked.append((seed, number, settings))
         sure = 3 if len(asked) % 3 == 0 else 1
         return SimpleNamespace(cloud=blocks, truth=[PairLabel(2, 4, NONE, sure), PairLabel(2, 1, ON, 1)])
 
-    monkeypatch.setattr(tabletop_pairs, "draw_scene", draw_scene)
+    monkeypatch.setattr(tabletop_pairs, "sample_scene", sample_scene)
     return asked
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene

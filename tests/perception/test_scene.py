@@ -51,8 +51,8 @@ def test_a_relation_is_found_from_either_side(make_scene):
 def test_mere_neighbours_have_no_nodes_among_what_bears(make_scene, meet):
     parts = [meet(2, 3, [[0, 0, 0]]), meet(2, 4, [[1, 0, 0]]), meet(3, 4, [[2, 0, 0]])]
     scene = make_scene(dict.fromkeys((2, 3, 4), POINT), parts, [(2, 3, "none"), (4, 2, "on")])
-    assert [len(scene.bearing.networks[label].nodes) for label in (2, 3, 4)] == [1, 1, 2]
-    assert scene.bearing.relations == scene.relations
+    assert [len(scene.without_unrelated_contacts.networks[label].nodes) for label in (2, 3, 4)] == [1, 1, 2]
+    assert scene.without_unrelated_contacts.relations == scene.relations
 
 
 def test_strangers_and_doubled_pairs_are_refused(make_scene, meet):
@@ -67,7 +67,7 @@ def test_strangers_and_doubled_pairs_are_refused(make_scene, meet):
 def test_an_unproven_scene_stays_unproven(make_scene, meet):
     scene = make_scene({2: POINT, 3: POINT}, [meet(2, 3, [[0, 0, 0]])])
     assert scene.optimal
-    assert not replace(scene, optimal=False).bearing.optimal
+    assert not replace(scene, optimal=False).without_unrelated_contacts.optimal
 
 
 @pytest.mark.parametrize("optimal", [True, False])

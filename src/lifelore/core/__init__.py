@@ -1,5 +1,5 @@
 """Core: errors, random streams, tasks as arrays, fast kernels and metrics; knows no world, prior or file format.
 
-`mdp` writes a task down, `planning` solves it, `learning` learns it, `compiled` makes kernels fast.
-`protocols`, `relations` and `labelled_cloud` are what rooms exchange.
+`mdp` defines tasks as tables, `planning` solves them, `learning` learns them, `compiled` compiles kernels.
+Rooms exchange the types of `protocols`, `relations` and `labelled_cloud`.
 """

@@ -1,4 +1,4 @@
-"""A file written in one step: who reads it meets what was there or what is there now, never a part."""
+"""Atomic file writes: a reader sees the old content or the new content, never a part."""
 
 import os
 from collections.abc import Iterator
@@ -8,10 +8,10 @@ from typing import BinaryIO
 
 
 @contextmanager
-def whole_file(path: str | Path) -> Iterator[BinaryIO]:
-    """A file to write into, which takes its place when the block ends well; otherwise nothing has changed.
+def atomic_write(path: str | Path) -> Iterator[BinaryIO]:
+    """Open a file that replaces `path` when the block ends without an error; otherwise `path` stays as it was.
 
-    A link is followed. The folder must be there.
+    A link is followed. The folder must exist.
 
     Raises
     ------

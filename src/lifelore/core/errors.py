@@ -1,18 +1,18 @@
-"""One short tree of errors; each is also the builtin a caller would expect.
+"""The errors this package raises; each is also the builtin error that a caller expects.
 
     LifeloreError
     ├── InputError (ValueError)         an argument, option or file breaks its rule
-    ├── NotFoundError (LookupError)     a named thing does not exist
+    ├── NotFoundError (LookupError)     no object has this name
     ├── MissingExtraError (ImportError) an optional package is not installed
     └── StoreError (OSError)            memory or disk refuses: damaged, foreign, newer, full, read-only
 
-The message names the argument, the rule, what came, and what to do next. The command line prints it
-as one line and exits 2.
+The message names the argument, the rule, the value and the next step. The command line prints it as one
+line and exits 2.
 """
 
 
 class LifeloreError(Exception):
-    """Base of every error this package raises on purpose."""
+    """Base of every error that this package raises on purpose."""
 
 
 class InputError(LifeloreError, ValueError):
@@ -20,7 +20,7 @@ class InputError(LifeloreError, ValueError):
 
 
 class NotFoundError(LifeloreError, LookupError):
-    """A named thing does not exist."""
+    """No object has this name."""
 
 
 class MissingExtraError(LifeloreError, ImportError):

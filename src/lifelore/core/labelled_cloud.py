@@ -1,4 +1,4 @@
-"""`LabelledCloud`: points and the object each belongs to, in the scene frame; where worlds meet perception."""
+"""`LabelledCloud`: points with the object that each belongs to, in the scene frame."""
 
 from dataclasses import dataclass
 
@@ -24,7 +24,7 @@ class LabelledCloud:
         `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and above).
     colours : (n, 3) uint8, optional
     camera : (3,) float64, optional
-        Where the camera stands, in the same frame.
+        Position of the camera, in the same frame.
 
     Raises
     ------

@@ -2,7 +2,7 @@
 
 A domain is one pure scalar function ``step(params, s, a, u) -> (s2, reward, event)``. From it come the
 tables that every kernel and the exact solver read, and the Gymnasium environment. `u` is one uniform in
-[0, 1); a deterministic domain ignores it. `event` says what happened beside the reward.
+[0, 1); a deterministic domain ignores it. `event` holds the bits `TERMINAL` and `COLLISION`.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 
 NOTHING, TERMINAL, COLLISION = 0, 1, 2
-"""Bits of an event: the episode ends here; the move was refused by the world (a wall, say)."""
+"""Events: none; the episode ends; the world refused the move, for instance by a wall. The last two are bits."""
 
 Step = Callable[[tuple, int, int, float], tuple[int, float, int]]
 
@@ -54,7 +54,7 @@ class Tables(NamedTuple):
 
 @dataclass(frozen=True)
 class Domain:
-    """What stays the same over tasks: states, actions, transitions, discount.
+    """The part that tasks share: states, actions, transitions, discount.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class Domain:
         where the domain is deterministic.
     tabulate : callable, optional
         ``tabulate(params, midpoints) -> (next_state, reward, event)``: the same table from a compiled
-        loop. Must equal the table enumerated through `step`, which is what happens without it.
+        loop. Must equal the table enumerated through `step`, the default.
 
     Thesis: §3.2.2.
     """
@@ -132,7 +132,7 @@ class Task:
 
 
 def _enumerate_with(domain: Domain) -> Callable:
-    """The plain enumeration of `step`; what `Domain.tabulate` replaces where it would be slow."""
+    """Enumerate by calling `step`; `Domain.tabulate` replaces this where it would be slow."""
     step = getattr(domain.step, "py_func", domain.step)
 
     def enumerate_all(params: tuple, midpoints: NDArray[np.float64]):

@@ -1,4 +1,4 @@
-"""Numbers people compare: means, paired differences and ratios, with medians and 95 % intervals."""
+"""Estimates with 95 % intervals: means, paired differences and ratios, by the BCa bootstrap."""
 
 from dataclasses import asdict, dataclass
 
@@ -9,13 +9,14 @@ from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 
 RESAMPLES = 2000
+"""Bootstrap samples of an interval; more cost time and make its ends less noisy."""
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """One measured number: the value reported, the median, a 95 % interval and how many runs stand behind.
+    """A measured number: value, median, 95 % interval and number of runs.
 
-    `ci95` is None where fewer than three values, or no spread, leave nothing to estimate it from.
+    `ci95` is None for fewer than three values and for values without spread.
     """
 
     value: float
@@ -48,7 +49,7 @@ def difference_estimate(values: ArrayLike, others: ArrayLike) -> Estimate:
 def ratio_estimate(numerators: ArrayLike, denominators: ArrayLike) -> Estimate:
     """Ratio of means of paired values, the median of the pairs' own ratios, and a paired BCa interval.
 
-    Pairs whose denominator is 0 take no part in the median; a mean denominator of 0 gives NaN.
+    The median leaves out pairs whose denominator is 0; a mean denominator of 0 gives NaN.
     """
     top, bottom = _checked(numerators), _checked(denominators)
     _check_paired(top, bottom)
@@ -61,7 +62,9 @@ def ratio_estimate(numerators: ArrayLike, denominators: ArrayLike) -> Estimate:
 def _checked(values: ArrayLike) -> NDArray[np.float64]:
     values = np.asarray(values, np.float64).ravel()
     if not values.size or not np.isfinite(values).all():
-        raise InputError("values must be finite and at least one")
+        raise InputError(
+            f"values must be at least one number, all finite, got {values.size} values; drop runs without a result"
+        )
     return values
 
 
@@ -80,7 +83,11 @@ def _mean_ratios(samples: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | None:
-    """BCa bootstrap interval of `statistic` over `rows` (n, columns), the same for the same data."""
+    """BCa bootstrap interval of `statistic` over `rows` (n, columns), the same for the same data.
+
+    Not `scipy.stats.bootstrap`: from the same draws it gave other bits in 21 of 36 samples (up to 8e-4 of the
+    interval's width where values tie), NaN with a warning without spread, and took 1.2 to 2.2 times as long.
+    """
     from scipy.special import ndtr, ndtri
 
     n = len(rows)
@@ -89,12 +96,12 @@ def _interval(rows: NDArray[np.float64], statistic) -> tuple[float, float] | Non
     draws = stream(n, "bootstrap").integers(0, n, size=(RESAMPLES, n))
     resampled = statistic(rows[draws])
     resampled = resampled[np.isfinite(resampled)]
-    # Statistics of means need the mean of what is left alone, not what is left.
+    # Statistics of means need only the mean of each left-out sample, not the sample.
     left_out = statistic(((rows.sum(axis=0) - rows) / (n - 1))[:, None])
     value = statistic(rows[None])[0]
     if not resampled.size or not np.isfinite(value) or not np.isfinite(left_out).all():
         return None
-    # The same values summed in another order differ by rounding and are no less equal.
+    # Equal samples summed in another order differ by rounding; they count as equal.
     equal = np.isclose(resampled, value, rtol=1e-12, atol=1e-12 * np.abs(resampled).max())
     below = (np.sum((resampled < value) & ~equal) + 0.5 * np.sum(equal)) / resampled.size
     bias = ndtri(np.clip(below, 1 / RESAMPLES, 1 - 1 / RESAMPLES))

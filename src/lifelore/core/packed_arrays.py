@@ -1,8 +1,7 @@
-"""Arrays with a JSON header as one npz archive: no pickle, no surprise; equal content gives equal bytes.
+"""Arrays with a JSON header as one npz archive without pickle; equal content gives equal bytes.
 
-The header lies in the archive as ``about``, UTF-8 JSON in an array of uint8, and names its format and version.
-What is read may be a stranger's: archives that unpack to too much, of another kind, newer or damaged are refused
-in one line.
+The header is the archive's array ``about``: UTF-8 JSON as uint8, with format and version. Archives come from
+anywhere: too large, of another format, newer or damaged ones raise an InputError of one line.
 """
 
 import io
@@ -23,7 +22,7 @@ UNREADABLE = (
     zipfile.BadZipFile, zlib.error, OSError, EOFError, KeyError, ValueError, TypeError, NotImplementedError,
     RuntimeError, MemoryError,
 )  # fmt: skip
-"""What the readers of damaged archives raise."""
+"""Errors that NumPy and zipfile raise for damaged archives."""
 
 
 @dataclass(frozen=True)
@@ -33,12 +32,12 @@ class PackedFormat:
     Parameters
     ----------
     name : str
-        What the header says it is.
+        The header's ``format``.
     version : int
     what, writer : str
-        For people: "action prior", and the function that writes one.
+        For error messages: "action prior", and the function that writes one.
     largest : int
-        Bytes that it may unpack to: a stranger's file must not fill the memory.
+        Largest size in bytes after unpacking, so that no file fills the memory.
     """
 
     name: str
@@ -64,20 +63,20 @@ class PackedFormat:
             The header holds something that is not JSON; nothing is written.
         """
         try:
-            told = {"format": self.name, "version": self.version, **header}
-            text = json.dumps(told, sort_keys=True, allow_nan=False).encode()
+            fields = {"format": self.name, "version": self.version, **header}
+            text = json.dumps(fields, sort_keys=True, allow_nan=False).encode()
         except (TypeError, ValueError) as error:
-            raise InputError(f"{self.what}: what is saved beside arrays must be JSON values: {error}") from None
+            raise InputError(f"{self.what}: header fields must be JSON values: {error}; convert them") from None
         save = np.savez_compressed if compress else np.savez
         save(file, about=np.frombuffer(text, np.uint8), **arrays)  # pyright: ignore[reportArgumentType]
 
     def unpack(self, content: bytes | BinaryIO, where: str) -> tuple[dict[str, Any], Arrays]:
-        """Header and arrays; `where` is named when they cannot be read.
+        """Header and arrays; errors name `where`.
 
         Raises
         ------
         InputError
-            The archive is none of this format, of another version, too large, or damaged.
+            The archive has another format or version, is too large, or damaged.
         """
         source = io.BytesIO(content) if isinstance(content, bytes) else content
         try:
@@ -99,7 +98,7 @@ class PackedFormat:
         return header, arrays
 
     def damaged(self, where: str, error: Exception) -> InputError:
-        """What to say of an archive that cannot be read."""
+        """The error for an archive that cannot be read."""
         reason = " ".join(str(error).split())[:200]
         return InputError(
             f"{where} is no {self.what} that can be read ({reason}); write it anew with {self.writer}"

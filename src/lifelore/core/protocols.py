@@ -1,4 +1,4 @@
-"""The shapes in which strangers meet: what joins two rooms passes these, and nothing else."""
+"""Protocols and records that rooms exchange: worlds, policies, signal models, records of memory."""
 
 from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 Merge = Literal["add", "newest", "union"]
 Progress = Callable[[int, int, str], None]
-"""How long work reports itself: ``progress(done, total, label)``, called from the caller's own thread."""
+"""Progress reports of long work: ``progress(done, total, label)``, called from the caller's own thread."""
 
 
 @runtime_checkable
@@ -39,14 +39,14 @@ class World(Protocol):
 
 @runtime_checkable
 class Policy(Protocol):
-    """A behaviour: state in, action out. An array of actions indexed by state serves as well."""
+    """A policy: state in, action out. An array of actions indexed by state is a policy too."""
 
     def __call__(self, state: Any) -> int: ...
 
 
 @runtime_checkable
 class SignalModel(Protocol):
-    """How likely each type makes an observed signal under a policy (thesis §4.4)."""
+    """Likelihood of an observed signal by type, under a policy (thesis §4.4)."""
 
     def log_likelihood(self, policy: int, signal: Any) -> NDArray[np.float64]:
         """Log likelihood per type, shape ``(n_types,)``; minus infinity is allowed."""
@@ -55,7 +55,7 @@ class SignalModel(Protocol):
 
 @dataclass(frozen=True)
 class Record:
-    """Something learnt, in the form memory keeps: integer slots with integer values, and how they merge.
+    """Learned knowledge in the form that memory stores: integer slots with integer values, and their merge rule.
 
     Memory never interprets a record. Learners encode (context, action) pairs as `slots` and fixed-point
     weights or targets as `values`, and read records of an older `version` themselves.
@@ -63,19 +63,19 @@ class Record:
     Parameters
     ----------
     kind : str
-        What sort of lore, e.g. ``"action_prior"``.
+        Kind of knowledge, e.g. ``"action_prior"``.
     key : str
-        Which instance: a hash of everything that must agree for two records to be about the same thing.
+        Identity: a hash of all settings that two records must share to be merged.
     version : int
         Version of the encoding; different versions never merge.
     merge : {"add", "newest", "union"}
         ``add``: values of one slot sum (weights are fixed point, so any order and grouping gives the same
         bits). ``newest``: the value of the latest contribution wins. ``union``: a slot
-        once present stays; the largest value is kept.
+        once present stays, with its largest value.
     slots, values : (n,) int64
         Slots are unique within a record.
     about : mapping of str to JSON values
-        For people: what the numbers mean. Never merged on.
+        Description for people; merging ignores it.
     """
 
     kind: str

@@ -1,7 +1,7 @@
-"""The relations' vocabulary: what a label between two objects of a scene is called and means.
+"""Vocabulary of relations between two objects: *on*, *adjacent*, *both*, *none*, and labels of pairs.
 
 For an ordered pair (a, b): *on*: a rests on b. *adjacent*: side by side, the visible gap at most `ADJACENT_GAP`,
-neither carries the other (symmetric). *both*: a is carried in part by b and also stands beside it or leans on it.
+neither carries the other (symmetric). *both*: b carries a in part, and a stands beside b or leans on it.
 *none*: near, but none of these. Thesis: §2.4.1, where the label is a vector r in {0, 1}² of (on, adjacent).
 """
 
@@ -14,12 +14,12 @@ SYMMETRIC = frozenset({ADJACENT, NONE})
 
 ADJACENT_GAP = 0.0225
 """Metres. Visible gaps of hand-labelled neighbours overlap with those of strangers from 20 to 30 mm, so the limit
-is a parameter with a stated value, in the middle of 20–25 mm, never learnt from a handful of examples."""
+is a stated parameter in the middle of 20–25 mm, not learned from a handful of examples."""
 
 
 @dataclass(frozen=True)
 class PairLabel:
-    """What somebody says of a pair: ``relation(a, b)`` with confidence 3 certain, 2 probable, 1 doubtful."""
+    """A label of a pair: ``relation(a, b)`` with confidence 3 (certain), 2 (probable) or 1 (doubtful)."""
 
     a: int
     b: int

@@ -1,4 +1,4 @@
-"""Random streams derived by name, so that adding one never moves another."""
+"""Random streams derived from names, so that adding a stream never changes another."""
 
 import hashlib
 from numbers import Integral
@@ -14,7 +14,7 @@ def stream(seed: int, *names: str | int) -> np.random.Generator:
     seed : int
         Any integer; the ``--seed`` of a run.
     *names : str or int
-        What the numbers are for, e.g. ``stream(7, "task", 3, "starts")``.
+        Purpose of the numbers, e.g. ``stream(7, "task", 3, "starts")``.
 
     Examples
     --------

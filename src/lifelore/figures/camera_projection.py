@@ -16,7 +16,7 @@ _NEAREST = 1e-3
 
 
 @dataclass(frozen=True, eq=False)
-class Camera:
+class PictureCamera:
     """A pinhole camera and the window of its image plane that the picture shows.
 
     Parameters
@@ -45,7 +45,7 @@ class Camera:
         return (plane - self.corner) * self.scale, depth
 
 
-def camera_of(cloud: LabelledCloud, size: tuple[int, int], also: ArrayLike = ()) -> Camera:
+def camera_of(cloud: LabelledCloud, size: tuple[int, int], also: ArrayLike = ()) -> PictureCamera:
     """The cloud's own camera, or a three-quarter view, turned and zoomed to its objects.
 
     Parameters
@@ -64,7 +64,7 @@ def camera_of(cloud: LabelledCloud, size: tuple[int, int], also: ArrayLike = ())
         position = middle + 2.2 * reach * _THREE_QUARTERS / np.linalg.norm(_THREE_QUARTERS)
     axes = _axes_towards(middle - position)
     plane, _ = _onto_plane(subject, position, axes)
-    return Camera(position, axes, *_window(plane[np.isfinite(plane[:, 0])], size), size)
+    return PictureCamera(position, axes, *_window(plane[np.isfinite(plane[:, 0])], size), size)
 
 
 def _subject(cloud: LabelledCloud) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
-from lifelore.figures.camera_projection import Camera
+from lifelore.figures.camera_projection import PictureCamera
 from lifelore.figures.object_palette import mixed, rgb
 from lifelore.figures.style import INK, PAPER
 
@@ -35,7 +35,7 @@ class CloudImage:
     labels: NDArray[np.int64]
 
 
-def render_cloud(cloud: LabelledCloud, camera: Camera, palette: dict[int, str]) -> CloudImage:
+def render_cloud(cloud: LabelledCloud, camera: PictureCamera, palette: dict[int, str]) -> CloudImage:
     """The cloud seen by `camera`.
 
     Parameters

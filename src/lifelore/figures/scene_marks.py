@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.figures.camera_projection import Camera
+from lifelore.figures.camera_projection import PictureCamera
 from lifelore.figures.object_palette import mixed
 from lifelore.figures.scene_document import Bond, SceneDocument
 from lifelore.figures.style import INK, PAPER, YELLOW
@@ -21,7 +21,7 @@ _HALO = 1.4
 
 
 def draw_networks(
-    axes: "Axes", scene: SceneDocument, camera: Camera, palette: Mapping[int, str], scale: float = 1.0
+    axes: "Axes", scene: SceneDocument, camera: PictureCamera, palette: Mapping[int, str], scale: float = 1.0
 ) -> None:
     """Contact points as open circles, each network's edges as thick lines, contacts between objects dashed."""
     for ends in scene.contact_edges:
@@ -35,7 +35,7 @@ def draw_networks(
         axes.plot(*at.T, "o", ms=6.6 * scale, mfc="none", mec=colour, mew=1.7 * scale, zorder=6)
 
 
-def draw_holes(axes: "Axes", scene: SceneDocument, camera: Camera) -> None:
+def draw_holes(axes: "Axes", scene: SceneDocument, camera: PictureCamera) -> None:
     """Each hole as a shaded, hatched face."""
     from matplotlib.patches import Polygon
 

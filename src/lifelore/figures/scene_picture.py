@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures.camera_projection import Camera, camera_of
+from lifelore.figures.camera_projection import PictureCamera, camera_of
 from lifelore.figures.cloud_image import CloudImage, render_cloud
 from lifelore.figures.label_placement import place_labels
 from lifelore.figures.object_palette import object_palette
@@ -121,7 +121,12 @@ def _draw(
 
 
 def _draw_relations(
-    axes: "Axes", image: CloudImage, scene: SceneDocument, camera: Camera, palette: dict[int, str], scale: float
+    axes: "Axes",
+    image: CloudImage,
+    scene: SceneDocument,
+    camera: PictureCamera,
+    palette: dict[int, str],
+    scale: float,
 ) -> None:
     labels = _labels_at(image, scene, camera, palette, scale)
     between = [bond for bond in scene.bonds if {bond.a, bond.b} <= labels.keys()]
@@ -132,7 +137,7 @@ def _draw_relations(
 
 
 def _labels_at(
-    image: CloudImage, scene: SceneDocument, camera: Camera, palette: dict[int, str], scale: float
+    image: CloudImage, scene: SceneDocument, camera: PictureCamera, palette: dict[int, str], scale: float
 ) -> dict[int, np.ndarray]:
     """Where each object's label goes; an object of which nothing is seen has none."""
     anchors = {}

@@ -14,7 +14,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import NotFoundError, StoreError
 
 if TYPE_CHECKING:
@@ -135,7 +135,7 @@ def save_figure(figure: "Figure", path: str | Path) -> Path:
     image = _small_enough(figure, path)
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(image)
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

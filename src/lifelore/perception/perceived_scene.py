@@ -1,28 +1,27 @@
-"""`perceived_scene`: the whole way from labelled points to a consistent scene (thesis §2.3, Algorithm 1)."""
+"""`perceived_scene`: from labelled points to a consistent scene with relations (thesis §2.3, Algorithm 1)."""
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.scene import Scene
 
 
 def perceived_scene(
     cloud: LabelledCloud, model: RelationClassifier | None = None, *, consistent: bool = True
 ) -> Scene:
-    """What a cloud shows: contacts, networks, relations; `Scene.optimal` is False where logic ran out of bounds.
+    """Contacts, networks and relations of a cloud; `Scene.optimal` is False where the solver reached its bound.
 
     Parameters
     ----------
     cloud : LabelledCloud
-        Of any number of objects, none included.
+        With any number of objects, also without any.
     model : RelationClassifier, optional
-        Names the relations; default the one shipped with the package.
+        Predicts the relations; default: the shipped classifier.
     consistent : bool
-        Whether relations are reconciled by logic (see `scene_logic`). Only for models whose words are *on*,
-        *adjacent*, *both* and *none*: of other words nothing is known that could contradict.
+        Whether logic makes the relations consistent (see `scene_logic`). Applies only to models whose names are
+        *on*, *adjacent*, *both* and *none*; no rules are known for other names.
     """
     model = model or shipped_model()
     found = interfaces(cloud, model.settings)

@@ -1,8 +1,8 @@
-"""`Scene`: one object with every layer of a scene, from the points up to what bears on what.
+"""`Scene`: all layers of a scene, from the points to contact point networks and relations.
 
 The layers of thesis Fig. 2.8: the cloud; the contact point networks, one an object, merged over all the pairs it
-takes part in (§2.3.6), with the contact edges between them; the relations. What is computed from these (holes,
-facts, planning problems, …) lives in files of its own and takes a `Scene`.
+takes part in (§2.3.6), with the contact edges between them; the relations. Holes, facts, planning problems and
+other results are computed from a `Scene` in their own modules.
 """
 
 from dataclasses import dataclass, replace
@@ -15,7 +15,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE
 from lifelore.perception.contacts.contact_network import ContactPointNetwork
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation
 
@@ -45,11 +45,11 @@ class Scene:
     cloud : LabelledCloud
         The lowest layer; its objects are the scene's objects.
     interfaces : tuple of Interface
-        Where the objects, and the table, come near each other, pair by pair; each pair at most once.
+        One for each near pair of objects, or of an object and the table.
     relations : tuple of Relation
         The predicates; see `scene_logic.most_likely_scene` for making them consistent.
     optimal : bool
-        False where logic reconciled the relations, but could not prove that no consistent scene is likelier.
+        False where the solver could not prove that no consistent scene is likelier.
 
     Raises
     ------
@@ -64,11 +64,11 @@ class Scene:
 
     def __post_init__(self) -> None:
         known = {*self.objects, TABLE}
-        for what, parts in (("interface", self.interfaces), ("relation", self.relations)):
+        for kind, parts in (("interface", self.interfaces), ("relation", self.relations)):
             for part in parts:
                 if not {part.a, part.b} <= known:
                     raise InputError(
-                        f"{what} ({part.a}, {part.b}) must join objects that have points: {sorted(known)}"
+                        f"{kind} ({part.a}, {part.b}) must join objects that have points: {sorted(known)}"
                     )
         pairs = [frozenset((part.a, part.b)) for part in self.interfaces]
         if len(set(pairs)) < len(pairs):
@@ -113,14 +113,14 @@ class Scene:
         return tuple(edges)
 
     @cached_property
-    def bearing(self) -> "Scene":
-        """The same scene without the interfaces of pairs that are near, but related by *none*.
+    def without_unrelated_contacts(self) -> "Scene":
+        """The same scene without the interfaces of near pairs whose relation is *none*.
 
-        Separators find facing points between strangers too, up to `ContactSettings.near` apart; in this scene's
-        networks they have no nodes. Pairs without a relation stay.
+        Separators find facing points between unrelated objects too, up to `ContactSettings.near` apart; these
+        points are left out of the networks. Pairs without any relation stay.
         """
-        strangers = {frozenset((r.a, r.b)) for r in self.relations if r.relation == NONE}
-        near = tuple(part for part in self.interfaces if frozenset((part.a, part.b)) not in strangers)
+        unrelated = {frozenset((r.a, r.b)) for r in self.relations if r.relation == NONE}
+        near = tuple(part for part in self.interfaces if frozenset((part.a, part.b)) not in unrelated)
         return replace(self, interfaces=near)
 
     def position(self, label: int, node: int) -> NDArray[np.float64]:
@@ -128,10 +128,10 @@ class Scene:
         return self.networks[label].nodes[node].position
 
     def relation_of(self, a: int, b: int) -> Relation | None:
-        """The first relation that joins the two, whatever its direction; None where none is known."""
+        """The first relation between the two, in either direction; None where none is known."""
         return next((r for r in self.relations if {r.a, r.b} == {a, b}), None)
 
 
 def object_name(label: int) -> str:
-    """What an object is called where names are wanted: ``table``, or its number."""
+    """Name of an object: ``table``, or its number."""
     return TABLE_NAME if label == TABLE else str(label)

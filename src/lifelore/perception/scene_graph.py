@@ -19,12 +19,12 @@ def relation_graph(scene: Scene) -> "nx.MultiDiGraph":
     import networkx as nx
 
     graph = nx.MultiDiGraph()
-    stated = [r for r in scene.relations if r.relation != NONE]
-    for label in sorted({*scene.objects, *(TABLE for r in stated if TABLE in (r.a, r.b))}):
+    related = [r for r in scene.relations if r.relation != NONE]
+    for label in sorted({*scene.objects, *(TABLE for r in related if TABLE in (r.a, r.b))}):
         points = scene.cloud.of(label)
         centroid = tuple(points.mean(axis=0).tolist()) if len(points) else None
         graph.add_node(label, name=object_name(label), n_points=len(points), centroid=centroid)
-    for r in sorted(stated, key=lambda r: (r.a, r.b, r.relation)):
+    for r in sorted(related, key=lambda r: (r.a, r.b, r.relation)):
         fields = {"relation": r.relation, "confidence": r.confidence, "gap": r.gap}
         graph.add_edge(r.a, r.b, symmetric=r.relation in SYMMETRIC, **fields)
     return graph
@@ -49,6 +49,6 @@ def to_dot(scene: Scene) -> str:
 
 
 def quoted(text: str) -> str:
-    """A DOT string: within double quotes, with quotes, backslashes and line ends escaped."""
+    """A DOT string: in double quotes, with quotes, backslashes and line ends escaped."""
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\r", "").replace("\n", "\\n")
     return f'"{escaped}"'

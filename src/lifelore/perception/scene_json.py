@@ -8,7 +8,7 @@
 Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
 ``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a
 faces contact point j of b; a hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their
-places, ``outline`` the border of its opening. A relation's ``gap`` is the mean of the five smallest distances
+positions, ``outline`` the border of its opening. A relation's ``gap`` is the mean of the five smallest distances
 between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
 """
 
@@ -16,7 +16,7 @@ import math
 from collections.abc import Iterable
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.reasoning.scene_facts import scene_facts
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import TABLE_NAME, Scene

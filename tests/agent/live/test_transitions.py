@@ -3,7 +3,7 @@
 import numpy as np
 
 from lifelore.agent.live.transitions import agreement, cells_of, frame_key, from_record, model_table, to_record
-from lifelore.core.learning.known_world import UNKNOWN, blank_model
+from lifelore.core.learning.known_world import UNKNOWN, unknown_world
 from lifelore.domains.grids.grid_world import GridWorld
 
 
@@ -15,16 +15,16 @@ def knowing(floor: GridWorld):
     """A model that knows every move and percept of `floor`."""
     own = np.arange(floor.n_states)[:, None]
     target = np.where(floor.neighbour < 0, own, floor.neighbour).astype(np.int32)
-    return blank_model(floor.n_states, 4)._replace(target=target, percept=floor.percepts.copy())
+    return unknown_world(floor.n_states, 4)._replace(target=target, percept=floor.percepts.copy())
 
 
 def record_of(floor: GridWorld, model):
-    return to_record(floor, model_table(floor, model), model_table(floor, blank_model(floor.n_states, 4)))
+    return to_record(floor, model_table(floor, model), model_table(floor, unknown_world(floor.n_states, 4)))
 
 
 def test_slots_and_values_by_hand():
     floor = world("..#\n...")
-    model = blank_model(floor.n_states, 4)
+    model = unknown_world(floor.n_states, 4)
     model.target[0, 2] = 1  # from cell 0 east to cell 1
     model.target[1, 1] = 3  # from cell 1 south to the middle of the lower row, which is state 3
     model.percept[3] = 77

@@ -10,20 +10,20 @@ from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import (
     GOAL,
     UNKNOWN,
-    Model,
+    WorldModel,
     add_moves,
-    blank_model,
-    blank_ways,
-    find_ways,
+    find_goal_distances,
     goal_distances,
+    no_incoming_moves,
+    unknown_world,
 )
 from lifelore.core.learning.model_learning import (
     ALL_NEW,
     MOST_NEWS,
     ExplorationStrategy,
-    Perceived,
+    StateInfo,
     explore,
-    new_explorer,
+    new_model_learner,
 )
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.streams import stream
@@ -49,8 +49,8 @@ def maze(seed: int, n=40, n_actions=4, goals=1) -> Tables:
 def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunks=150):  # noqa: B008 — a frozen tuple
     """`KnownValue.update` and `exact` after every `chunk` steps; the follower too."""
     n = tables.n_states
-    explorer = new_explorer(n, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
-    seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, tables.n_actions)))
+    explorer = new_model_learner(n, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
+    seen = StateInfo(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, tables.n_actions)))
     known, curve, values = KnownValue(tables, model, explorer, 0.95), new_curve(chunks * chunk), []
     for _ in range(chunks):
         explore(tables, model, seen, strategy, explorer, curve, 60, 0.95, chunk)
@@ -74,7 +74,7 @@ def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunk
 )
 def test_kept_up_to_date_equals_evaluating_every_state(seed, strategy, goals, remembered):
     """With nothing, half or all of the world remembered; with several goals a way may end at an unmet one."""
-    tables, model = maze(seed, goals=goals), blank_model(40, 4)
+    tables, model = maze(seed, goals=goals), unknown_world(40, 4)
     kept = np.random.default_rng(seed).random((40, 4)) < remembered
     model.target[kept] = tables.next_state[:, :, 0][kept]
     known, values = follow(tables, model, strategy, seed)
@@ -84,7 +84,7 @@ def test_kept_up_to_date_equals_evaluating_every_state(seed, strategy, goals, re
 
 def test_ways_are_found_and_get_better():
     """Guards the property above against mazes in which nothing happens."""
-    _, values = follow(maze(3), blank_model(40, 4), chunks=300)
+    _, values = follow(maze(3), unknown_world(40, 4), chunks=300)
     steps = np.diff(values[:, 0])
     assert values[0, 0] == 0
     assert (steps >= -1e-12).all()
@@ -97,7 +97,7 @@ def test_any_world_and_any_remembered_model(draw_world, seed):
     """Rewards on the way, bad ends, a model that is not true: then every state is evaluated."""
     tables = draw_world(seed, n_states=12)
     random = np.random.default_rng(seed)
-    model = Model(random.integers(-1, 12, (12, 3)).astype(np.int32), random.integers(0, 2, 12))
+    model = WorldModel(random.integers(-1, 12, (12, 3)).astype(np.int32), random.integers(0, 2, 12))
     _, values = follow(tables, model, seed=seed, chunk=3, chunks=60)
     assert values[:, 0] == pytest.approx(values[:, 1], rel=1e-12, abs=1e-300)
 
@@ -110,8 +110,8 @@ def test_moves_added_in_any_order_give_the_distances_found_at_once(seed):
     place = random.choice([0, 1, 1, 1, 2], 25).astype(np.int8)
     place[random.integers(25)] = GOAL
     target = np.full_like(truth, UNKNOWN)
-    ways = blank_ways(25, 3, np.arange(25, dtype=np.int32))
-    find_ways(target, place, ways)
+    ways = no_incoming_moves(25, 3, np.arange(25, dtype=np.int32))
+    find_goal_distances(target, place, ways)
     for moves in np.array_split(random.permutation(75), 9):
         target.flat[moves] = truth.flat[moves]
         add_moves(target, place, np.concatenate([moves, moves[:2]]), ways)  # a move twice is one move
@@ -134,10 +134,10 @@ def test_more_news_than_are_listed_are_all_found():
         np.ones(1),
         np.zeros(1, np.int32),
     )
-    explorer = new_explorer(n, 2, stream(0), stream(1))
-    model = blank_model(n, 2)
+    explorer = new_model_learner(n, 2, stream(0), stream(1))
+    model = unknown_world(n, 2)
     known = KnownValue(tables, model, explorer, 0.999)
-    seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 2)))
+    seen = StateInfo(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 2)))
     assert known.update() == 0
     explore(tables, model, seen, ExplorationStrategy(), explorer, new_curve(1), 10**6, 0.999, 10**6)
     assert explorer.cursor[NEWS] == ALL_NEW

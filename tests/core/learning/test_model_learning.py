@@ -15,16 +15,16 @@ from lifelore.core.learning.known_world import (
     LOOKED,
     NOT_LOOKED,
     UNKNOWN,
-    Model,
-    blank_model,
+    WorldModel,
     known_policy,
+    unknown_world,
 )
 from lifelore.core.learning.model_learning import (
     ExplorationStrategy,
-    Perceived,
+    StateInfo,
     check_deterministic,
     explore,
-    new_explorer,
+    new_model_learner,
 )
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.planning.planning import mean_start_value, optimal_q, policy_values
@@ -51,20 +51,20 @@ def corridor(walls=(), n=6, goal=5, start=0) -> Tables:
     return Tables(next_state, reward, event, np.ones(1), np.array([start], np.int32))
 
 
-def perceived(tables, percept=None, try_cost=0.0) -> Perceived:
+def perceived(tables, percept=None, try_cost=0.0) -> StateInfo:
     n = tables.n_states
     percept = np.zeros(n, np.int64) if percept is None else np.asarray(percept, np.int64)
-    return Perceived(percept, np.zeros(n, np.int32), np.full((1, tables.n_actions), float(try_cost)))
+    return StateInfo(percept, np.zeros(n, np.int32), np.full((1, tables.n_actions), float(try_cost)))
 
 
-def remembered(tables, percept=None) -> Model:
+def remembered(tables, percept=None) -> WorldModel:
     """Everything known of how the world was."""
     seen = np.zeros(tables.n_states, np.int64) if percept is None else np.asarray(percept, np.int64)
-    return Model(tables.next_state[:, :, 0].copy(), seen)
+    return WorldModel(tables.next_state[:, :, 0].copy(), seen)
 
 
 def new(tables, seed=0):
-    return new_explorer(tables.n_states, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
+    return new_model_learner(tables.n_states, tables.n_actions, stream(seed, "world"), stream(seed, "own"))
 
 
 def lived(tables, model, seen=None, strategy=PLANNED, episodes=3, max_steps=100, budget=ALL, seed=0):
@@ -103,7 +103,7 @@ def test_episodes_end_at_the_cap():
 
 def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
     tables = corridor(start=2)
-    model = blank_model(6, 2)
+    model = unknown_world(6, 2)
     explorer, curve = lived(tables, model, episodes=30, seed=1)
     assert curve.reached[-5:].all()
     assert (curve.steps[-5:] == 3).all()
@@ -118,7 +118,7 @@ def test_the_goal_is_seen_in_an_unknown_world_and_then_sought():
 def test_a_bad_end_is_avoided_thereafter():
     tables = corridor(start=2)
     tables.reward[1, LEFT], tables.event[1, LEFT] = -50, TERMINAL  # the left end is a pit
-    explorer, curve = lived(tables, blank_model(6, 2), episodes=30, seed=3)
+    explorer, curve = lived(tables, unknown_world(6, 2), episodes=30, seed=3)
     assert explorer.place[0] == DEAD_END
     assert explorer.tried[1, LEFT] == 1
     assert curve.reached.sum() == 29
@@ -128,7 +128,7 @@ def test_a_bad_end_is_avoided_thereafter():
 def test_least_tried_keeps_the_moves_of_a_place_even():
     tables = corridor(start=2, n=4, goal=-1)
     explorer, _ = lived(
-        tables, blank_model(4, 2), strategy=ExplorationStrategy(planned=False), episodes=1, max_steps=1001
+        tables, unknown_world(4, 2), strategy=ExplorationStrategy(planned=False), episodes=1, max_steps=1001
     )
     spread = explorer.tried.max(axis=1) - explorer.tried.min(axis=1)
     assert (spread <= 1).all()
@@ -137,7 +137,7 @@ def test_least_tried_keeps_the_moves_of_a_place_even():
 
 def test_senses_show_every_move_of_a_place_without_trying_it():
     tables = corridor(start=0, goal=-1)
-    model = blank_model(6, 2)
+    model = unknown_world(6, 2)
     _, curve = lived(tables, model, strategy=ExplorationStrategy(senses=True), episodes=1, max_steps=3)
     assert model.target[:3].tolist() == tables.next_state[:3, :, 0].tolist()
     assert (model.target[3:] == UNKNOWN).all()
@@ -146,7 +146,7 @@ def test_senses_show_every_move_of_a_place_without_trying_it():
 
 def test_exhaustive_tries_everything_before_it_settles():
     tables = corridor(start=0, n=4, goal=3)
-    model = blank_model(4, 2)
+    model = unknown_world(4, 2)
     lived(tables, model, strategy=ExplorationStrategy(exhaustive=True), episodes=40)
     assert (model.target[:3] != UNKNOWN).all()
 
@@ -213,7 +213,7 @@ def test_a_wall_across_the_remembered_way_is_met_once():
     event[0, LEFT], event[4, RIGHT] = COLLISION, TERMINAL
     reward = np.where(event == TERMINAL, 100.0, np.where(event == COLLISION, -10.0, 0.0))
     tables = Tables(blocked[:, :, None], reward, event, np.ones(1), np.zeros(1, np.int32))
-    model = Model(ring.copy(), np.zeros(6, np.int64))
+    model = WorldModel(ring.copy(), np.zeros(6, np.int64))
     _, curve = lived(tables, model, episodes=20)
     assert curve.collisions.sum() <= 1
     assert curve.steps[-1] == 5
@@ -295,11 +295,11 @@ class Bookkeeper:
 def test_every_step_beside_a_naive_bookkeeper(draw_world, seed, with_memory, strategy):
     tables = draw_world(seed, n_states=12)
     random = np.random.default_rng(seed)
-    model = blank_model(12, 3)
+    model = unknown_world(12, 3)
     if with_memory:  # true in most places only
         model = remembered(tables, random.integers(0, 2, 12))
         model.target[random.random((12, 3)) < 0.2] = random.integers(-1, 12)
-    seen = Perceived(
+    seen = StateInfo(
         random.integers(0, 2, 12), random.integers(0, 2, 12).astype(np.int32), random.choice([0, 3.0], (2, 3))
     )
     book = Bookkeeper(tables, model, seen, strategy)
@@ -355,7 +355,7 @@ def _checked_plan(book, s, explorer, action) -> list[int]:
 )
 def test_chunks_change_no_bit(draw_world, budget, strategy):
     tables = draw_world(11, n_states=30)
-    models = blank_model(30, 3), blank_model(30, 3)
+    models = unknown_world(30, 3), unknown_world(30, 3)
     whole = lived(tables, models[0], strategy=strategy, episodes=40)
     parts = lived(tables, models[1], strategy=strategy, episodes=40, budget=budget)
     for a, b in zip((*whole[0], *whole[1], *models[0]), (*parts[0], *parts[1], *models[1]), strict=True):
@@ -366,7 +366,7 @@ def test_threads_change_no_bit(draw_world):
     tables = draw_world(2, n_states=60, n_actions=4)
 
     def one(seed):
-        model = blank_model(60, 4)
+        model = unknown_world(60, 4)
         explorer, curve = lived(tables, model, episodes=60, seed=seed)
         return (*explorer, *curve, *model)
 
@@ -384,4 +384,4 @@ def test_worlds_it_cannot_plan_in(draw_world):
         check_deterministic(draw_world(0, n_outcomes=3))
     for n_actions in (0, 128):
         with pytest.raises(InputError, match=rf"n_actions must lie in \[1, 127\], got {n_actions}"):
-            new_explorer(5, n_actions, stream(0), stream(1))
+            new_model_learner(5, n_actions, stream(0), stream(1))

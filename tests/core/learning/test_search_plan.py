@@ -16,12 +16,12 @@ from lifelore.core.learning.known_world import (
     LOOKED,
     NOT_LOOKED,
     UNKNOWN,
-    Model,
+    WorldModel,
     best_known_actions,
     goal_distances,
     known_policy,
 )
-from lifelore.core.learning.model_learning import new_explorer
+from lifelore.core.learning.model_learning import new_model_learner
 from lifelore.core.learning.search_plan import NO_CRUMBS, plan_search
 from lifelore.core.streams import stream
 
@@ -44,7 +44,7 @@ def knowledge(seed: int, n_states=10, n_actions=3, goal=False):
 
 def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0):
     """The actions of `_plan`, first one first."""
-    desk = new_explorer(*target.shape, stream(0, "world"), stream(0, "own"))
+    desk = new_model_learner(*target.shape, stream(0, "world"), stream(0, "own"))
     own = random_state(stream(seed, "own"))
     length = plan_search(
         start,
@@ -213,9 +213,9 @@ def test_goal_distances_are_scipys(seed):
 @given(seeds)
 def test_best_known_actions_shorten_the_way_and_leave_none_out(seed):
     target, place, *_ = knowledge(seed, n_states=15, goal=True)
-    explorer = new_explorer(15, 3, stream(0), stream(1))
+    explorer = new_model_learner(15, 3, stream(0), stream(1))
     explorer.place[:] = place
-    model = Model(target, np.zeros(15, np.int64))
+    model = WorldModel(target, np.zeros(15, np.int64))
     distance = goal_distances(target, place)
     expected = [
         [t != UNKNOWN and distance[s] > 0 and distance[t] == distance[s] - 1 for t in target[s]] for s in range(15)

@@ -8,7 +8,7 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.domains.tabletop.scene_folder import SceneFolder
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.tabletop import scenes
+from lifelore.domains.tabletop.tabletop import tabletop_scenes
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim
@@ -17,7 +17,7 @@ pytestmark = pytest.mark.sim
 @pytest.fixture(scope="module")
 def written(tmp_path_factory):
     folder = tmp_path_factory.mktemp("scenes") / "new"
-    drawn = list(scenes(2, 1, TabletopSettings(n_objects=(2, 3))))
+    drawn = list(tabletop_scenes(2, 1, TabletopSettings(n_objects=(2, 3))))
     writer = SceneFolder(folder)
     for scene in drawn:
         writer.write(scene)

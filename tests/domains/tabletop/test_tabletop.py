@@ -17,7 +17,7 @@ from lifelore.domains.tabletop.physics import Tabletop
 from lifelore.domains.tabletop.pose import Pose, about
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.shapes import arch, ball, box, cylinder, hinged_blocks, torus
-from lifelore.domains.tabletop.tabletop import draw_scene, scenes, settle_scene
+from lifelore.domains.tabletop.tabletop import sample_scene, settle_scene, tabletop_scenes
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim
@@ -153,26 +153,28 @@ def same(first, second):
 
 def test_serial_and_parallel_scenes_are_the_same():
     settings = TabletopSettings(n_objects=(2, 4), mix={"on": 1, "both": 1, "adjacent": 1, "none": 1})
-    for first, second in zip(scenes(6, 5, settings), scenes(6, 5, settings, jobs=2), strict=True):
+    for first, second in zip(
+        tabletop_scenes(6, 5, settings), tabletop_scenes(6, 5, settings, jobs=2), strict=True
+    ):
         same(first, second)
 
 
 def test_a_scene_depends_on_its_seed_and_number_alone():
-    same(draw_scene(3, 7), draw_scene(3, 7))
-    other = draw_scene(4, 7)
-    assert other.cloud.points.shape != draw_scene(3, 7).cloud.points.shape
+    same(sample_scene(3, 7), sample_scene(3, 7))
+    other = sample_scene(4, 7)
+    assert other.cloud.points.shape != sample_scene(3, 7).cloud.points.shape
 
 
 def test_pairs_meet_their_quota():
     mix = {"on": 2, "adjacent": 1, "both": 1, "none": 1}
-    drawn = list(scenes(10, 0, TabletopSettings(arrangement="pair", mix=mix)))
+    drawn = list(tabletop_scenes(10, 0, TabletopSettings(arrangement="pair", mix=mix)))
     relations = [label.relation for scene in drawn for label in scene.truth if label.b != TABLE]
     assert [relations.count(relation) for relation in mix] == [4, 2, 2, 2]
 
 
 @pytest.mark.parametrize("name", sorted(set(ARRANGEMENTS) - {"mixed", "pair"}))
 def test_every_arrangement_settles_as_named(name):
-    scene = draw_scene(1, 0, TabletopSettings(arrangement=name, separation=0.3))
+    scene = sample_scene(1, 0, TabletopSettings(arrangement=name, separation=0.3))
     relations = {(label.a, label.b): label.relation for label in scene.truth}
     for pair in ARRANGEMENTS[name].on:
         assert relations[pair] in ("on", "both")
@@ -182,7 +184,7 @@ def test_every_arrangement_settles_as_named(name):
 
 @pytest.mark.parametrize("camera", ["kinect", "stereo"])
 def test_labels_are_objects_above_the_table(camera):
-    scene = draw_scene(2, 1, TabletopSettings(arrangement="pair", camera=camera, shapes="held-out"))
+    scene = sample_scene(2, 1, TabletopSettings(arrangement="pair", camera=camera, shapes="held-out"))
     assert scene.cloud.objects == (2, 3)
     heights = scene.cloud.points[scene.cloud.labels > TABLE, 2]
     assert heights.min() > -0.01
@@ -196,7 +198,7 @@ def test_a_users_mesh_takes_part(tmp_path):
     shape = shape_from_mesh(str(path))
     assert np.ptp(shape.outline(), axis=0) == pytest.approx((0.12, 0.08, 0.05), abs=1e-6)
     assert settled(stand(shape)).poses[0].position[2] == pytest.approx(0.025, abs=3e-4)
-    kinds = {s.kind for i in range(3) for s in draw_scene(0, i, TabletopSettings(meshes=(str(path),))).shapes}
+    kinds = {s.kind for i in range(3) for s in sample_scene(0, i, TabletopSettings(meshes=(str(path),))).shapes}
     assert "mesh" in kinds
 
 
@@ -216,15 +218,15 @@ def test_mistaken_meshes_and_settings_are_refused(tmp_path):
         with pytest.raises(InputError):
             TabletopSettings(**settings)
     with pytest.raises(InputError, match="arrangement must be one of"):
-        draw_scene(0, 0, TabletopSettings(arrangement="ring"))
+        sample_scene(0, 0, TabletopSettings(arrangement="ring"))
 
 
 def test_without_mujoco_one_line_says_what_to_do():
     code = (
         "import sys; sys.modules['mujoco'] = None\n"
-        "from lifelore.domains.tabletop.tabletop import draw_scene\n"
+        "from lifelore.domains.tabletop.tabletop import sample_scene\n"
         "from lifelore.core.errors import MissingExtraError\n"
-        "try: draw_scene(0, 0)\n"
+        "try: sample_scene(0, 0)\n"
         "except MissingExtraError as error: print(error)"
     )
     told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import PairLabel
-from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, judge
+from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, true_relations
 
 UP, SIDE = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
 SLANT = (np.sin(np.radians(60)), 0.0, np.cos(np.radians(60)))
@@ -19,7 +19,7 @@ def told(contacts, gaps, bottoms, **limits):
     borne = bearing(first, second, normals, forces, places, np.full(len(bottoms), 10.0))
     near = {(gap.a, gap.b): gap for gap in gaps}
     heights = np.array([(bottom, bottom + 0.1) for bottom in bottoms])
-    return judge(borne, near, heights, range(2, 2 + len(bottoms)), **limits)
+    return true_relations(borne, near, heights, range(2, 2 + len(bottoms)), **limits)
 
 
 def standing(thing, weight=10.0):

@@ -4,7 +4,12 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_columns import bytes_of_colours, cloud_from_columns, narrowed, unpacked
+from lifelore.perception.clouds.cloud_columns import (
+    cast_to_header_type,
+    cloud_from_columns,
+    colours_as_bytes,
+    unpack_colours,
+)
 
 XYZ = {name: np.array([0.0, 1.0], np.float32) for name in "xyz"}
 
@@ -12,16 +17,16 @@ XYZ = {name: np.array([0.0, 1.0], np.float32) for name in "xyz"}
 def test_a_packed_colour_is_the_same_as_an_integer_and_as_the_bits_of_a_float() -> None:
     packed = np.array([0x00FF8001, 0xFF0A0B0C], np.uint32)
     expected = [[255, 128, 1], [10, 11, 12]]
-    assert unpacked(packed).tolist() == expected
-    assert unpacked(np.array([0x00FF8001, 0x000A0B0C], np.uint32).view(np.float32)).tolist() == expected
+    assert unpack_colours(packed).tolist() == expected
+    assert unpack_colours(np.array([0x00FF8001, 0x000A0B0C], np.uint32).view(np.float32)).tolist() == expected
 
 
 def test_colours_as_bytes_and_as_shares() -> None:
-    assert bytes_of_colours(np.array([[0.0, 0.5, 1.0]])).tolist() == [[0, 128, 255]]
-    assert bytes_of_colours(np.array([[0, 128, 255]])).tolist() == [[0, 128, 255]]
-    assert bytes_of_colours(np.array([[np.nan, 2.0, 255.0]])).tolist() == [[0, 2, 255]]
+    assert colours_as_bytes(np.array([[0.0, 0.5, 1.0]])).tolist() == [[0, 128, 255]]
+    assert colours_as_bytes(np.array([[0, 128, 255]])).tolist() == [[0, 128, 255]]
+    assert colours_as_bytes(np.array([[np.nan, 2.0, 255.0]])).tolist() == [[0, 2, 255]]
     with pytest.raises(InputError, match="0 to 255"):
-        bytes_of_colours(np.array([[256, 0, 0]]))
+        colours_as_bytes(np.array([[256, 0, 0]]))
 
 
 def test_separate_channels_and_names_in_capitals() -> None:
@@ -49,5 +54,5 @@ def test_a_missing_coordinate_is_named() -> None:
 
 
 def test_whole_columns_read_as_text() -> None:
-    assert narrowed(np.array([4294967295.0]), np.dtype(np.uint32)).tolist() == [4294967295]
-    assert np.isnan(narrowed(np.array([np.nan, 1.0]), np.dtype(np.uint32))[0])
+    assert cast_to_header_type(np.array([4294967295.0]), np.dtype(np.uint32)).tolist() == [4294967295]
+    assert np.isnan(cast_to_header_type(np.array([np.nan, 1.0]), np.dtype(np.uint32))[0])

@@ -35,10 +35,10 @@ def test_suffix_helps_where_content_does_not(tmp_path):
         (b"", "is empty; give a PCD, PLY, npz or npy file"),
         (b"hello", "is no cloud we know"),
         (b"\x89MCAP0\r\n", "is a rosbag, not a cloud; pass the .bag or .mcap file"),
-        (PCD.replace(b"1 1 1", b"1 1"), "is damaged or no cloud"),
-        (PCD.replace(b"1 1 1", b"1 1 one"), "is damaged or no cloud"),
+        (PCD.replace(b"1 1 1", b"1 1"), "is damaged or not a cloud"),
+        (PCD.replace(b"1 1 1", b"1 1 one"), "is damaged or not a cloud"),
         (PCD.replace(b"0 0 0\n1 1 1", b"nan 0 0\n1 nan 1"), "no finite point among 2"),
-        (b"PK\x03\x04 and then nothing", "is damaged or no cloud"),
+        (b"PK\x03\x04 and then nothing", "is damaged or not a cloud"),
         (PCD.replace(b"x y z", b"x y \x1b[31mz"), "has no field z"),
     ],
 )

@@ -11,7 +11,7 @@ from scipy.spatial.distance import pdist, squareform
 
 from lifelore.core.errors import InputError
 from lifelore.perception.contacts.contact_network import ContactPointNetwork, spanning_edges
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 
 
 def contact(at, other=3):

@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.perception.pairs.directed_label import as_directed, directed_classes, mirror_order, mirrored
-from lifelore.perception.pairs.gap_rule import BESIDE, applies, decided, inner_label
-from lifelore.perception.trees.tree_relations import tempered
+from lifelore.perception.pairs.gap_rule import BESIDE, applies, inner_label, resolve_beside
+from lifelore.perception.trees.tree_relations import apply_temperature
 from lifelore.perception.trees.tree_training import best_temperature
 
 
@@ -30,7 +30,7 @@ def test_a_label_that_the_gap_explains_is_beside(label, gap, inner):
 def test_beside_is_shared_out_by_the_gap_and_nothing_is_lost():
     gaps = np.array([0.001, 0.0225, 0.05])
     shares = {BESIDE: np.full(3, 0.6), ON: np.full(3, 0.3), ADJACENT: np.full(3, 0.1)}
-    found = decided(shares, gaps, 0.0225)
+    found = resolve_beside(shares, gaps, 0.0225)
     np.testing.assert_allclose(found[ADJACENT], [0.7, 0.4, 0.1], atol=1e-4)
     np.testing.assert_allclose(found[NONE], [0.0, 0.3, 0.6], atol=1e-4)
     np.testing.assert_allclose(sum(found.values()), 1.0)
@@ -57,8 +57,8 @@ def test_temperature_undoes_the_sureness_it_finds():
     true = rng.dirichlet([1, 1, 1], 4000)
     happened = (rng.random(4000)[:, None] < np.cumsum(true, axis=1)).argmax(axis=1)
     for wrong in (0.5, 1.0, 1.6):
-        shown = tempered(true, 1 / wrong)
+        shown = apply_temperature(true, 1 / wrong)
         found = best_temperature(list(zip(shown, happened.tolist(), strict=True)))
         assert abs(found - wrong) < 0.15
-    np.testing.assert_allclose(tempered(true, 0.5).sum(axis=1), 1.0)
+    np.testing.assert_allclose(apply_temperature(true, 0.5).sum(axis=1), 1.0)
     assert best_temperature([]) == 1.0

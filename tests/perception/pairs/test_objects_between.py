@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.contacts.interface import interfaces
-from lifelore.perception.pairs.objects_between import NOTHING, THIRD_COLUMNS, ThirdThings
+from lifelore.perception.pairs.objects_between import BETWEEN_COLUMNS, NO_OBJECT, ObjectsBetween
 from lifelore.perception.pairs.pair_features import pair_features
 
 
@@ -18,7 +18,7 @@ def tower(box, *heights) -> LabelledCloud:
 
 def columns(cloud, pair):
     features = pair_features(cloud)
-    return features.columns(THIRD_COLUMNS)[features.pairs.tolist().index(list(pair))]
+    return features.columns(BETWEEN_COLUMNS)[features.pairs.tolist().index(list(pair))]
 
 
 def test_a_slab_between_two_blocks_is_close_to_the_middle_and_to_both(box):
@@ -38,6 +38,6 @@ def test_what_lies_beyond_is_far_from_the_middle(box):
 
 def test_two_alone_have_no_third(box):
     cloud = tower(box, 0.06, 0.06)
-    assert columns(cloud, (2, 3)).tolist() == [NOTHING] * 3
-    assert ThirdThings(()).between(2, 3, np.zeros(3)) == (NOTHING,) * 3
-    assert ThirdThings(interfaces(cloud)).between(2, 9, np.zeros(3)) == (NOTHING,) * 3
+    assert columns(cloud, (2, 3)).tolist() == [NO_OBJECT] * 3
+    assert ObjectsBetween(()).between(2, 3, np.zeros(3)) == (NO_OBJECT,) * 3
+    assert ObjectsBetween(interfaces(cloud)).between(2, 9, np.zeros(3)) == (NO_OBJECT,) * 3

@@ -14,7 +14,7 @@ from lifelore.perception.peers.centroid_neighbours import centroid_displacement
 from lifelore.perception.peers.closest_point import closest_displacement
 from lifelore.perception.peers.majority import Majority
 from lifelore.perception.peers.orientation_histogram import orientation_histogram
-from lifelore.perception.peers.peer import SeenPair
+from lifelore.perception.peers.peer import DescribedPair
 
 from .conftest import box
 
@@ -84,7 +84,7 @@ def naive_angles(first, second):
 def test_angle_distance_histogram_is_its_plain_twin(seed):
     rng = np.random.default_rng(seed)
     first, second = rng.uniform(0, 0.2, (30, 3)), rng.uniform(0, 0.2, (40, 3)) + np.array([0, 0, 0.1])
-    coarse_first, coarse_second = (angles.coarse(points, angles.GRAIN) for points in (first, second))
+    coarse_first, coarse_second = (angles.mean_of_voxels(points, angles.GRAIN) for points in (first, second))
     assert angle_distance_histogram(first, second) == pytest.approx(naive_angles(coarse_first, coarse_second))
 
 
@@ -95,8 +95,8 @@ def test_boxes_by_hand():
     assert overlap == pytest.approx(0.5)
 
 
-def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[SeenPair]:
-    return (SeenPair(2, b, gap, np.array(rows, float)),)
+def seen(*rows: list[float], gap: float = 0.001, b: int = 3) -> tuple[DescribedPair]:
+    return (DescribedPair(2, b, gap, np.array(rows, float)),)
 
 
 @pytest.mark.parametrize(

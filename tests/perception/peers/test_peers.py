@@ -24,7 +24,7 @@ LEAST_RIGHT = {
 def seen(lesson):
     """What each peer saw of the lesson."""
     clouds, _ = lesson
-    return {name: [new().look(cloud) for cloud in clouds] for name, new in PEERS.items()}
+    return {name: [new().describe_pairs(cloud) for cloud in clouds] for name, new in PEERS.items()}
 
 
 def fitted(name, seen, truths, kept=slice(None)):

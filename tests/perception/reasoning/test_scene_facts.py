@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from lifelore.perception.reasoning.core_vocabulary import other_words, without_carrier
+from lifelore.perception.reasoning.fact import objects_without_support, words_outside_core
 from lifelore.perception.reasoning.scene_facts import scene_facts
 from lifelore.perception.relations.relation import Relation
 
@@ -48,6 +48,6 @@ def test_where_nothing_says_what_carries_a_thing_nothing_is_derived(make_scene):
 
 def test_what_is_missing_by_hand():
     rows = [Relation(a, b, name, 1.0, 0.0) for a, b, name in ((2, 1, "on"), (3, 4, "both"), (4, 5, "under"))]
-    assert other_words(rows) == ("under",)
-    assert without_carrier(rows, [9]) == (4, 5, 9)
-    assert without_carrier([]) == ()
+    assert words_outside_core(rows) == ("under",)
+    assert objects_without_support(rows, [9]) == (4, 5, 9)
+    assert objects_without_support([]) == ()

@@ -13,8 +13,7 @@ from lifelore.core.relations import CORE_RELATIONS
 from lifelore.core.streams import stream
 from lifelore.perception.reasoning.label_distribution import LabelDistribution, label_distributions
 from lifelore.perception.reasoning.scene_logic import alternatives, contradictions, most_likely_scene
-from lifelore.perception.relations.pair_belief import PairBelief
-from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation import PairBelief, Relation
 
 TABLE = 1
 

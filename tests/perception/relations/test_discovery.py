@@ -9,13 +9,13 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.pairs.pair_features import PairFeatures
 from lifelore.perception.relations.discovery import (
     DISPLACEMENT,
-    LIKENESS,
+    FEATURES,
     discover,
     discover_by_displacement,
     upright_rows,
 )
 
-NAMES = ("centre_rise", *DISPLACEMENT, *LIKENESS)
+NAMES = ("centre_rise", *DISPLACEMENT, *FEATURES)
 
 
 def scene(*pairs: tuple[int, int, dict[str, float]]) -> PairFeatures:

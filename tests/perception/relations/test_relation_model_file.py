@@ -13,17 +13,22 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON, PairLabel
 from lifelore.perception.pairs.scene_pairs import scene_pairs
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.relations.relation_model_file import (
     SHIPPED,
-    load_model,
     model_about,
     model_bytes,
     model_from_bytes,
-    save_model,
-    shipped_model,
 )
 from lifelore.perception.trees.tree_training import TreeSettings
+
+
+def file_bytes(classifier: RelationClassifier, about=None) -> bytes:
+    return model_bytes(classifier.to_model(), about)
+
+
+def classifier_from(content: bytes, where: str = "the model") -> RelationClassifier:
+    return RelationClassifier.from_model(model_from_bytes(content, where))
 
 
 def two_blocks(box, kind: str) -> LabelledCloud:
@@ -47,17 +52,17 @@ TRUTHS = [[PairLabel(3, 2, kind), PairLabel(2, TABLE, ON)] for kind in (ON, ADJA
 )
 def test_a_model_comes_back_bit_for_bit(clouds, tmp_path, options):
     model = RelationClassifier(**options).fit(clouds, TRUTHS)
-    save_model(model, tmp_path / "model.npz", {"from": "blocks"})
+    model.save(tmp_path / "model.npz", {"from": "blocks"})
     again = RelationClassifier.load(tmp_path / "model.npz")
     assert again.beliefs(clouds[0]) == model.beliefs(clouds[0])
     assert (again.names, again.symmetric, again.settings) == (model.names, model.symmetric, model.settings)
-    assert model_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
+    assert file_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
     assert model_about(tmp_path / "model.npz")["about"] == {"from": "blocks"}
 
 
 def test_the_settings_of_the_votes_come_back_too(clouds):
     model = RelationClassifier("displacement", k=3, omega=0.05, weights="distance").fit(clouds, TRUTHS)
-    again = model_from_bytes(model_bytes(model))
+    again = classifier_from(file_bytes(model))
     assert again.neighbours == model.neighbours
     assert again.fit(clouds[:2], TRUTHS[:2]).beliefs(clouds[2]) == model.fit(clouds[:2], TRUTHS[:2]).beliefs(
         clouds[2]
@@ -66,22 +71,22 @@ def test_the_settings_of_the_votes_come_back_too(clouds):
 
 def test_a_file_that_does_not_tell_the_settings_of_the_votes_is_read(clouds):
     model = RelationClassifier("displacement", k=3, weights="distance").fit(clouds, TRUTHS)
-    older = rewritten(model_bytes(model), neighbours=None)
-    assert model_from_bytes(older).neighbours == model.neighbours
-    assert model_from_bytes(older).beliefs(clouds[0]) == model.beliefs(clouds[0])
+    older = rewritten(file_bytes(model), neighbours=None)
+    assert classifier_from(older).neighbours == model.neighbours
+    assert classifier_from(older).beliefs(clouds[0]) == model.beliefs(clouds[0])
 
 
 def test_what_is_no_model_is_one_line(clouds, tmp_path):
-    content = model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
+    content = file_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
     stream = io.BytesIO()
     np.savez(stream, points=np.zeros((4, 3)))
     for wrong in (b"", b"junk", content[:-40], content[:300], stream.getvalue()):
         with pytest.raises(InputError, match="no relation model that can be read"):
-            model_from_bytes(wrong)
+            classifier_from(wrong)
     with pytest.raises(InputError, match="cannot be read"):
-        load_model(tmp_path / "none.npz")
+        RelationClassifier.load(tmp_path / "none.npz")
     with pytest.raises(InputError, match="fitted"):
-        model_bytes(RelationClassifier())
+        file_bytes(RelationClassifier())
 
 
 def rewritten(content: bytes, **changes) -> bytes:
@@ -119,20 +124,20 @@ def taken_apart(content: bytes) -> tuple[dict, dict]:
     ],
 )
 def test_a_file_whose_parts_do_not_fit_is_refused(clouds, changes, said):
-    content = model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
+    content = file_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS))
     with pytest.raises(InputError, match=said):
-        model_from_bytes(rewritten(content, **changes))
+        classifier_from(rewritten(content, **changes))
 
 
 def test_random_damage_never_comes_through_as_another_error(clouds):
-    content = bytearray(model_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS)))
+    content = bytearray(file_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS)))
     rng = np.random.default_rng(0)
     for _ in range(300):
         hurt = bytearray(content)
         for at in rng.integers(0, len(hurt), 3):
             hurt[at] = rng.integers(256)
         try:
-            model_from_bytes(bytes(hurt)).predict(clouds[0])
+            classifier_from(bytes(hurt)).predict(clouds[0])
         except InputError:
             continue
 
@@ -150,7 +155,7 @@ def test_the_shipped_model_knows_the_blocks_and_is_small(clouds):
 
 def test_asking_a_model_needs_no_scikit_learn():
     ask = (
-        "import sys; from lifelore.perception.relations.relation_model_file import shipped_model;"
+        "import sys; from lifelore.perception.relations.relation_classifier import shipped_model;"
         "import numpy as np;"
         "from lifelore.core.labelled_cloud import LabelledCloud as C;"
         "x = np.random.default_rng(0).random((60, 3)) * 0.05;"
@@ -214,12 +219,12 @@ ONES = [
 
 @pytest.mark.parametrize(("kind", "name", "change", "said"), ONES)
 def test_numbers_that_are_none_are_refused_with_the_name_of_the_file(learnt, kind, name, change, said):
-    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    arrays, header = taken_apart(file_bytes(learnt[kind]))
     array = arrays.pop(name)
     if change is not None:
         arrays[name] = change(array)
     with pytest.raises(InputError, match=said) as caught:
-        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
+        classifier_from(packed_again(arrays, header), "spoilt.npz")
     assert str(caught.value).startswith("spoilt.npz is no relation model")
 
 
@@ -257,17 +262,17 @@ HEADERS = [
 
 @pytest.mark.parametrize(("kind", "path", "value", "said"), HEADERS)
 def test_what_is_told_wrong_is_refused_with_the_name_of_the_file(learnt, kind, path, value, said):
-    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    arrays, header = taken_apart(file_bytes(learnt[kind]))
     put(header, path, value)
     with pytest.raises(InputError, match=said) as caught:
-        model_from_bytes(packed_again(arrays, header), "spoilt.npz")
+        classifier_from(packed_again(arrays, header), "spoilt.npz")
     assert str(caught.value).startswith("spoilt.npz is no relation model")
 
 
 def test_settings_told_as_whole_numbers_are_lengths_all_the_same(learnt, box_clouds):
-    arrays, header = taken_apart(model_bytes(learnt["trees"]))
+    arrays, header = taken_apart(file_bytes(learnt["trees"]))
     header["settings"]["cost"] = 10
-    assert model_from_bytes(packed_again(arrays, header)).beliefs(box_clouds[0]) == learnt["trees"].beliefs(
+    assert classifier_from(packed_again(arrays, header)).beliefs(box_clouds[0]) == learnt["trees"].beliefs(
         box_clouds[0]
     )
 
@@ -320,12 +325,12 @@ def spoilt(arrays: dict, header: dict, rng: np.random.Generator) -> bytes:
 def test_spoilt_files_are_refused_or_answer(learnt, box_clouds, kind):
     """Seventy of each kind: an InputError that names the file, or shares that are numbers; nothing else."""
     rng = np.random.default_rng(7)
-    arrays, header = taken_apart(model_bytes(learnt[kind]))
+    arrays, header = taken_apart(file_bytes(learnt[kind]))
     scene = scene_pairs(box_clouds[0])
     refused = 0
     for _ in range(70):
         try:
-            model = model_from_bytes(spoilt(arrays, header, rng), "spoilt.npz")
+            model = classifier_from(spoilt(arrays, header, rng), "spoilt.npz")
         except InputError as error:
             assert str(error).startswith("spoilt.npz ")  # noqa: PT017
             refused += 1
@@ -339,7 +344,7 @@ def test_spoilt_files_are_refused_or_answer(learnt, box_clouds, kind):
 @pytest.mark.parametrize("method", [zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED, zipfile.ZIP_LZMA, zipfile.ZIP_BZIP2])
 def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
     """Bytes changed all over: also such as announce more than there is, or another way of packing."""
-    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
+    arrays, header = taken_apart(file_bytes(learnt["displacement"]))
     stream, rng = io.BytesIO(), np.random.default_rng(0)
     with (
         zipfile.ZipFile(io.BytesIO(packed_again(arrays, header))) as plain,
@@ -348,19 +353,19 @@ def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
         for entry in plain.namelist():
             new.writestr(entry, plain.read(entry))
     content = stream.getvalue()
-    assert model_from_bytes(content).names
+    assert classifier_from(content).names
     for _ in range(100):
         hurt = bytearray(content)
         for at in rng.integers(0, len(hurt), 4):
             hurt[at] = rng.integers(256)
         try:
-            model_from_bytes(bytes(hurt), "spoilt.npz")
+            classifier_from(bytes(hurt), "spoilt.npz")
         except InputError as error:
             assert str(error).startswith("spoilt.npz ")  # noqa: PT017
 
 
 def test_an_array_that_announces_more_than_memory_is_refused(learnt):
-    arrays, header = taken_apart(model_bytes(learnt["displacement"]))
+    arrays, header = taken_apart(file_bytes(learnt["displacement"]))
     content = packed_again(arrays, header)
     stream = io.BytesIO()
     huge = b"\x93NUMPY\x01\x00" + (118).to_bytes(2, "little")
@@ -369,4 +374,4 @@ def test_an_array_that_announces_more_than_memory_is_refused(learnt):
         for entry in plain.namelist():
             new.writestr(entry, huge if entry == "0.displacements.npy" else plain.read(entry))
     with pytest.raises(InputError, match="no relation model that can be read"):
-        model_from_bytes(stream.getvalue())
+        classifier_from(stream.getvalue())

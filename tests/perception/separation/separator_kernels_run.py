@@ -10,7 +10,7 @@ import numpy as np
 
 def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
-    from lifelore.perception.separation.far_field import cells_of, far_field
+    from lifelore.perception.separation.far_field import far_field, far_field_cells
     from lifelore.perception.separation.gaussian import kernel_row, kernel_sums
     from lifelore.perception.separation.separator import separate
     from lifelore.perception.separation.separator_smo import ascend
@@ -21,7 +21,7 @@ def all_arrays() -> dict[str, np.ndarray]:
     kernel_row(points, 3, out["row"])
     kernel_sums(points, sources, weights, np.arange(30), out["sums"])
     out["far sums"], out["far error"] = far_field(
-        points, cells_of(points, np.array([0, 13, 30])), sources, weights, 4
+        points, far_field_cells(points, np.array([0, 13, 30])), sources, weights, 4
     )
     side = np.where(points[0] > 0.25, 1.0, -1.0)
     beta, slope = np.zeros(30), side.copy()

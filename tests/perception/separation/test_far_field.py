@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.perception.separation.far_field import WIDEST, Cells, cells_of, far_field
+from lifelore.perception.separation.far_field import WIDEST, Cells, far_field, far_field_cells
 
 ROUNDING = 1e-13
 
@@ -32,7 +32,9 @@ def clouds(seed, n_cells=5, n_sources=30, spread=3.0, reach=0.25):
 def test_order_one_by_hand():
     # One source at distance 1 along x, one point at 0.1 from the centre: e^{-1/2} e^{-0.005} (1 + 0.1).
     points = np.array([[0.1, -0.1], [0.0, 0.0], [0.0, 0.0]])
-    sums, error = far_field(points, cells_of(points, np.array([0, 2])), np.array([[1.0], [0], [0]]), np.ones(1), 1)
+    sums, error = far_field(
+        points, far_field_cells(points, np.array([0, 2])), np.array([[1.0], [0], [0]]), np.ones(1), 1
+    )
     assert sums == pytest.approx(np.exp(-0.505) * np.array([1.1, 0.9]), rel=1e-14)
     # What is left out: t²/2! / (1 - t/3) of e^{-1/2}, with t = 0.1.
     assert error == pytest.approx(np.exp(-0.5) * 0.005 / (1 - 0.1 / 3), rel=1e-9)
@@ -44,7 +46,7 @@ def test_order_one_by_hand():
 @settings(max_examples=60, deadline=None)
 def test_the_bound_holds(seed, order, reach, spread):
     points, starts, sources, weights = clouds(seed, spread=spread, reach=reach)
-    cells = cells_of(points, starts)
+    cells = far_field_cells(points, starts)
     assert cells.radius.max() <= WIDEST
     sums, error = far_field(points, cells, sources, weights, order)
     exact = direct_sums(points, sources, weights)
@@ -56,7 +58,7 @@ def test_higher_orders_are_closer_and_their_bounds_no_fable():
     exact = direct_sums(points, sources, weights)
     worst = []
     for order in (2, 4, 6, 8):
-        sums, error = far_field(points, cells_of(points, starts), sources, weights, order)
+        sums, error = far_field(points, far_field_cells(points, starts), sources, weights, order)
         worst.append(np.abs(sums - exact).max())
         assert error.max() < 100 * worst[-1] + 1e-12
     assert all(b < a / 5 for a, b in pairwise(worst))
@@ -65,14 +67,14 @@ def test_higher_orders_are_closer_and_their_bounds_no_fable():
 def test_more_sources_and_points_than_go_through_at_once():
     points, starts, sources, weights = clouds(2, n_cells=2, n_sources=515)
     points = np.ascontiguousarray(np.repeat(points, 3, axis=1))
-    cells = cells_of(points, starts * 3)
+    cells = far_field_cells(points, starts * 3)
     sums, error = far_field(points, cells, sources, weights, 7)
     assert np.abs(sums - direct_sums(points, sources, weights)).max() <= error.max() + 1e-12
 
 
 def test_cells_hold_their_points():
     points, starts, _, _ = clouds(3)
-    cells = cells_of(points, starts)
+    cells = far_field_cells(points, starts)
     assert isinstance(cells, Cells)
     for i in range(len(cells.radius)):
         own = points[:, starts[i] : starts[i + 1]]

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lifelore.perception.separation.nested_voxels import COARSEST, FINEST, nested
+from lifelore.perception.separation.nested_voxels import COARSEST, FINEST, voxel_pyramid
 
 
 def dense_pair(seed, n=2000, scale=1.0):
@@ -18,7 +18,7 @@ def dense_pair(seed, n=2000, scale=1.0):
 @settings(max_examples=30, deadline=None)
 def test_levels_nest(seed, scale):
     points, side = dense_pair(seed, 300, scale)
-    result = nested(points, side, 0.5)
+    result = voxel_pyramid(points, side, 0.5)
     assert np.array_equal(np.sort(result.order), np.arange(300))
     finest = result.levels[-1]
     assert np.array_equal(finest.points, points[:, result.order])
@@ -39,13 +39,13 @@ def test_levels_nest(seed, scale):
 
 def test_dense_clouds_get_every_level():
     points, side = dense_pair(0, 60_000, 0.5)
-    levels = nested(points, side, 1.0).levels
+    levels = voxel_pyramid(points, side, 1.0).levels
     assert [level.edge for level in levels] == [FINEST * 2**k for k in range(COARSEST, -1, -1)] + [0.0]
 
 
 def test_points_that_are_alone_get_none():
     points, side = dense_pair(0, 50, 100.0)
-    assert len(nested(points, side, 1.0).levels) == 1
+    assert len(voxel_pyramid(points, side, 1.0).levels) == 1
 
 
 def test_both_ways_of_sorting_agree(monkeypatch):

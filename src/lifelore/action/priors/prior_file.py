@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import PackedFormat
 
@@ -35,7 +35,7 @@ def save_prior(prior: ActionPrior, path: str | Path, about: Mapping[str, Any] | 
     """
     content = prior_bytes(prior, about)
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StoreError(f"the prior cannot be written to {path}: {error.strerror}") from None

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import kernel
-from lifelore.core.compiled.random_state import next_uniform, one_of, random_state
+from lifelore.core.compiled.random_state import next_uniform, random_state, uniform_integer
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import cumulative
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
@@ -279,7 +279,7 @@ def _promising(tree, node, prior, row, exploration, bounds, random):
         elif value == best:
             # The k-th tied action replaces the choice with probability 1/k, which makes all equally probable.
             equals += 1
-            if one_of(random, equals) == 0:
+            if uniform_integer(random, equals) == 0:
                 chosen = a
     return chosen
 
@@ -331,6 +331,6 @@ def _move(tree, by_mean, random):
             best, equals, chosen = value, 1, a
         elif value == best:
             equals += 1
-            if one_of(random, equals) == 0:
+            if uniform_integer(random, equals) == 0:
                 chosen = a
     return chosen

@@ -20,7 +20,7 @@ from lifelore.agent.live.task_result import Stopped
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.learning.q_learning import choose, cumulative
+from lifelore.core.learning.q_learning import cumulative, epsilon_greedy
 from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.core.protocols import World
 
@@ -67,7 +67,7 @@ class ExternalLearner:
             self._rows[code] = self._rows_of(code)
         explore, ties = self._rows[code]
         self.visited[state, code] = None
-        return choose(self.q[state], 0, explore, ties, 0, epsilon, self.random)
+        return epsilon_greedy(self.q[state], 0, explore, ties, 0, epsilon, self.random)
 
     def _rows_of(self, code: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Cumulative exploration probabilities and tie weights, both (1, n_actions)."""

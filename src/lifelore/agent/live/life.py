@@ -22,8 +22,8 @@ from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
 from lifelore.core.errors import InputError
-from lifelore.core.learning.known_world import blank_model
-from lifelore.core.learning.model_learning import Perceived, new_explorer
+from lifelore.core.learning.known_world import unknown_world
+from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import new_learner, uniform_rows
 from lifelore.core.mdp import Tables, Task
@@ -193,8 +193,8 @@ class _SharedTask:
     def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
         settings, world = self.life.settings, self.life.world
         if not kind.remembers:
-            lore.model = blank_model(world.n_states, self.tables.n_actions)
-        explorer = new_explorer(
+            lore.model = unknown_world(world.n_states, self.tables.n_actions)
+        explorer = new_model_learner(
             world.n_states,
             self.tables.n_actions,
             self.life.stream.world_stream(self.index),
@@ -213,13 +213,13 @@ class _SharedTask:
             self.stop,
         )
 
-    def _perceived(self, kind: AgentKind, lore: Lore) -> Perceived:
+    def _perceived(self, kind: AgentKind, lore: Lore) -> StateInfo:
         percepts = self.life.world.percepts
         if not kind.uses_prior or self.life.settings.prior.condition == "none":
-            return Perceived(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
+            return StateInfo(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
         codes, row = np.unique(lore.scope.contexts, return_inverse=True)
         probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
-        return Perceived(percepts, row.astype(np.int32), try_costs(probs))
+        return StateInfo(percepts, row.astype(np.int32), try_costs(probs))
 
     def _with_q(self, kind: AgentKind, lore: Lore) -> TaskResult:
         settings = self.life.settings

@@ -10,7 +10,7 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
-from lifelore.core.learning.known_world import Model
+from lifelore.core.learning.known_world import WorldModel
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.memory import Memory
@@ -50,7 +50,7 @@ class Lore:
     world: GridWorld
     scope: PriorScope
     prior: ActionPrior
-    model: Model
+    model: WorldModel
     _stored: NDArray[np.int64] = field(repr=False)
 
     @classmethod
@@ -74,7 +74,7 @@ class Lore:
     def copy(self) -> "Lore":
         """An independent copy for another agent."""
         prior = ActionPrior.merged([self.prior])
-        model = Model(self.model.target.copy(), self.model.percept.copy())
+        model = WorldModel(self.model.target.copy(), self.model.percept.copy())
         return Lore(self.world, self.scope, prior, model, self._stored.copy())
 
     def learn_prior(self, best: NDArray[np.bool_], goal: int, weight: float) -> Record:

@@ -7,11 +7,11 @@ import numpy as np
 from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.known_value import KnownValue
-from lifelore.core.learning.known_world import Model, best_known_actions, known_policy
+from lifelore.core.learning.known_world import WorldModel, best_known_actions, known_policy
 from lifelore.core.learning.model_learning import (
     ExplorationStrategy,
-    Explorer,
-    Perceived,
+    ModelLearner,
+    StateInfo,
     check_deterministic,
     explore,
 )
@@ -26,10 +26,10 @@ def live_model_task(
     tables: Tables,
     optimal: float,
     discount: float,
-    model: Model,
-    perceived: Perceived,
+    model: WorldModel,
+    perceived: StateInfo,
     strategy: ExplorationStrategy,
-    explorer: Explorer,
+    explorer: ModelLearner,
     episodes: int,
     max_steps: int,
     stop: Event,

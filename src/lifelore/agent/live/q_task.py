@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule, learn
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import greedy_policy, learnt_best_actions, mean_start_value, policy_values
 
@@ -15,7 +15,7 @@ CHUNK = 100_000
 
 
 def live_q_task(
-    tables: Tables, optimal: float, rows: Rows, schedule: Schedule, learner: Learner, stop: Event
+    tables: Tables, optimal: float, rows: Rows, schedule: Schedule, learner: QLearner, stop: Event
 ) -> TaskResult:
     """Run all episodes of the schedule; check the threshold every `CHECK_EVERY` steps until it is reached."""
     curve = new_curve(len(schedule.epsilon))
@@ -51,5 +51,5 @@ def live_q_task(
     )
 
 
-def _greedy_value(tables: Tables, learner: Learner, discount: float) -> float:
+def _greedy_value(tables: Tables, learner: QLearner, discount: float) -> float:
     return mean_start_value(tables, policy_values(tables, greedy_policy(learner.q), discount))

@@ -10,7 +10,7 @@ import hashlib
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.learning.known_world import UNKNOWN, Model, blank_model
+from lifelore.core.learning.known_world import UNKNOWN, WorldModel, unknown_world
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
 
@@ -41,7 +41,7 @@ def frame_key(world: GridWorld) -> str:
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
-def model_table(world: GridWorld, model: Model) -> NDArray[np.int64]:
+def model_table(world: GridWorld, model: WorldModel) -> NDArray[np.int64]:
     """Cells to which the moves lead, then the percept: (n_states, n_actions + 1); UNKNOWN where not known."""
     cells = cells_of(world)
     targets = np.where(model.target >= 0, cells[model.target], UNKNOWN)
@@ -58,9 +58,9 @@ def to_record(world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
 
 
-def from_record(world: GridWorld, record: Record | None) -> Model:
+def from_record(world: GridWorld, record: Record | None) -> WorldModel:
     """The model of this world in a record, without the cells that the world no longer has."""
-    model = blank_model(world.n_states, world.neighbour.shape[1])
+    model = unknown_world(world.n_states, world.neighbour.shape[1])
     if record is None:
         return model
     width = model.target.shape[1] + 1

@@ -27,7 +27,6 @@ from lifelore.perception.relations.relation_model_file import (
     check_model_path,
     model_bytes,
     model_from_bytes,
-    save_model,
 )
 from lifelore.perception.relations.relation_truth import read_planes, read_relations
 from lifelore.perception.segmentation.table_frame import Up, to_scene
@@ -119,7 +118,7 @@ def learn_relations(
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
     about["lifelore"] = version("lifelore")
     if out is not None:
-        save_model(model, out, about)
+        model.save(out, about)
     where = None
     if memory is not None or out is None:
         with open_memory(memory) as opened:
@@ -199,13 +198,13 @@ def _report(
         "relations": list(model.names),
         "symmetric": sorted(model.symmetric),
         "method": model.method,
-        "adjacent_gap": model.words.adjacent_gap,
+        "adjacent_gap": model.vocabulary.adjacent_gap,
     }
 
 
 def store_model(memory: Memory, name: str, model: RelationClassifier, about: dict[str, Any]) -> None:
     """Store a model in memory under a name; a newer model replaces it."""
-    words = as_words(model_bytes(model, about))
+    words = as_words(model_bytes(model.to_model(), about))
     record = Record(
         KIND, model_key(name), VERSION, "newest", np.arange(len(words)), words, {**about, "name": name}
     )
@@ -225,7 +224,8 @@ def recall_relations(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassi
         known = sorted(str(about.get("name")) for _, _, about in memory.keys(KIND))
         hint = f"it has {', '.join(known)}" if known else "it has none; `lifelore learn-relations` trains one"
         raise NotFoundError(f"memory has no relation model '{name}': {hint}")
-    return model_from_bytes(as_bytes(record.values), f"the relation model '{name}' in memory")
+    stored = model_from_bytes(as_bytes(record.values), f"the relation model '{name}' in memory")
+    return RelationClassifier.from_model(stored)
 
 
 def model_key(name: str) -> str:

@@ -16,9 +16,8 @@ from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
-from lifelore.perception.relations.relation_model_file import load_model, shipped_model
 from lifelore.perception.scene_json import DIGITS, scene_document
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.table_frame import Up, to_scene
@@ -136,7 +135,7 @@ def perceived(
     labelled = to_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
-    scene = perceived_scene(labelled, model).bearing
+    scene = perceived_scene(labelled, model).without_unrelated_contacts
     _report_stage(progress, 3)
     document = scene_document(scene)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
@@ -173,7 +172,7 @@ def model_of(settings: PerceiveSettings) -> RelationClassifier:
     if settings.model is None:
         return shipped_model()
     if is_file_name(settings.model):
-        return load_model(settings.model)
+        return RelationClassifier.load(settings.model)
     from lifelore.agent.perceive.learn_relations import recall_relations
     from lifelore.memory import open_memory
     from lifelore.memory.location import locate

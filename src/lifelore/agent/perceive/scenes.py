@@ -13,7 +13,7 @@ from lifelore.core.relations import CORE_RELATIONS
 from lifelore.domains.tabletop.quota import is_missed
 from lifelore.domains.tabletop.scene_folder import SceneFolder
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.tabletop import scenes
+from lifelore.domains.tabletop.tabletop import tabletop_scenes
 
 
 def make_scenes(
@@ -68,7 +68,7 @@ def make_scenes(
     pairs: Counter[str] = Counter()
     with_table: Counter[str] = Counter()
     attempts = 0
-    for done, scene in enumerate(scenes(n, seed, settings, jobs), start=1):
+    for done, scene in enumerate(tabletop_scenes(n, seed, settings, jobs), start=1):
         folder.write(scene)
         attempts += scene.attempts
         for label in scene.truth:

@@ -17,7 +17,7 @@ import numpy as np
 
 from lifelore.agent.reuse.history import Decision, History, histories, replayed
 from lifelore.agent.reuse.study import Study
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import StoreError
 from lifelore.core.metrics import mean_estimate
 from lifelore.memory import Memory
@@ -192,7 +192,7 @@ def _write_folder(folder: Path, document: dict[str, Any]) -> None:
 def _write(path: Path, text: str) -> None:
     """The whole file or none."""
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(text.encode())
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

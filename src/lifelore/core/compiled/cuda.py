@@ -1,9 +1,9 @@
-"""CUDA form of a task's `step`: many (state, action) pairs advanced in one launch; the one file that knows CUDA.
+"""A task's `step` on a GPU (CUDA): many (state, action) pairs advanced in one launch.
 
 The pure scalar ``step(params, s, a, u)`` of a `Domain`, from which the tables and the environments come, is
 compiled once more, for the GPU. Results equal those of the processor as long as `step` neither adds a product (a
 GPU rounds once where the processor rounds twice) nor calls a function of the mathematical library; no `step` here
-does. Nothing else in this package needs a GPU. ``NUMBA_ENABLE_CUDASIM=1``, set before Python starts, simulates a
+does. No other module knows CUDA or needs a GPU. ``NUMBA_ENABLE_CUDASIM=1``, set before Python starts, simulates a
 GPU in plain Python, slowly and without the extra ``cuda``.
 """
 
@@ -35,7 +35,7 @@ COMPUTE_CAPABILITY = (7, 5)
 """The oldest GPUs that CUDA 13 compiles for (Turing, 2018)."""
 
 
-class Moves(NamedTuple):
+class StepResults(NamedTuple):
     """Results of `CudaTask.step_many`, one a pair.
 
     states : (n,) int32, the states reached
@@ -72,11 +72,11 @@ class CudaTask:
         self._params = _on_device(task.params)
         self._advance = _advance(task.domain.step)
 
-    def step_many(self, states: ArrayLike, actions: ArrayLike, uniforms: ArrayLike) -> Moves:
-        """What `step` returns for each (state, action, uniform), all in one launch.
+    def step_many(self, states: ArrayLike, actions: ArrayLike, uniforms: ArrayLike) -> StepResults:
+        """The result of `step` for each (state, action, uniform), all in one launch.
 
-        The arrays are copied to the GPU and the results back. Where many steps follow one another, call
-        `device_step` in a kernel of your own, which keeps the states on the GPU.
+        The arrays are copied to the GPU and the results back. For many steps in a row, call `device_step` in your
+        own kernel, which keeps the states on the GPU.
 
         Parameters
         ----------
@@ -102,14 +102,14 @@ class CudaTask:
                 f"states, actions and uniforms must be of one length, got {n}, {others[0]}, {others[1]}"
             )
         if not n:
-            return Moves(np.empty(0, np.int32), np.empty(0), np.empty(0, np.uint8))
+            return StepResults(np.empty(0, np.int32), np.empty(0), np.empty(0, np.uint8))
         found = [cuda.device_array(n, kind) for kind in (np.int32, np.float64, np.uint8)]
         self._advance[-(-n // THREADS), THREADS](self._params, *map(cuda.to_device, sent), *found)
-        return Moves(*(array.copy_to_host() for array in found))
+        return StepResults(*(array.copy_to_host() for array in found))
 
 
 def _checked(name: str, values: ArrayLike, end: int, kind: type) -> NDArray[Any]:
-    """Values as a list of numbers of a kind; one out of range would read foreign memory on the GPU."""
+    """Values as a contiguous array of a kind; a number out of range would read foreign memory on the GPU."""
     array = np.asarray(values)
     if array.ndim != 1 or not (array.size == 0 or np.can_cast(array.dtype, kind, "same_kind")):
         raise InputError(f"{name} must be a list of {kind.__name__}, got {array.dtype} of shape {array.shape}")
@@ -133,7 +133,7 @@ def _on_device(params: tuple) -> tuple:
 
 @cache
 def device_step(step: Step) -> Any:
-    """`step` as a CUDA device function, to be called in CUDA kernels of your own."""
+    """`step` as a CUDA device function, to be called in your own CUDA kernels."""
     return cuda.jit(device=True)(_plain(step))
 
 
@@ -143,7 +143,7 @@ def _plain(step: Step) -> Callable:
 
 @cache
 def _advance(step: Step) -> Any:
-    """The CUDA kernel of `step_many`: one thread a pair."""
+    """The CUDA kernel of `step_many`: one thread per pair."""
     own = device_step(step)
 
     @cuda.jit
@@ -159,7 +159,7 @@ def _advance(step: Step) -> Any:
 
 
 def step_ptx(task: Task, compute_capability: tuple[int, int] = COMPUTE_CAPABILITY) -> str:
-    """A task's `step` as the text of GPU assembly; compiling needs no GPU.
+    """A task's `step` as GPU assembly (PTX) text; compiling needs no GPU.
 
     Raises
     ------

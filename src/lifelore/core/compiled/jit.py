@@ -1,4 +1,4 @@
-"""`@kernel`: compile with Numba, cached on disk, and never a stale result.
+"""`@kernel`: compile a function with Numba and cache it on disk; a changed source recompiles.
 
 The cache folder is that of `core.kernel_cache`. Every kernel also runs as plain Python under
 ``NUMBA_DISABLE_JIT=1``.
@@ -30,7 +30,7 @@ def kernel(function=None, *, allocates: bool = True):
     function : callable
     allocates : bool
         False: the kernel makes no array, nor does any function that it calls. Numba then counts no references,
-        whose atomic instructions cost up to two thirds of a learner's step. A kernel that makes one all the same
+        whose atomic instructions cost up to two thirds of a learner's step. A kernel that makes an array after all
         does not compile.
 
     Returns
@@ -45,7 +45,7 @@ def kernel(function=None, *, allocates: bool = True):
 
 
 def inlined(function: F) -> F:
-    """As `kernel`, for the small pieces that kernels call at every step: always inlined into them."""
+    """As `kernel`, for small functions that kernels call at every step: always inlined."""
     return _compiled(function, {"inline": "always"})
 
 

@@ -1,10 +1,10 @@
-"""Folder of the compiled kernels, named after the sources they are made of, and its removal when it is stale.
+"""Cache folder of compiled kernels, named by a hash of their sources; removes stale folders.
 
 Numba's own cache looks at the file of the decorated function alone: when a *called* function in another
 file changes, or a constant that it reads, the old machine code answers silently. Here the folder's name
 carries a hash of every source file that holds kernels and of all that those files import from this package,
-so any edit or upgrade that can matter starts a fresh folder. Since the name says which sources the machine
-code is of, neither the place nor the age of a source file matters: a folder may travel with an image.
+so any edit or upgrade that can matter starts a fresh folder. Neither the place nor the age of a source file
+matters, so a folder can be copied with an image.
 """
 
 import hashlib

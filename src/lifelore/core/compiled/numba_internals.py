@@ -1,4 +1,4 @@
-"""What this package uses of Numba's undocumented internals, behind one function that may find none."""
+"""Access to Numba's undocumented internals: a kernel cache that loads quickly, or None where they have changed."""
 
 import hashlib
 import os

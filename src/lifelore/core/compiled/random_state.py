@@ -53,6 +53,6 @@ def next_uniform(state):
 
 
 @kernel(allocates=False)
-def one_of(random, n):
-    """One of 0 … n - 1, each as likely; advances `random` in place."""
+def uniform_integer(random, n):
+    """A whole number uniform over 0 … n - 1; advances `random` in place."""
     return np.int64(next_uniform(random) * n)

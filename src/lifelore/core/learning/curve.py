@@ -1,14 +1,18 @@
-"""What a learner leaves behind, episode by episode; filled in place by the kernels."""
+"""Learning curves, which kernels fill in place, and the places in the cursor of a learner."""
 
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-EPISODE, STEP, TOTAL = 0, 1, 4
-"""Places in the cursors of `Learner` and `Explorer`: episode and step under way, steps in all."""
-GOALS, NEWS = 5, 6
-"""Places in the cursor of `Explorer` alone: places known as goals, moves learnt since the last look."""
+EPISODE, STEP, STATE, TOTAL = 0, 1, 2, 4
+"""Places in the cursors of `QLearner` and `ModelLearner`: current episode, step and state; steps in all."""
+REWARD_CLASS = 3
+"""Place in the cursor of `QLearner` alone: class of the last reward."""
+PLAN_LENGTH, GOALS, NEWS = 3, 5, 6
+"""Places in the cursor of `ModelLearner` alone: actions left in the plan, known goals, new moves."""
+RETURN, DISCOUNT = 0, 1
+"""Places in `running` of both learners: return so far, and the discount it has reached."""
 
 
 class Curve(NamedTuple):
@@ -33,7 +37,7 @@ def first_episodes(curve: Curve, n_episodes: int) -> Curve:
 
 
 def new_curve(shape: int | tuple[int, int]) -> Curve:
-    """An empty learning curve of so many episodes, or a stack of them, (n_learners, n_episodes)."""
+    """An empty learning curve of `shape` episodes, or a stack of curves, (n_learners, n_episodes)."""
     return Curve(
         np.zeros(shape),
         np.zeros(shape),

@@ -1,6 +1,6 @@
-"""What is known of a world whose moves are certain: where moves lead, what places hold, and the way from there.
+"""Knowledge of a deterministic world: known moves, percepts, and distances to the goal.
 
-Transitions belong to the domain and may be remembered; what a place holds belongs to the task and never is.
+Transitions belong to the domain and may be remembered; goals and dead ends belong to the task and never are.
 """
 
 from typing import NamedTuple
@@ -13,37 +13,37 @@ from lifelore.core.compiled.jit import kernel
 UNKNOWN = -1
 """Target of a move never made, and percept of a state never seen."""
 NOT_LOOKED, LOOKED, DEAD_END, GOAL = range(4)
-"""What this task knows of a place: nothing, nothing there, the episode ends badly, the goal."""
+"""Kinds of places in a task: not visited, plain, an end without reward, the goal."""
 
 
-class Model(NamedTuple):
+class WorldModel(NamedTuple):
     """Remembered knowledge of a domain; changed in place.
 
     target : (n_states, n_actions) int32, state that a move leads to, UNKNOWN where never made
-    percept : (n_states,) int64, what was perceived there, UNKNOWN where never
+    percept : (n_states,) int64, last percept of each state, UNKNOWN where never visited
     """
 
     target: NDArray[np.int32]
     percept: NDArray[np.int64]
 
 
-def blank_model(n_states: int, n_actions: int) -> Model:
-    """A model of a domain of which nothing is known."""
-    return Model(np.full((n_states, n_actions), UNKNOWN, np.int32), np.full(n_states, UNKNOWN, np.int64))
+def unknown_world(n_states: int, n_actions: int) -> WorldModel:
+    """A model of a domain without any known move."""
+    return WorldModel(np.full((n_states, n_actions), UNKNOWN, np.int32), np.full(n_states, UNKNOWN, np.int64))
 
 
-class WaysIn(NamedTuple):
+class IncomingMoves(NamedTuple):
     """The known moves into each state as linked lists, and steps to the goal over them; changed in place.
 
-    distance : (n_states,) int32, steps to the goal; 0 at the goal, -1 where no way is known
+    distance : (n_states,) int32, steps to the goal; 0 at the goal, -1 where no path is known
     last_into : (n_states,) int32, the first move of the list into each state, END where there is none
     before : (n_states · n_actions,) int32, the move that follows a move in its list, END, or NOT_LISTED
     queue : (n_states,) int32, work space
-    starts : (n_states,) int32, how often each state is among the starts that are counted
+    starts : (n_states,) int32, number of counted starts in each state
     starts_at : (n_states + 1,) int64, starts at each distance to the goal
-    farthest : (1,) int64, no start was ever farther from the goal than this
+    farthest : (1,) int64, largest distance of any start so far
 
-    A move is numbered state · n_actions + action. Moves that stay where they are, are in no list.
+    A move is numbered state · n_actions + action. Moves that do not leave their state are in no list.
     """
 
     distance: NDArray[np.int32]
@@ -59,12 +59,12 @@ END, NOT_LISTED = -1, -2
 _NONE = np.empty(0, np.int64)
 
 
-def blank_ways(n_states: int, n_actions: int, starts: NDArray[np.int32] | None = None) -> WaysIn:
-    """Lists without a move. `starts`: (n_starts,) states whose distances are counted."""
+def no_incoming_moves(n_states: int, n_actions: int, starts: NDArray[np.int32] | None = None) -> IncomingMoves:
+    """Empty lists. `starts`: (n_starts,) states whose distances are counted."""
     counted = np.zeros(n_states, np.int32)
     if starts is not None:
         np.add.at(counted, starts, 1)
-    return WaysIn(
+    return IncomingMoves(
         np.full(n_states, -1, np.int32),
         np.full(n_states, END, np.int32),
         np.full(n_states * n_actions, NOT_LISTED, np.int32),
@@ -75,8 +75,8 @@ def blank_ways(n_states: int, n_actions: int, starts: NDArray[np.int32] | None =
     )
 
 
-def find_ways(target: NDArray[np.int32], place: NDArray[np.int8], ways: WaysIn) -> None:
-    """List every known move anew and find all distances."""
+def find_goal_distances(target: NDArray[np.int32], place: NDArray[np.int8], ways: IncomingMoves) -> None:
+    """Rebuild the lists from all known moves and compute all distances."""
     ways.distance[:], ways.last_into[:], ways.before[:] = -1, END, NOT_LISTED
     ways.starts_at[:], ways.farthest[:] = 0, 0
     goals = np.flatnonzero(place == GOAL)
@@ -84,8 +84,10 @@ def find_ways(target: NDArray[np.int32], place: NDArray[np.int8], ways: WaysIn) 
     _list_and_spread(target, place, np.arange(target.size), goals, ways)
 
 
-def add_moves(target: NDArray[np.int32], place: NDArray[np.int8], moves: NDArray[np.int64], ways: WaysIn) -> None:
-    """List these moves too and shorten the distances that they shorten."""
+def add_moves(
+    target: NDArray[np.int32], place: NDArray[np.int8], moves: NDArray[np.int64], ways: IncomingMoves
+) -> None:
+    """Add moves to the lists and update the distances that become shorter."""
     _list_and_spread(target, place, moves, _NONE, ways)
 
 
@@ -122,7 +124,7 @@ def _list_and_spread(target, place, moves, goals, ways):
             while move != END:
                 origin = move // n_actions
                 move = before[move]
-                # All moves cost one step, so the first time a state is reached is the nearest.
+                # All moves cost one step, so a state is first reached at its smallest distance.
                 if place[origin] != DEAD_END and (distance[origin] < 0 or distance[origin] > steps):
                     if distance[origin] >= 0:
                         starts_at[distance[origin]] -= starts[origin]
@@ -135,16 +137,16 @@ def _list_and_spread(target, place, moves, goals, ways):
 
 
 def goal_distances(target: NDArray[np.int32], place: NDArray[np.int8]) -> NDArray[np.int32]:
-    """Steps to the goal over known moves, (n_states,) int32; 0 at the goal, -1 where no way is known."""
-    ways = blank_ways(*target.shape)
-    find_ways(target, place, ways)
+    """Steps to the goal over known moves, (n_states,) int32; 0 at the goal, -1 where no path is known."""
+    ways = no_incoming_moves(*target.shape)
+    find_goal_distances(target, place, ways)
     return ways.distance
 
 
-def best_known_actions(model: Model, place: NDArray[np.int8]) -> NDArray[np.bool_]:
-    """Which known moves shorten the way to the goal, (n_states, n_actions) bool; all ties count.
+def best_known_actions(model: WorldModel, place: NDArray[np.int8]) -> NDArray[np.bool_]:
+    """Known moves that shorten the distance to the goal, (n_states, n_actions) bool; all ties count.
 
-    Rows are all False where no way is known, and at the goal itself.
+    Rows are all False where no path is known, and at the goal.
     """
     distance = goal_distances(model.target, place)
     known = model.target >= 0
@@ -152,7 +154,7 @@ def best_known_actions(model: Model, place: NDArray[np.int8]) -> NDArray[np.bool
     return known & (after >= 0) & (after == distance[:, None] - 1)
 
 
-def known_policy(model: Model, place: NDArray[np.int8]) -> NDArray[np.int32]:
-    """The greedy policy of what is known: (n_states,) first best move, -1 where no way is known."""
+def known_policy(model: WorldModel, place: NDArray[np.int8]) -> NDArray[np.int32]:
+    """The greedy policy of the known world: (n_states,) first best move, -1 where no path is known."""
     best = best_known_actions(model, place)
     return np.where(best.any(axis=1), best.argmax(axis=1), -1).astype(np.int32)

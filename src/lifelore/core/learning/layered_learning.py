@@ -1,9 +1,9 @@
-"""Q-learning in tasks of many layers that holds only the layers it has met.
+"""Q-learning in tasks of many layers, with tables of the visited layers alone.
 
-Nine components of a factory have 19,683 configurations, and a learner meets a thousand of them. The kernel is
-that of every learner, and its tables hold the layers met so far. A move into a layer not met is written down as an
-end: nothing has been learnt there, Q is 0, and what an end is worth is 0 as well, so the update is the same to the
-bit. The kernel halts, the layer is laid out, the episode goes on where it was. Thesis: §3.2.2.3, §3.4.3.
+Nine components of a factory have 19,683 configurations, of which a learner visits a thousand. The kernel is that
+of `q_learning`; its tables hold the visited layers. A move into another layer is stored as an end of the episode:
+its Q is 0, as is the value of an end, so the update is the same to the bit. The kernel halts, the layer is added,
+and the episode continues. Thesis: §3.2.2.3, §3.4.3.
 """
 
 from collections.abc import Callable
@@ -12,26 +12,24 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.learning.curve import EPISODE, STEP, Curve, new_curve
+from lifelore.core.learning.curve import EPISODE, STATE, STEP, Curve, new_curve
 from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.learning.q_learning import Learner, Rows, cumulative, learn, new_learner, uniform_rows
+from lifelore.core.learning.q_learning import QLearner, Rows, cumulative, learn, new_learner, uniform_rows
 from lifelore.core.mdp import TERMINAL, Tables
 
-_STATE = 2
-"""Place of the state under way in a `Learner`'s cursor."""
 _ALL = 2**62
 RowsOf = Callable[[int], Tables]
 ProbsOf = Callable[[int], NDArray[np.float64]]
 
 
 class LayeredLearning:
-    """A learner of one task in layers, its Q held for the layers it has met.
+    """A learner of one task in layers, with Q for the visited layers.
 
     Parameters
     ----------
     rows_of : callable
         ``rows_of(layer) -> Tables`` of the states of one layer, the task's starts with them; `next_state` and
-        `starts` in numbers of the whole task, state s in layer s // layer_size.
+        `starts` are state numbers of the whole task; state s lies in layer s // layer_size.
     n_layers, layer_size : int
     world, own : numpy generators
         As in `QLearning.learn`.
@@ -42,8 +40,8 @@ class LayeredLearning:
 
     Notes
     -----
-    `learn` leaves the same Q, visits, curve and random numbers as `QLearning.learn` on the tables of the whole
-    task, to the bit. A layer met takes some 0.07 MB at 275 cells and six actions, any other four bytes.
+    `learn` gives the same Q, visits, curve and random numbers as `QLearning.learn` on the tables of the whole
+    task, to the bit. A visited layer takes some 0.07 MB at 275 cells and six actions, any other four bytes.
     """
 
     def __init__(
@@ -64,9 +62,9 @@ class LayeredLearning:
         self._n_states = n_layers * layer_size
         self._block_of = np.full(n_layers, -1, np.int32)
         self._leading_to: dict[int, list[int]] = {}
-        """Layers not met → blocks with moves into them."""
+        """Unvisited layer → blocks with moves into it."""
         self.layers: list[int] = []
-        """The layers met, in this order."""
+        """The visited layers, in order of the first visit."""
         first = rows_of(0)
         shape = first.next_state.shape[1:]
         self._outcome_cum, self._n_actions = first.outcome_cum, shape[0]
@@ -86,7 +84,7 @@ class LayeredLearning:
         self._learner = new_learner(0, self._n_actions, world, own)
 
     def learn(self, settings: QLearning, discount: float) -> Curve:
-        """Learn the task from the first episode to the last; once only."""
+        """Learn the task from the first episode to the last; may be called once."""
         if self._learner.cursor.any():
             raise InputError("learn() runs once, got a learner that has learnt; make a new LayeredLearning")
         curve, schedule = new_curve(settings.episodes), settings.schedule(discount)
@@ -98,12 +96,12 @@ class LayeredLearning:
             )
             tables, rows, learner = self._laid_out()
             learn(tables, rows, this_episode, learner, curve, _ALL)
-            if cursor[_STATE] >= self._n_states:
+            if cursor[STATE] >= self._n_states:
                 self._go_on(curve, episode, settings.max_steps)
         return curve
 
     def q(self, layer: int) -> NDArray[np.float64]:
-        """Q of the states of one layer, (layer_size, n_actions); zeros where it was never met."""
+        """Q of the states of one layer, (layer_size, n_actions); zeros for an unvisited layer."""
         return self._of_layer("q", layer)
 
     def visits(self, layer: int) -> NDArray[np.int64]:
@@ -112,7 +110,7 @@ class LayeredLearning:
 
     @property
     def random_states(self) -> tuple[NDArray[np.uint64], NDArray[np.uint64]]:
-        """Where the world's stream and the learner's own have got to."""
+        """Current states of the world's stream and of the learner's own."""
         return self._learner.world_random, self._learner.own_random
 
     def _of_layer(self, name: str, layer: int) -> NDArray:
@@ -125,8 +123,8 @@ class LayeredLearning:
 
     # ---- the tables so far -----------------------------------------------------------------------
 
-    def _laid_out(self) -> tuple[Tables, Rows, Learner]:
-        """What the kernel takes, over the layers met."""
+    def _laid_out(self) -> tuple[Tables, Rows, QLearner]:
+        """Arguments of the kernel, over the visited layers."""
         n = len(self.layers) * self.layer_size
         now = {name: array[:n] for name, array in self._arrays.items()}
         tables = Tables(now["next_state"], now["reward"], now["event"], self._outcome_cum, self._starts)
@@ -140,11 +138,11 @@ class LayeredLearning:
         return tables, rows, self._learner._replace(q=now["q"], visits=now["visits"])
 
     def _go_on(self, curve: Curve, episode: int, max_steps: int) -> None:
-        """The kernel ended an episode at the edge of what was laid out: lay out the layer and take that back."""
+        """Undo an end of the episode at the border of the visited layers: add the next layer."""
         cursor = self._learner.cursor
-        following = int(cursor[_STATE]) - self._n_states
+        following = int(cursor[STATE]) - self._n_states
         self._meet(following // self.layer_size)
-        cursor[_STATE] = self._local(np.array([following]))[0]
+        cursor[STATE] = self._local(np.array([following]))[0]
         curve.reached[episode] = False
         if curve.steps[episode] < max_steps:
             cursor[EPISODE], cursor[STEP] = episode, curve.steps[episode]
@@ -168,20 +166,20 @@ class LayeredLearning:
             self._join_to(other, layer)
 
     def _join(self, block: int, rows: Tables) -> None:
-        """Moves of a new block: into layers met by their place here, into others as an end beyond."""
+        """Moves of a new block: into visited layers by their local number, into others as an end."""
         here = self._slice(block)
         next_state, event = self._arrays["next_state"][here], self._arrays["event"][here]
         goes_on = rows.event & TERMINAL == 0
         met = self._block_of[rows.next_state // self.layer_size] >= 0
         next_state[:] = np.where(met, self._local(rows.next_state), rows.next_state + self._n_states)
-        # The state after a true end is never looked at; a place of this block keeps it inside the tables.
+        # The state after a true end is never read; a place of this block keeps it inside the tables.
         next_state[~goes_on & ~met] = here.start
         event[goes_on & ~met] |= TERMINAL
         for layer in np.unique(rows.next_state[goes_on & ~met] // self.layer_size):
             self._leading_to.setdefault(int(layer), []).append(block)
 
     def _join_to(self, block: int, layer: int) -> None:
-        """Moves of `block` that ended for want of `layer` now lead there."""
+        """Let moves of `block` that ended at the unvisited `layer` lead there."""
         here = self._slice(block)
         next_state, event = self._arrays["next_state"][here], self._arrays["event"][here]
         waiting = (next_state - self._n_states) // self.layer_size == layer
@@ -189,7 +187,7 @@ class LayeredLearning:
         next_state[waiting] = self._local(next_state[waiting] - self._n_states)
 
     def _local(self, states: NDArray) -> NDArray[np.int32]:
-        """Numbers of the whole task as numbers here; of layers met."""
+        """Local numbers of states of visited layers."""
         block = self._block_of[states // self.layer_size]
         return (block * self.layer_size + states % self.layer_size).astype(np.int32)
 

@@ -1,6 +1,6 @@
-"""What learning with a past is worth, read off learning curves: the five measures of transfer, paired.
+"""The five measures of transfer between two sets of learning curves, paired run by run.
 
-A curve is performance episode by episode, larger is better. Curves of many runs are (n_runs, n_episodes); row i
+A curve is the performance of each episode, larger is better. Curves of many runs are (n_runs, n_episodes); row i
 of a learner and row i of its baseline are the same task on the same random streams. The measures are those of
 Taylor & Stone, Transfer Learning for Reinforcement Learning Domains, JMLR 10 (2009), §2.1.
 """
@@ -42,7 +42,7 @@ def transfer_ratio(curves: ArrayLike, baseline: ArrayLike, floor: float = 0.0) -
     ----------
     curves, baseline : (n_runs, n_episodes) float
     floor : float
-        The performance that counts as nothing. A ratio means something only above it, and depends on it.
+        The performance that counts as 0. The ratio depends on it, and is defined only above it.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def transfer_ratio(curves: ArrayLike, baseline: ArrayLike, floor: float = 0.0) -
     if not (without > 0).all():
         raise InputError(
             f"floor must lie below the baseline's mean in every run, got {floor} and the mean "
-            f"{baseline.mean(axis=1).min():.6g}; name the performance that counts as nothing"
+            f"{baseline.mean(axis=1).min():.6g}; name the performance that counts as 0"
         )
     return ratio_estimate(with_past - without, without)
 
@@ -67,7 +67,7 @@ def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window
     returns = np.asarray(returns, float)
     if window < 1 or window > len(returns):
         raise InputError(f"window must lie in [1, {len(returns)}], got {window}")
-    # Summed before divided: ten returns of 1 have the mean 1, ten tenths of them do not.
+    # Summed, then divided: the mean of ten returns of 1 is exactly 1.
     smooth = np.convolve(returns, np.ones(window), mode="valid") / window
     reached = np.flatnonzero(smooth >= threshold)
     return int(reached[0]) + window if reached.size else None
@@ -75,14 +75,14 @@ def episodes_to_threshold(returns: NDArray[np.float64], threshold: float, window
 
 @dataclass(frozen=True)
 class LearningGain:
-    """A learner beside its baseline over the same runs; see `learning_gain`.
+    """A learner compared with its baseline over the same runs; see `learning_gain`.
 
     jumpstart : difference of first performances
     asymptote : difference of the last ones
     total_reward : difference of the areas under the curves
     transfer_ratio : that difference over the baseline's area; None where the baseline has a run without area
     threshold_ratio : episodes to the threshold over the baseline's; below 1 is faster
-    threshold_saved : episodes to the threshold that the baseline needs more
+    threshold_saved : further episodes to the threshold that the baseline needs
     never, baseline_never : runs that never reached the threshold; they count as all their episodes
     """
 

@@ -1,16 +1,16 @@
-"""Model-based learning for worlds whose moves are certain: learn transitions, plan the search on them.
+"""Model-based learning in deterministic worlds: learn transitions, plan the search on them.
 
-What belongs to the domain, the transitions T, may be remembered from earlier tasks; what belongs to the task,
-where the goal lies, never is. Within a task every planned learner follows one rule: walk to the cheapest of
+Transitions belong to the domain and may be remembered from earlier tasks; the goal belongs to the task and never
+is. Within a task every planned learner walks to the cheapest of
 
-* a place not yet looked at in this task, at the steps to it,
+* a place not yet visited in this task, at the steps to it,
 * a move not yet tried, at the steps to it and a cost of trying that the caller sets per context and action
   (an action prior makes unlikely moves dear: an order, never a mask),
 * the goal, once seen, at the steps to it,
 
-and so stay optimistic about what is unknown. What was remembered is not believed blindly: a transition
-observed otherwise is overwritten, a state whose percept has changed is forgotten, and when nothing is left to
-look at, remembered refusals are doubted.
+and so stays optimistic about unknown places. Memory is corrected: an observed transition overwrites a remembered
+one, a state whose percept has changed is forgotten, and when no place is left to visit, remembered refusals are
+forgotten.
 """
 
 from typing import NamedTuple
@@ -19,24 +19,35 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.core.compiled.random_state import one_of, random_state
+from lifelore.core.compiled.random_state import random_state, uniform_integer
 from lifelore.core.errors import InputError
+from lifelore.core.learning.curve import (
+    DISCOUNT,
+    EPISODE,
+    GOALS,
+    NEWS,
+    PLAN_LENGTH,
+    RETURN,
+    STATE,
+    STEP,
+    TOTAL,
+)
 from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN
 from lifelore.core.learning.search_plan import plan_search
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 MOST_ACTIONS = np.iinfo(np.int8).max
-"""Plans are kept as int8."""
+"""Plans are stored as int8."""
 MOST_NEWS = 1024
-"""Learnt moves that an explorer lists between two looks; after more of them whoever looks must look at all."""
+"""Largest number of listed new moves; after more of them `KnownValue` reads the whole model."""
 ALL_NEW = -1
 
 
 class ExplorationStrategy(NamedTuple):
-    """How to look for the goal.
+    """Search strategy of a learner.
 
-    planned : plan the search; else always the least-tried move of the state one is in
-    exhaustive : while any unknown can be reached, prefer it to the goal (R-max's optimism)
+    planned : plan the search; else always take the least-tried move of the current state
+    exhaustive : prefer any reachable unknown to the goal (R-max's optimism)
     senses : a visit to a place reveals where all its moves lead (frontier search of robots)
     """
 
@@ -45,8 +56,8 @@ class ExplorationStrategy(NamedTuple):
     senses: bool = False
 
 
-class Perceived(NamedTuple):
-    """What a state shows, and what trying an unknown move there costs.
+class StateInfo(NamedTuple):
+    """Percept of each state, and the cost of trying an unknown move there.
 
     percept : (n_states,) int64
     cost_row : (n_states,) int32, row of `try_cost`
@@ -58,19 +69,20 @@ class Perceived(NamedTuple):
     try_cost: NDArray[np.float64]
 
 
-class Explorer(NamedTuple):
-    """Everything one task's learner carries between calls of `explore`; changed in place.
+class ModelLearner(NamedTuple):
+    """State of a model-based learner in one task, between calls of `explore`; changed in place.
 
     place : (n_states,) int8, NOT_LOOKED | LOOKED | DEAD_END | GOAL
     tried : (n_states, n_actions) int64, how often each move was made in this task
-    plan : (n_states + 1,) int8, actions still to do, the next one last
+    plan : (n_states + 1,) int8, remaining actions, the next one last
     queue, parent : (n_states,) int32; parent_action : (n_states,) int8; work space of `plan_search`, where
         `parent` is UNKNOWN between calls
-    news : (MOST_NEWS,) int64, moves learnt since whoever follows the model last looked: state · n_actions + action
+    news : (MOST_NEWS,) int64, moves learned since the last `KnownValue.update`,
+        state · n_actions + action
     world_random, own_random : (2,) uint64
-    cursor : (7,) int64, episode, step in it, state, length of plan, total steps, places known as goals, and how
-        many `news` there are; ALL_NEW where something that was known has changed or they are too many
-    running : (2,) float64, return so far and the discount it has reached
+    cursor : (7,) int64, see `curve.EPISODE` and the constants beside it; the number of `news` is ALL_NEW where
+        known moves have changed or the list is full
+    running : (2,) float64, see `curve.RETURN`
     """
 
     place: NDArray[np.int8]
@@ -86,12 +98,12 @@ class Explorer(NamedTuple):
     running: NDArray[np.float64]
 
 
-def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
+def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner:
     """A learner at the start of a task; `world` and `own` are numpy generators."""
     if not 1 <= n_actions <= MOST_ACTIONS:
         raise InputError(f"n_actions must lie in [1, {MOST_ACTIONS}], got {n_actions}: learn by Q-learning")
 
-    return Explorer(
+    return ModelLearner(
         np.zeros(n_states, np.int8),
         np.zeros((n_states, n_actions), np.int64),
         np.zeros(n_states + 1, np.int8),
@@ -107,26 +119,26 @@ def new_explorer(n_states: int, n_actions: int, world, own) -> Explorer:
 
 
 @kernel(allocates=False)
-def explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, budget):
+def explore(tables, model, state_info, strategy, learner, curve, max_steps, discount, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over.
 
     The tables must be deterministic (one outcome). Episodes end at a terminal event or after `max_steps`.
     """
     next_state, reward_of, event_of, _, starts = tables
     target, seen = model
-    percept, cost_row, try_cost = perceived
+    percept, cost_row, try_cost = state_info
     planned, exhaustive, senses = strategy
-    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = explorer
+    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = learner
     returns, rewards, steps, collisions, reached = curve
     n_actions = target.shape[1]
-    episode, step = cursor[0], cursor[1]
-    state, left = cursor[2], cursor[3]
-    goals, n_news = cursor[5], cursor[6]
-    ret, reach = running[0], running[1]
+    episode, step = cursor[EPISODE], cursor[STEP]
+    state, left = cursor[STATE], cursor[PLAN_LENGTH]
+    goals, n_news = cursor[GOALS], cursor[NEWS]
+    ret, reach = running[RETURN], running[DISCOUNT]
     done_steps = 0
     while done_steps < budget and episode < returns.size:
         if step == 0:
-            state = np.int64(starts[one_of(world, starts.size)])
+            state = np.int64(starts[uniform_integer(world, starts.size)])
             left, ret, reach = 0, 0.0, 1.0
         if place[state] == NOT_LOOKED:
             place[state] = LOOKED
@@ -154,7 +166,7 @@ def explore(tables, model, perceived, strategy, explorer, curve, max_steps, disc
                 )
             if left == 0:
                 _doubt(target, tried)
-                plan[0] = one_of(own, n_actions)
+                plan[0] = uniform_integer(own, n_actions)
                 left = 1
             left -= 1
             a = np.int64(plan[left])
@@ -195,17 +207,17 @@ def explore(tables, model, perceived, strategy, explorer, curve, max_steps, disc
             episode += 1
             step = 0
             left = 0
-    cursor[0], cursor[1] = episode, step
-    cursor[2], cursor[3] = state, left
-    cursor[4] += done_steps
-    cursor[5], cursor[6] = goals, n_news
-    running[0], running[1] = ret, reach
+    cursor[EPISODE], cursor[STEP] = episode, step
+    cursor[STATE], cursor[PLAN_LENGTH] = state, left
+    cursor[TOTAL] += done_steps
+    cursor[GOALS], cursor[NEWS] = goals, n_news
+    running[RETURN], running[DISCOUNT] = ret, reach
     return done_steps
 
 
 @inlined
 def _arrive(state, target, seen, percept, tried):
-    """Forget what was remembered of a place whose percept has changed; whether that was anything."""
+    """Forget the remembered moves of a place whose percept has changed; returns whether there were any."""
     forgot = False
     if seen[state] != percept[state]:
         for a in range(target.shape[1]):
@@ -224,14 +236,14 @@ def _least_tried(tried, state, random):
             best, ties = a, 1
         elif tried[state, a] == tried[state, best]:
             ties += 1
-            if one_of(random, ties) == 0:
+            if uniform_integer(random, ties) == 0:
                 best = a
     return np.int64(best)
 
 
 @kernel(allocates=False)
 def _doubt(target, tried):
-    """Nothing is left to look at: remembered refusals that this task has not met may be out of date."""
+    """Forget remembered refusals that this task has not met: they may be out of date."""
     for s in range(target.shape[0]):
         for a in range(target.shape[1]):
             if target[s, a] == s and tried[s, a] == 0:
@@ -239,7 +251,7 @@ def _doubt(target, tried):
 
 
 def check_deterministic(tables: Tables) -> None:
-    """Raise unless each move has one outcome, which is what this learner can plan with."""
+    """Raise InputError unless each move has one outcome; this learner plans with no others."""
     if tables.outcome_cum.size != 1:
         raise InputError(
             f"tables must have one outcome a move to be planned with, got {tables.outcome_cum.size}: "

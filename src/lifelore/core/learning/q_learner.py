@@ -10,7 +10,7 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import EPISODE, Curve, new_curve
 from lifelore.core.learning.q_learning import (
-    Learner,
+    QLearner,
     Rows,
     Schedule,
     learn,
@@ -22,7 +22,7 @@ from lifelore.core.learning.q_learning import (
 from lifelore.core.mdp import Tables
 
 CHUNK = 1_000_000
-"""Steps between two looks at the outside world: well under 0.2 s, so Ctrl-C is heard."""
+"""Steps between two checks for Ctrl-C and for `watch`: well under 0.2 s."""
 
 
 def _cores() -> int:
@@ -86,8 +86,8 @@ class QLearning:
         world: np.random.Generator,
         own: np.random.Generator,
         rows: Rows | None = None,
-        watch: Callable[[Learner, Curve], bool] | None = None,
-    ) -> tuple[Learner, Curve]:
+        watch: Callable[[QLearner, Curve], bool] | None = None,
+    ) -> tuple[QLearner, Curve]:
         """Learn one task.
 
         Parameters
@@ -96,10 +96,9 @@ class QLearning:
         discount : float
             γ in [0, 1).
         world, own : numpy generators
-            Where episodes start and outcomes fall; the learner's own choices. Methods that are compared
-            share the world's.
+            Draws of starts and outcomes; draws of the learner. Compared methods share the world's.
         rows : Rows, optional
-            What exploration and ties follow; default uniform.
+            Exploration probabilities and tie weights; default uniform.
         watch : callable, optional
             Called between chunks; a true answer ends learning early.
 
@@ -125,9 +124,9 @@ class QLearning:
         rows: Rows | None = None,
         threads: int | None = None,
         chunk: int = CHUNK,
-        watch: Callable[[Learner, Curve], bool] | None = None,
-    ) -> tuple[Learner, Curve]:
-        """Learn one task by many learners at once; each learns to the bit what it would learn alone.
+        watch: Callable[[QLearner, Curve], bool] | None = None,
+    ) -> tuple[QLearner, Curve]:
+        """Learn one task by many learners at once; each gets the same result, to the bit, as alone.
 
         Parameters
         ----------
@@ -166,7 +165,7 @@ class QLearning:
         rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
         learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)
         curves = new_curve((n, self.episodes))
-        # No thread is left alone with the rest, and none runs long without a look at the outside world.
+        # Small enough that threads finish together and Ctrl-C is noticed soon.
         batch = max(1, min(-(-n // (4 * threads)), CHUNK // min(chunk, self.episodes * self.max_steps)))
         pool = ThreadPoolExecutor(threads)
         try:

@@ -2,11 +2,10 @@
 
     Q(s, a) ← Q(s, a) + α [r + γ max_a' Q(s', a') - Q(s, a)]
 
-The kernel knows no prior: it sees one row of exploration probabilities and one row of tie weights for each
-context, and which row is read where (`Rows`). The row of Q and the row of the context are looked up apart,
-so a learner may see less than the world's state (a hidden state), and a context may include the class of the
-last reward. Learning is resumable: `learn` runs a bounded number of steps and leaves everything it needs to
-go on in `Learner`. Thesis: §3.2.2.3, Alg. 2 and 4.
+The kernel reads one row of exploration probabilities and one row of tie weights per context; `Rows` says which
+row belongs to which state. The row of Q and the row of the context are separate, so a learner may observe less
+than the hidden state, and a context may include the class of the last reward. Learning is resumable: `learn` runs
+a bounded number of steps and stores its state in `QLearner`. Thesis: §3.2.2.3, Alg. 2 and 4.
 """
 
 from typing import NamedTuple
@@ -17,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
-from lifelore.core.learning.curve import Curve
+from lifelore.core.learning.curve import DISCOUNT, EPISODE, RETURN, REWARD_CLASS, STATE, STEP, TOTAL, Curve
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 
@@ -26,7 +25,7 @@ class Rows(NamedTuple):
 
     q_row : (n_states,) int32, row of Q that the learner reads in a state
     context_row : (n_states, n_reward_classes) int32, row of the two arrays below
-    reward_class : (n_states, n_actions, n_outcomes) uint8, class of the reward just received
+    reward_class : (n_states, n_actions, n_outcomes) uint8, class of the last reward
     explore_cum : (n_contexts, n_actions) float64, cumulative exploration probabilities
     tie_weight : (n_contexts, n_actions) float64, positive; relative odds among tied best actions
     """
@@ -47,14 +46,14 @@ class Schedule(NamedTuple):
     discount: float
 
 
-class Learner(NamedTuple):
-    """Everything a learner carries from one call of `learn` to the next; changed in place.
+class QLearner(NamedTuple):
+    """State of a learner between two calls of `learn`; changed in place.
 
     q : (n_q_rows, n_actions) float64
     visits : (n_q_rows, n_actions) int64
     world_random, own_random : (2,) uint64, the world's stream (starts, outcomes) and the learner's own
-    cursor : (5,) int64, episode, step in it, state, reward class, total steps
-    running : (2,) float64, return so far and the discount it has reached
+    cursor : (5,) int64, see `curve.EPISODE` and the constants beside it
+    running : (2,) float64, see `curve.RETURN`
     """
 
     q: NDArray[np.float64]
@@ -66,7 +65,7 @@ class Learner(NamedTuple):
 
 
 def uniform_rows(tables: Tables, explore=None, ties=None, context_row=None) -> Rows:
-    """Rows for a learner that sees the state and whose context ignores rewards.
+    """Rows for a learner that observes the state and whose context ignores rewards.
 
     Parameters
     ----------
@@ -123,9 +122,9 @@ def _check_context_row(row: NDArray[np.int32], n_states: int, n_contexts: int) -
         )
 
 
-def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:
+def new_learner(n_q_rows: int, n_actions: int, world, own) -> QLearner:
     """A learner at the start of its first episode, Q = 0; `world` and `own` are numpy generators."""
-    return Learner(
+    return QLearner(
         np.zeros((n_q_rows, n_actions)),
         np.zeros((n_q_rows, n_actions), np.int64),
         random_state(world),
@@ -135,11 +134,11 @@ def new_learner(n_q_rows: int, n_actions: int, world, own) -> Learner:
     )
 
 
-def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
+def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> QLearner:
     """Learners at the start of their first episodes, stacked along a first axis; a pair of generators each."""
     n = len(worlds)
     drawn = [(random_state(world), random_state(own)) for world, own in zip(worlds, owns, strict=True)]
-    return Learner(
+    return QLearner(
         np.zeros((n, n_q_rows, n_actions)),
         np.zeros((n, n_q_rows, n_actions), np.int64),
         np.stack([world for world, _ in drawn]),
@@ -150,8 +149,8 @@ def new_learners(n_q_rows: int, n_actions: int, worlds, owns) -> Learner:
 
 
 @inlined
-def choose(q, row, explore_cum, tie_weight, context, epsilon, random):
-    """ε-greedy action (Alg. 2 line 5): explore by the prior, else the best, ties by weight."""
+def epsilon_greedy(q, row, explore_cum, tie_weight, context, epsilon, random):
+    """ε-greedy action (Alg. 2 line 5): explore by the prior, else a best action, ties by weight."""
     n_actions = q.shape[1]
     if epsilon > 0.0 and next_uniform(random) < epsilon:
         u = next_uniform(random)
@@ -174,7 +173,7 @@ def choose(q, row, explore_cum, tie_weight, context, epsilon, random):
 
 @inlined
 def _break_tie(q, row, tie_weight, context, first, random):
-    """One of the actions as good as `first`, the first of them, drawn by its tie weight."""
+    """Draw among the actions tied with `first`, the first of them, by their tie weights."""
     best_value = q[row, first]
     total = 0.0
     for a in range(first, q.shape[1]):
@@ -194,15 +193,16 @@ def _break_tie(q, row, tie_weight, context, first, random):
 @kernel(allocates=False)
 def learn(tables, rows, schedule, learner, curve, budget):
     """Run at most `budget` steps; returns how many were run, fewer once the last episode is over."""
-    # Unpacked once: reading a tuple's array inside the loop would count references at every step.
+    # Unpacked once, because reading an array of a tuple inside the loop would count references at every step.
     next_state, reward_of, event_of, outcome_cum, starts = tables
     q_row, context_row, class_of, explore_cum, tie_weight = rows
     epsilons, alphas, max_steps, gamma = schedule
     q, visits, world, own, cursor, running = learner
     returns, rewards, steps, collisions, reached = curve
-    # Unsigned, because Numba asks of every signed index whether it counts from the end.
-    episode, step, state, reward_class = cursor[0], cursor[1], np.uint64(cursor[2]), np.uint64(cursor[3])
-    ret, discount = running[0], running[1]
+    # Unsigned, because Numba checks every signed index for counting from the end.
+    episode, step = cursor[EPISODE], cursor[STEP]
+    state, reward_class = np.uint64(cursor[STATE]), np.uint64(cursor[REWARD_CLASS])
+    ret, discount = running[RETURN], running[DISCOUNT]
     done_steps = 0
     while done_steps < budget and episode < epsilons.size:
         if step == 0:
@@ -210,7 +210,7 @@ def learn(tables, rows, schedule, learner, curve, budget):
             reward_class, ret, discount = np.uint64(0), 0.0, 1.0
         row = np.uint64(q_row[state])
         context = np.uint64(context_row[state, reward_class])
-        a = choose(q, row, explore_cum, tie_weight, context, epsilons[episode], own)
+        a = epsilon_greedy(q, row, explore_cum, tie_weight, context, epsilons[episode], own)
         k = 0
         if outcome_cum.size > 1:
             u = next_uniform(world)
@@ -239,9 +239,9 @@ def learn(tables, rows, schedule, learner, curve, budget):
             reached[episode] = event & TERMINAL > 0
             episode += 1
             step = 0
-    cursor[0], cursor[1], cursor[2], cursor[3] = episode, step, state, reward_class
-    cursor[4] += done_steps
-    running[0], running[1] = ret, discount
+    cursor[EPISODE], cursor[STEP], cursor[STATE], cursor[REWARD_CLASS] = episode, step, state, reward_class
+    cursor[TOTAL] += done_steps
+    running[RETURN], running[DISCOUNT] = ret, discount
     return done_steps
 
 
@@ -262,7 +262,7 @@ def learn_each(tables, rows, schedule, learners, curves, budget, first, last):
     """
     done_steps = 0
     for i in range(first, last):
-        learner = Learner(
+        learner = QLearner(
             learners.q[i],
             learners.visits[i],
             learners.world_random[i],

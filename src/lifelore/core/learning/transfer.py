@@ -1,13 +1,13 @@
-"""What learning one task is worth to the others, over a lifetime of tasks.
+"""Measures of transfer and forgetting over a lifetime of tasks.
 
-A lifetime is known by its evaluations, (..., n_tasks + 1, n_tasks): the performance on task j before anything is
-learnt (row 0) and after each of the tasks, which are learnt once each, in the order of the columns (row i + 1).
-Evaluations teach nothing. Leading axes are lives. Larger is better.
+The input is evaluations, (..., n_tasks + 1, n_tasks): the performance on task j before any learning (row 0) and
+after each task (row i + 1); tasks are learned once each, in the order of the columns. Evaluations teach nothing.
+Leading axes are lives. Larger is better.
 
-Transfer as differences is Lopez-Paz & Ranzato's, Gradient Episodic Memory (2017); what they write of an agent at
-random initialisation is row 0. Forgetting is Chaudhry et al.'s, Riemannian Walk (2018). Transfer between pairs of
-tasks, maintenance, and what is relative to a single-task expert are New et al.'s, Lifelong Learning Metrics
-(2022). `mean_estimate` of what a function returns for each life or task gives it an interval.
+Transfer as differences is Lopez-Paz & Ranzato's, Gradient Episodic Memory (2017); row 0 is their agent at
+random initialisation. Forgetting is Chaudhry et al.'s, Riemannian Walk (2018). Transfer between pairs of
+tasks, maintenance, and measures relative to a single-task expert are New et al.'s, Lifelong Learning Metrics
+(2022). `mean_estimate` of the values by life or task gives an interval.
 """
 
 from dataclasses import dataclass, fields
@@ -201,7 +201,7 @@ def _checked(evaluations: ArrayLike) -> Values:
     if values.ndim < 2 or values.shape[-1] < 2 or values.shape[-2] != values.shape[-1] + 1:
         raise InputError(
             f"evaluations must be (..., n_tasks + 1, n_tasks) of at least two tasks, got {values.shape}; "
-            "row 0 is before anything was learnt"
+            "row 0 is the performance before any learning"
         )
     if not values.size or not np.isfinite(values).all():
         raise InputError("evaluations must be finite and of at least one life")

@@ -1,7 +1,7 @@
-"""Exact value of a policy over whole episodes that end by themselves or are cut, discounted or not.
+"""Exact mean and deviation of the return of a policy over whole episodes with a step limit.
 
-Policies are over observations: each hidden state of the tables reads one row. Without a discount an infinite
-horizon has no value where a policy may wander for ever; up to the cap it always has one.
+Policies map observations to actions: each hidden state of the tables reads one row. Without a discount, a policy
+that may never end has no value over an infinite horizon; up to the step limit it has.
 """
 
 import numpy as np
@@ -24,7 +24,7 @@ def return_moments(
     probs : (n_rows, n_actions) float64
         The policy; rows sum to 1.
     max_steps : int
-        Steps after which an episode is cut.
+        Steps after which an episode is truncated.
     discount : float
         γ in [0, 1].
     """
@@ -42,7 +42,7 @@ def _moments(tables, row_of, probs, max_steps, discount):
     """First and second moment of the return; touches only the states that can be reached so far."""
     next_state, reward_of, event_of, outcome_cum, starts = tables
     n_states, n_actions, n_outcomes = next_state.shape
-    # By state: probability of being there, and that times the return so far and its square.
+    # Per state: its probability, and that times the return so far and its square.
     here, there = np.zeros((n_states, 3)), np.zeros((n_states, 3))
     active, found = np.empty(n_states, np.int64), np.empty(n_states, np.int64)
     listed = np.full(n_states, -1, np.int64)
@@ -64,7 +64,7 @@ def _moments(tables, row_of, probs, max_steps, discount):
                     continue
                 below = 0.0
                 for k in range(n_outcomes):
-                    # Outcomes in a row that are the same are one: a third of the work where many are.
+                    # Equal outcomes in a row are merged: a third of the work where there are many.
                     again = k + 1 < n_outcomes and next_state[s, a, k + 1] == next_state[s, a, k]
                     again = again and reward_of[s, a, k + 1] == reward_of[s, a, k]
                     if again and event_of[s, a, k + 1] == event_of[s, a, k]:

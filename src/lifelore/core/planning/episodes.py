@@ -1,4 +1,4 @@
-"""Episodes of a fixed policy over observations, as fast as the tables allow: nothing is learnt."""
+"""Returns of sampled episodes of a fixed policy over observations."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,7 +29,7 @@ def episode_returns(
         Cumulative probabilities of the actions, last column 1 (`core.q_learning.cumulative`).
     max_steps, n_episodes : int
     world, own : numpy generators
-        Where episodes start and outcomes fall; what the policy draws.
+        Draws of starts and outcomes; draws of the policy.
     """
     return _run(tables, row_of, policy_cum, max_steps, n_episodes, random_state(world), random_state(own))
 

@@ -1,12 +1,11 @@
-"""Exact solutions of tasks whose states lie in layers that only lead onwards.
+"""Exact solutions of tasks whose states form layers without a way back.
 
-Where something is gathered, built or used up for good (the items of a factory), the configurations form a
-directed graph without cycles: numbered so that none leads to a smaller number, each is a layer of equally many
-places. A layer is then a small problem of its own, whose exits have known values, and the work is one small
-value iteration a layer instead of sweeps over all of them. Each iteration starts from below: the value of a
-place whose best path ends or leaves is exact, and final, as soon as that path has been walked back, so
-the number of sweeps does not grow with 1 / (1 - γ). Layers that cannot be reached from where one asks are never
-looked at. Thesis: Eq. 3.1, §3.4.2.
+Where items are gathered, built or used up for good (the components of a factory), the configurations form a
+directed graph without cycles. Numbered so that none leads to a smaller number, each configuration is a layer of
+equally many places. A layer is then a small problem whose exits have known values: one small value iteration per
+layer replaces sweeps over all of them. Each iteration starts from a lower bound, so the value of a place is exact
+as soon as its best path has been walked back, and the number of sweeps does not grow with 1 / (1 - γ). Layers that
+cannot be reached from the requested one are not solved. Thesis: Eq. 3.1, §3.4.2.
 """
 
 from collections.abc import Callable
@@ -26,7 +25,7 @@ LAST_MOVE = 1e-12
 def layered_q(
     tables: Tables, layer_size: int, discount: float, tolerance: float = LAST_MOVE
 ) -> NDArray[np.float64]:
-    """Optimal action values of a task in layers, (n_states, n_actions); as `planning.optimal_q` finds them.
+    """Optimal action values of a task in layers, (n_states, n_actions); equal to those of `planning.optimal_q`.
 
     Parameters
     ----------
@@ -55,7 +54,7 @@ def layered_q(
 
 
 class LayeredPlan:
-    """Exact values of a task in layers, found when they are asked for and kept.
+    """Exact values of a task in layers, computed on request and stored.
 
     Parameters
     ----------
@@ -67,16 +66,16 @@ class LayeredPlan:
 
     Notes
     -----
-    To know a layer, all that it can lead to must be known, and nothing else is solved. Values take eight bytes
-    a state of the layers solved; action values are made anew at each call.
+    Solving a layer solves all layers that it can lead to, and no others. Values take eight bytes per state of the
+    solved layers; action values are computed at each call.
     """
 
     def __init__(self, rows_of: Callable[[int], Tables], n_layers: int, layer_size: int, discount: float) -> None:
         self._rows_of, self.layer_size, self._discount = rows_of, layer_size, float(discount)
-        # Pages of zeros are not taken from the machine before they are written to.
+        # The operating system allocates pages of zeros only when they are written.
         self._value = np.zeros(n_layers * layer_size)
         self.solved = np.zeros(n_layers, np.bool_)
-        """(n_layers,) bool: whose values are known by now."""
+        """(n_layers,) bool: layers whose values are known."""
 
     def values(self, layer: int) -> NDArray[np.float64]:
         """Optimal values of the places of one layer, (layer_size,)."""
@@ -177,9 +176,9 @@ def _solve_layer(rows, first, discount, tolerance, value):
         moved = 0.0
         for i in range(n_places):
             s = i if forwards else n_places - 1 - i
-            best = _worth(rows, s, 0, discount, value)
+            best = _backup(rows, s, 0, discount, value)
             for a in range(1, n_actions):
-                best = max(best, _worth(rows, s, a, discount, value))
+                best = max(best, _backup(rows, s, a, discount, value))
             moved = max(moved, abs(best - value[first + s]))
             value[first + s] = best
         forwards = not forwards
@@ -205,17 +204,17 @@ def _back_up(rows, discount, value, q):
     """Action values from the values of all that follows, into `q`."""
     for s in range(q.shape[0]):
         for a in range(q.shape[1]):
-            q[s, a] = _worth(rows, s, a, discount, value)
+            q[s, a] = _backup(rows, s, a, discount, value)
 
 
 @inlined
-def _worth(rows, s, a, discount, value):
+def _backup(rows, s, a, discount, value):
     """Expected reward and discounted value of what follows (the Bellman backup)."""
     total, before = 0.0, 0.0
     for k in range(rows.outcome_cum.size):
-        worth = rows.reward[s, a, k]
+        gain = rows.reward[s, a, k]
         if not rows.event[s, a, k] & TERMINAL:
-            worth += discount * value[rows.next_state[s, a, k]]
-        total += (rows.outcome_cum[k] - before) * worth
+            gain += discount * value[rows.next_state[s, a, k]]
+        total += (rows.outcome_cum[k] - before) * gain
         before = rows.outcome_cum[k]
     return total

@@ -9,7 +9,7 @@ from lifelore.core.mdp import TERMINAL, Tables
 TIE_TOLERANCE = 1e-9
 """Actions whose values differ by no more than this, relative to the row's best, are tied."""
 TIE_FLOOR = 1e-12
-"""Nor are they told apart below this, relative to the largest value of all: exact values are known no better."""
+"""Also tied are values that differ by less than this, relative to the largest value: rounding is no better."""
 
 
 def optimal_q(tables: Tables, discount: float, tolerance: float = 1e-12) -> NDArray[np.float64]:
@@ -50,10 +50,10 @@ def _backup(tables, s, a, discount, value):
     next_state, reward, event, outcome_cum, _ = tables
     total, before = 0.0, 0.0
     for k in range(outcome_cum.size):
-        worth = reward[s, a, k]
+        gain = reward[s, a, k]
         if not event[s, a, k] & TERMINAL:
-            worth += discount * value[next_state[s, a, k]]
-        total += (outcome_cum[k] - before) * worth
+            gain += discount * value[next_state[s, a, k]]
+        total += (outcome_cum[k] - before) * gain
         before = outcome_cum[k]
     return total
 
@@ -63,8 +63,9 @@ def best_actions(
 ) -> NDArray[np.bool_]:
     """Which actions are best or tied best in each row (Eq. 3.1), (n_rows, n_actions) bool.
 
-    Tied are those within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
-    whichever is more: where the best is worth nothing, rounding alone must not choose. Not finite means not there.
+    Tied are values within `tolerance` · |the row's best| or `floor` · |the largest finite value of all rows|,
+    whichever is more: where the best value is 0, rounding must not choose. A value that is not finite marks an
+    action that does not exist.
     """
     best = q.max(axis=1, keepdims=True)
     largest = np.abs(q).max(where=np.isfinite(q), initial=0.0)
@@ -72,18 +73,18 @@ def best_actions(
 
 
 def learnt_best_actions(q: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """`best_actions` of a learnt Q; rows that promise nothing above zero are all False: it has no policy there.
+    """`best_actions` of a learned Q; rows without a value above zero are all False: no policy is learned there.
 
-    What a learner has just heard of may be worth very little yet, so there is no floor.
+    A value just learned may be very small, so there is no floor.
     """
     return best_actions(q, floor=0.0) & (q.max(axis=1, keepdims=True) > 0)
 
 
 def greedy_policy(q: NDArray[np.float64]) -> NDArray[np.int32]:
-    """The first best action where some action promises something; -1 where none does.
+    """The first best action of each state; -1 where no value is above zero.
 
-    A learner that values nothing above zero in a state has no policy there yet. It counts as standing
-    still, for every learner alike: worth 0.
+    A learner without a value above zero in a state has no policy there yet. It counts as standing still, with
+    value 0, for every learner alike.
     """
     return np.where(q.max(axis=1) > 0, q.argmax(axis=1), -1).astype(np.int32)
 
@@ -95,7 +96,7 @@ def policy_values(tables: Tables, policy: NDArray[np.int32], discount: float) ->
     ----------
     tables : Tables
     policy : (n_states,) int
-        Action of each state; -1: stand still, worth 0.
+        Action of each state; -1: stand still, value 0.
     discount : float
         γ in [0, 1).
     """

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import MissingExtraError
 from lifelore.domains.tabletop.pose import Pose
-from lifelore.domains.tabletop.shapes import Part, Shape, Weave, draped
+from lifelore.domains.tabletop.shapes import Shape, ShapePart, Weave, draped
 
 NEAR = 0.004
 """Metres within which surfaces count as touching."""
@@ -255,7 +255,7 @@ def _body_xml(shape: Shape, pose: Pose, geoms: list[str], number: int) -> str:
     return f'<body name="thing{number}" {frame}>{free}{"".join(first)}{inner}</body>'
 
 
-def _geom_xml(part: Part, mesh: str, density: float) -> str:
+def _geom_xml(part: ShapePart, mesh: str, density: float) -> str:
     what = f'type="mesh" mesh="{mesh}"' if part.vertices is not None else f'type="{_TYPES[part.kind]}"'
     size = "" if part.vertices is not None else f'size="{_numbers(part.size)}"'
     return f'<geom {what} {size} {_frame(part.position, part.rotation)} density="{density:.9g}"/>'

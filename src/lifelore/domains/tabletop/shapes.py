@@ -1,6 +1,6 @@
 """Shapes of the tabletop as plain data: each a handful of convex parts, sizes in metres.
 
-`Part` is a box (half sizes), cylinder (radius, half height), ball (radius), ellipsoid (three radii), capsule
+`ShapePart` is a box (half sizes), cylinder (radius, half height), ball (radius), ellipsoid (three radii), capsule
 (radius, half length) or the convex hull of `vertices`. Axes of cylinders and capsules are their local z.
 """
 
@@ -24,7 +24,7 @@ _SPHERE = np.array(
 
 
 @dataclass(frozen=True, eq=False)
-class Part:
+class ShapePart:
     """One convex piece of a shape, in the shape's frame."""
 
     kind: str
@@ -81,7 +81,7 @@ class Shape:
     """
 
     kind: str
-    parts: tuple[Part, ...]
+    parts: tuple[ShapePart, ...]
     density: float = 400.0
     hinge: Hinge | None = None
     weave: Weave | None = None
@@ -118,15 +118,15 @@ def _triple(values: NDArray[np.float64]) -> tuple[float, float, float]:
     return float(x), float(y), float(z)
 
 
-def part(kind: str, size: tuple[float, ...], position=(0.0, 0.0, 0.0), rotation=None) -> Part:
+def part(kind: str, size: tuple[float, ...], position=(0.0, 0.0, 0.0), rotation=None) -> ShapePart:
     """A part without writing arrays."""
     turn = np.eye(3) if rotation is None else rotation
-    return Part(kind, tuple(float(s) for s in size), np.asarray(position, dtype=float), turn)
+    return ShapePart(kind, tuple(float(s) for s in size), np.asarray(position, dtype=float), turn)
 
 
-def hull(vertices: NDArray[np.float64]) -> Part:
+def hull(vertices: NDArray[np.float64]) -> ShapePart:
     """The convex hull of some points as a part."""
-    return Part(HULL, (), np.zeros(3), np.eye(3), np.asarray(vertices, dtype=float))
+    return ShapePart(HULL, (), np.zeros(3), np.eye(3), np.asarray(vertices, dtype=float))
 
 
 def box(length: float, width: float, height: float, kind: str = "box") -> Shape:
@@ -213,7 +213,7 @@ def cup(low: float, high: float, height: float, wall: float, handle: bool, kind:
     return Shape(kind, (*slabs, *(_handle(middle, height, wall) if handle else ())), density=800.0)
 
 
-def _handle(radius: float, height: float, wall: float) -> list[Part]:
+def _handle(radius: float, height: float, wall: float) -> list[ShapePart]:
     bow, tube = 0.33 * height, max(wall * 0.9, 0.0045)
     angles = np.linspace(-np.pi / 2, np.pi / 2, 8)
     rim = np.stack([radius + bow * np.cos(angles), np.zeros(8), bow * np.sin(angles)], axis=1)

@@ -23,7 +23,7 @@ from lifelore.domains.tabletop.photograph import FIRST_OBJECT, Photograph, choos
 from lifelore.domains.tabletop.physics import Contacts, Tabletop
 from lifelore.domains.tabletop.quota import to_mix, wanted_relation
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
-from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, judge
+from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, true_relations
 
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
@@ -33,10 +33,10 @@ ATTEMPTS = 400
 BLOCK = 4
 """Scenes that one process draws at a time."""
 
-__all__ = ["TabletopScene", "TabletopSettings", "draw_scene", "scenes", "settle_scene", "visible_gap"]
+__all__ = ["TabletopScene", "TabletopSettings", "sample_scene", "settle_scene", "tabletop_scenes", "visible_gap"]
 
 
-def scenes(
+def tabletop_scenes(
     n: int, seed: int = 0, settings: TabletopSettings | None = None, jobs: int = 1
 ) -> Iterator[TabletopScene]:
     """`n` scenes in order, the same bit for bit for any number of `jobs` (processes).
@@ -57,7 +57,7 @@ def _row(seed: int, settings: TabletopSettings, jobs: int, n: int | None = None)
     """Scenes 0, 1, …, without end where `n` is None."""
     if jobs == 1:
         for number in range(n) if n is not None else count():
-            yield draw_scene(seed, number, settings)
+            yield sample_scene(seed, number, settings)
         return
     from joblib import Parallel, delayed
 
@@ -71,10 +71,10 @@ def _row(seed: int, settings: TabletopSettings, jobs: int, n: int | None = None)
 
 
 def _draw_block(seed: int, numbers: range, settings: TabletopSettings) -> list[TabletopScene]:
-    return [draw_scene(seed, number, settings) for number in numbers]
+    return [sample_scene(seed, number, settings) for number in numbers]
 
 
-def draw_scene(seed: int, number: int, settings: TabletopSettings | None = None) -> TabletopScene:
+def sample_scene(seed: int, number: int, settings: TabletopSettings | None = None) -> TabletopScene:
     """Scene `number` of a seed: drawn until one settles, shows its arrangement and can be seen.
 
     Raises
@@ -152,7 +152,7 @@ def settle_scene(
     gaps = _gaps(solid, photo, farthest)
     labels = range(FIRST_OBJECT, FIRST_OBJECT + len(placed))
     heights = np.array([(outline[:, 2].min(), outline[:, 2].max()) for outline in outlines])
-    truth = judge(borne, gaps, heights, labels, settings.adjacent_gap, settings.near)
+    truth = true_relations(borne, gaps, heights, labels, settings.adjacent_gap, settings.near)
     if settings.arrangement == "pair" and _pair_relation(truth) not in ((wanted,) if wanted else CORE_RELATIONS):
         return None
     near = tuple(

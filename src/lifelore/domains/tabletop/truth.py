@@ -109,7 +109,7 @@ def contact_regions(places: NDArray[np.float64], apart: float = 0.025) -> int:
     return int(connected_components(close, directed=False)[0])
 
 
-def judge(
+def true_relations(
     borne: Bearing,
     gaps: Mapping[tuple[int, int], Gap],
     heights: NDArray[np.float64],

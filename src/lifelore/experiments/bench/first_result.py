@@ -23,8 +23,8 @@ _MODEL = """
 import time
 import numpy as np
 from lifelore.core.learning.curve import new_curve
-from lifelore.core.learning.known_world import blank_model, known_policy
-from lifelore.core.learning.model_learning import ExplorationStrategy, Perceived, explore, new_explorer
+from lifelore.core.learning.known_world import unknown_world, known_policy
+from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
 from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
 from lifelore.experiments.bench.lattice_case import lattice_task
@@ -32,8 +32,8 @@ started = time.perf_counter()
 tables = lattice_task().tables()
 optimal_q(tables, 0.95)
 n = tables.n_states
-model, explorer = blank_model(n, 4), new_explorer(n, 4, stream(0, "world"), stream(0, "own"))
-seen = Perceived(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 4)))
+model, explorer = unknown_world(n, 4), new_model_learner(n, 4, stream(0, "world"), stream(0, "own"))
+seen = StateInfo(np.zeros(n, np.int64), np.zeros(n, np.int32), np.zeros((1, 4)))
 explore(tables, model, seen, ExplorationStrategy(), explorer, new_curve(20), 1000, 0.95, 10**9)
 policy_values(tables, known_policy(model, explorer.place), 0.95)
 print(time.perf_counter() - started)

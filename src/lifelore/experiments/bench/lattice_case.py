@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
 from lifelore.domains.grids.lattice import lattice
@@ -29,7 +29,7 @@ class Case(NamedTuple):
     tables: Tables
     rows: Rows
     schedule: Schedule
-    learner: Learner
+    learner: QLearner
     curve: Curve
 
 

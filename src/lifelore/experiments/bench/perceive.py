@@ -15,11 +15,11 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.experiments.bench.rounds import at_most, row
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 
 THINGS, POINTS = 15, 100_000
 SEED = 7003
@@ -68,7 +68,7 @@ def _stage_rows(name: str, rounds: list[dict[str, float]]) -> list[dict]:
 
 
 def _crowded_scene() -> TabletopScene:
-    return draw_scene(SEED, 0, TabletopSettings(n_objects=(THINGS, THINGS), camera="stereo", shapes="all"))
+    return sample_scene(SEED, 0, TabletopSettings(n_objects=(THINGS, THINGS), camera="stereo", shapes="all"))
 
 
 def _with_points(cloud: LabelledCloud, *, of_things: bool) -> LabelledCloud:

@@ -20,7 +20,7 @@ from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes, re
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import object_name
 from lifelore.perception.scene_json import scene_document
 
@@ -64,7 +64,7 @@ def draw_and_judge(scene: RealScene, out: Path) -> dict:
     from lifelore.figures.scene_picture import draw_scene
     from lifelore.figures.style import save_figure
 
-    perceived = perceived_scene(scene.cloud, shipped_model()).bearing
+    perceived = perceived_scene(scene.cloud, shipped_model()).without_unrelated_contacts
     figure = draw_scene(scene.cloud, scene_document(perceived), title=scene.name)
     _fewer_colours(save_figure(figure, out / f"{scene.name}.png"))
     return {"scene": scene.name, **judge(scene.truth, perceived.relations)}

@@ -11,7 +11,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, scenes
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
 from lifelore.experiments.bench.relation_scenes import (
     HALF,
     HELD_OUT,
@@ -38,7 +38,7 @@ from lifelore.experiments.chapter2.relation_learners import (
     taught,
 )
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference, score, share
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 
 LEARNT_SCENES, JUDGED_SCENES = 60, 40
 """A round; four to five pairs of things each."""
@@ -87,7 +87,7 @@ def _counter(progress: Progress, repeats: int, real: int) -> Callable[[str], Non
 def _drawn(n: int, which: tuple[int, str], after: Callable[[str], None]) -> Iterator[TabletopScene]:
     """Simulated scenes one by one: their points are many, and nobody keeps them."""
     seed, shapes = which
-    for scene in scenes(n, seed, TabletopSettings(shapes=shapes)):
+    for scene in tabletop_scenes(n, seed, TabletopSettings(shapes=shapes)):
         yield scene
         after("scenes drawn and seen")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from lifelore.agent.reuse.fit import FitSettings, fit
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
 from lifelore.memory import open_memory
 
@@ -26,7 +26,7 @@ def clouds_to_perceive(folder: Path) -> tuple[list[Path], str]:
         return [real / f"{name}.pcd" for name in REAL], "a Kinect's PCD"
     sources = [folder / f"scene{number}.pcd" for number in range(len(SIMULATED))]
     for number, (source, things) in enumerate(zip(sources, SIMULATED, strict=True)):
-        save_cloud(source, draw_scene(SEED, number, TabletopSettings(n_objects=(things, things))))
+        save_cloud(source, sample_scene(SEED, number, TabletopSettings(n_objects=(things, things))))
     return sources, "a simulated camera's PCD"
 
 

@@ -15,7 +15,13 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, put_beside, stand, top
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import box, l_block
-from lifelore.domains.tabletop.tabletop import ATTEMPTS, TabletopScene, TabletopSettings, draw_scene, settle_scene
+from lifelore.domains.tabletop.tabletop import (
+    ATTEMPTS,
+    TabletopScene,
+    TabletopSettings,
+    sample_scene,
+    settle_scene,
+)
 
 USUAL = TabletopSettings()
 Said = frozenset[tuple[int, int, str]]
@@ -42,7 +48,7 @@ def arranged(name: str, seed: int, number: int, settings: TabletopSettings = USU
     if name in CONTROLS:
         return settled(CONTROLS[name], name, seed, number, settings)
     own_seed = int(stream(seed, "arranged", name).integers(2**31))
-    return draw_scene(own_seed, number, replace(settings, arrangement=name))
+    return sample_scene(own_seed, number, replace(settings, arrangement=name))
 
 
 def settled(

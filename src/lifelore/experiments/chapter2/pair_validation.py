@@ -17,7 +17,7 @@ from lifelore.experiments.chapter2.relation_scoring import BESIDE, CARRIED, Judg
 from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, Row
 from lifelore.perception.pairs.pair_features import PairFeatures, column_names
 from lifelore.perception.pairs.scene_pairs import ScenePairs
-from lifelore.perception.peers.peer import SeenPair
+from lifelore.perception.peers.peer import DescribedPair
 from lifelore.perception.relations.relation import Relation
 
 THRESHOLD = 7
@@ -221,12 +221,12 @@ def as_scene(row: Row, kernel: str = STANDARD) -> ScenePairs:
     return ScenePairs(features, (moved if row["a"] == a else -moved,))
 
 
-def as_seen(name: str) -> Callable[[Row], tuple[SeenPair, ...]]:
+def as_seen(name: str) -> Callable[[Row], tuple[DescribedPair, ...]]:
     """How the peer called `name` sees a near row."""
 
-    def look(row: Row) -> tuple[SeenPair, ...]:
+    def look(row: Row) -> tuple[DescribedPair, ...]:
         a, b = row["pair"]
-        return (SeenPair(a, b, row["gap"], np.array(row["peers"][name])),)
+        return (DescribedPair(a, b, row["gap"], np.array(row["peers"][name])),)
 
     return look
 

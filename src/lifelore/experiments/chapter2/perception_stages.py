@@ -42,5 +42,8 @@ def timed_stages(cloud: LabelledCloud, model: RelationClassifier) -> dict[str, f
     seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))
     beliefs = timed(STAGES[4], lambda: model.beliefs_of(seen))
     logic = timed(STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects))
-    timed(STAGES[6], lambda: scene_document(Scene(cloud, found, logic.relations).bearing, seconds=0.0))
+    timed(
+        STAGES[6],
+        lambda: scene_document(Scene(cloud, found, logic.relations).without_unrelated_contacts, seconds=0.0),
+    )
     return seconds

@@ -68,7 +68,7 @@ def seen_scene(
     contacts: ScenePairs | None = None,
 ) -> SeenScene:
     """A scene as everybody sees it; `contacts` where they are known already."""
-    seen: dict[str, Any] = {peer: new().look(cloud) for peer, new in PEERS.items()}
+    seen: dict[str, Any] = {peer: new().describe_pairs(cloud) for peer, new in PEERS.items()}
     seen[CONTACTS] = contacts or scene_pairs(cloud)
     return SeenScene(name, truth, cloud.objects, seen, gaps)
 

@@ -13,8 +13,7 @@ import numpy as np
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.scene import Scene
 
 NEAR = (ON, BOTH, ADJACENT, NONE)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
 from lifelore.experiments.chapter2.pair_validation import THRESHOLD
 from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
@@ -28,11 +28,11 @@ from lifelore.experiments.chapter2.relation_learners import reconciled
 from lifelore.experiments.chapter2.tabletop_pairs import without_table
 from lifelore.perception.contacts.contact_points import contact_clusters
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT, Interface, interfaces
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.contacts.near_pairs import near_pairs, split_objects
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 from lifelore.perception.relations import relation_model_file
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.separation.separator import separate
 
 DISCARDED, NOISE, BORDER, MASKS = "discarded", "noise", "border", "masks"
@@ -92,7 +92,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def _drawn(settings: Mapping, seed: int, shapes: str, number: int):
     own = int(stream(seed, "spoilt scenes", shapes).integers(2**31))
-    return draw_scene(own, number, TabletopSettings(shapes=shapes, camera=settings["camera"]))
+    return sample_scene(own, number, TabletopSettings(shapes=shapes, camera=settings["camera"]))
 
 
 def _lesson(settings: Mapping, seed: int, number: int) -> dict:
@@ -161,7 +161,7 @@ def _row(a: int, b: int, gap: float, first: NDArray[np.float64], second: NDArray
     return [a, b, round(gap, 6), np.round(moved, 6).tolist()]
 
 
-def literal_rows(bare: LabelledCloud, settings: ContactSettings = DEFAULT) -> list[list]:
+def literal_rows(bare: LabelledCloud, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS) -> list[list]:
     """As the thesis says it: all points, one cost for every point, contacts below 7 support vectors dropped.
 
     Pairs without a contact on either side have no row.

@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT, Interface, interfaces
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.pairs.pair_features import pair_features
 from lifelore.perception.peers import PEERS
 
@@ -40,7 +40,7 @@ def kernel_name(length: float, cost: float) -> str:
     return f"{1000 * length:g} mm, C {cost:g}"
 
 
-STANDARD = kernel_name(DEFAULT.length, DEFAULT.cost)
+STANDARD = kernel_name(DEFAULT_CONTACT_SETTINGS.length, DEFAULT_CONTACT_SETTINGS.cost)
 """The kernel of `ContactSettings`."""
 BESIDE_US = ("majority", "bounding-box rule", "centroid k-NN", "closest-point k-NN")
 """The peers that look at each pair too."""
@@ -85,7 +85,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def _undoubted(rng: np.random.Generator, number: int, drawn: TabletopSettings) -> TabletopScene:
     """A scene whose pair has a label that nobody would doubt; drawn anew where it has not."""
     while True:
-        scene = draw_scene(int(rng.integers(2**31)), number, drawn)
+        scene = sample_scene(int(rng.integers(2**31)), number, drawn)
         if all(label.confidence >= LEAST_CONFIDENCE for label in scene.truth if label.a != TABLE != label.b):
             return scene
 
@@ -105,7 +105,7 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
     found = {(one.a, one.b): one for one in interfaces(bare)}
     contacts = {kernel_name(*kernel): _contacts_by_pair(bare, *kernel) for kernel in KERNELS}
     features = pair_features(bare, tuple(found.values())).matrix
-    peers = {name: {(one.a, one.b): one.rows for one in PEERS[name]().look(bare)} for name in BESIDE_US}
+    peers = {name: {(one.a, one.b): one.rows for one in PEERS[name]().describe_pairs(bare)} for name in BESIDE_US}
     rows = []
     for label in truth:
         if TABLE in (label.a, label.b) or label.confidence < LEAST_CONFIDENCE:
@@ -141,7 +141,7 @@ def contacts_of(one: Interface) -> dict[str, list]:
 
 def loose_settings(length: float, cost: float) -> ContactSettings:
     """A kernel, and no contact dropped for want of support vectors: who reads the rows may drop them."""
-    return replace(DEFAULT, length=length, cost=cost, min_support=0.0)
+    return replace(DEFAULT_CONTACT_SETTINGS, length=length, cost=cost, min_support=0.0)
 
 
 def _contacts_by_pair(cloud: LabelledCloud, length: float, cost: float) -> dict[tuple[int, int], dict]:

@@ -12,7 +12,7 @@ from lifelore.action.advice.advisor import exploration_rows
 from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.learning.q_learning import Learner, uniform_rows
+from lifelore.core.learning.q_learning import QLearner, uniform_rows
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
 from lifelore.experiments.chapter3.advice_grid import Errand, Maze, errands_of, maze_of, purposes_of
@@ -46,7 +46,7 @@ def learn_errand(
     schedule: Sequence[float],
     advice: NDArray[np.float64] | None = None,
     episodes: int | None = None,
-) -> tuple[Learner, Curve]:
+) -> tuple[QLearner, Curve]:
     """One task learnt; `advice` (n_states, 4) is what its ε branch follows, uniform by default."""
     first, decay, floor = schedule
     learning = QLearning(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, greedy_policy, policy_values
 from lifelore.core.streams import stream
@@ -130,7 +130,7 @@ def hand_made_rows(problem: Problem, prior: ActionPrior, ties: str) -> Rows:
 # ---- learning ----------------------------------------------------------------------------------------
 
 
-def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
+def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
     return learnt(problem.tables, problem.stream, rows, schedule)
 

@@ -15,7 +15,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
@@ -92,7 +92,7 @@ def schedule_of(settings: Mapping, epsilon: Sequence[float]) -> Schedule:
     return Schedule(fall, alpha, settings["max_steps"], settings["discount"])
 
 
-def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[NDArray[np.float64], Learner]:
+def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[NDArray[np.float64], QLearner]:
     """Returns (n_episodes,) and the learner after all episodes; without `rows` it is plain Q-learning."""
     curve, learner = learnt(problem.tables, problem.stream, rows, schedule)
     return curve.returns, learner

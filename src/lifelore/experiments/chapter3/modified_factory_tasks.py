@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.action.features.feature_set import FeatureSet
 from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions
 from lifelore.core.streams import stream
@@ -86,6 +86,6 @@ def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:
     return state_contexts(problem.task, conditioned_on.removeprefix("state "))
 
 
-def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
+def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
     return learnt(problem.tables, problem.stream, rows, schedule)

@@ -21,7 +21,7 @@ from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.domains.factory.factory import ACTION_NAMES
 from lifelore.experiments.chapter3.modified_factory_tasks import (
     FULL_SET,
@@ -46,7 +46,7 @@ class Counting(NamedTuple):
     over: str
 
 
-def counted(problem: Problem, learner: Learner | None, how: Counting) -> NDArray[np.bool_]:
+def counted(problem: Problem, learner: QLearner | None, how: Counting) -> NDArray[np.bool_]:
     """Actions of each state that count, (n_states, 6); none of completed states."""
     if how.source == "learnt":
         if learner is None:
@@ -93,7 +93,7 @@ class OnlineAgent:
         self.count(problem, learner)
         return curve
 
-    def count(self, problem: Problem, learner: Learner | None) -> None:
+    def count(self, problem: Problem, learner: QLearner | None) -> None:
         """Count a policy; an exact one needs no learner."""
         codes, best = contexts_of(problem, "phi4"), counted(problem, learner, self.counting)
         (self.selection or self._full).update(codes, best)

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import StoreError
 
 VERSION = 1
@@ -65,7 +65,7 @@ def write_atomically(path: Path, text: str) -> None:
     """Write a text file in one step; StoreError where the disk refuses."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(text.encode())
     except OSError as error:
         raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

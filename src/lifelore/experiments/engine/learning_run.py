@@ -1,12 +1,12 @@
 """One task learnt to the end on streams of its own: what every learning experiment does for each of its runs."""
 
 from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule, learn, new_learner, uniform_rows
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
 
 
-def learnt(tables: Tables, stream_of: tuple, rows: Rows | None, schedule: Schedule) -> tuple[Curve, Learner]:
+def learnt(tables: Tables, stream_of: tuple, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning.
 
     `stream_of` names the task's streams: methods that are compared share the world's, and each has the same own.

@@ -19,7 +19,7 @@ from lifelore.core.compiled.jit import kernel
 from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import Rows, Schedule, choose
+from lifelore.core.learning.q_learning import Rows, Schedule, epsilon_greedy
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 
@@ -166,7 +166,7 @@ def _learn(tables, rows, library_cum, schedule, rule, reuser, curve):
                     a += 1
             else:
                 epsilon = epsilons[episode] if k < new else 0.0
-                a = choose(q, row, explore_cum, tie_weight, context_row[state, 0], epsilon, own)
+                a = epsilon_greedy(q, row, explore_cum, tie_weight, context_row[state, 0], epsilon, own)
             o = 0
             if outcome_cum.size > 1:
                 u = next_uniform(world)

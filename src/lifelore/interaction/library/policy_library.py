@@ -11,7 +11,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
@@ -304,7 +304,7 @@ class PolicyLibrary:
         """
         content = self.to_bytes()
         try:
-            with whole_file(path) as file:
+            with atomic_write(path) as file:
                 file.write(content)
         except OSError as error:
             raise StoreError(f"the library cannot be written to {path}: {error.strerror}") from None

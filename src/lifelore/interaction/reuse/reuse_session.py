@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
@@ -41,7 +41,7 @@ def save_session(agent: BayesianPolicyReuse, path: str | Path) -> None:
     """
     content = session_bytes(agent)
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StoreError(f"the session cannot be written to {path}: {error.strerror}") from None

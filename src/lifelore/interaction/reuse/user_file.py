@@ -11,7 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.packed_arrays import Arrays, PackedFormat
 from lifelore.core.protocols import SignalModel
@@ -39,7 +39,7 @@ def save_users(users: UserBeliefs, path: str | Path) -> None:
     if users.dynamics.law is not None:
         arrays["law"] = users.dynamics.law
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             FORMAT.write(file, header, arrays, compress=False)
     except OSError as error:
         raise StoreError(f"the users cannot be written to {path}: {error.strerror}") from None

@@ -1,7 +1,7 @@
-"""Smallest distances between two clouds, exact and fast: points sorted into cells, the nearest cells first.
+"""Smallest distances between two clouds, exact: points sorted into cells, nearest cells searched first.
 
-A k-d tree answers for every point; a gap needs only the few closest ones. So cells whose boxes are further apart
-than what has been found already are never opened, and two clouds that are far apart cost next to nothing.
+A k-d tree finds the distance of every point; a gap needs only the few smallest. So cells whose boxes are farther
+apart than the distances found so far are skipped, and clouds that are far apart cost almost no time.
 """
 
 from typing import NamedTuple

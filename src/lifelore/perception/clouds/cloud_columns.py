@@ -1,4 +1,4 @@
-"""Columns by name (`x`, `y`, `z`, `rgb`, `label`, …) to a `PointCloud`: what every file format comes down to."""
+"""Columns by name (`x`, `y`, `z`, `rgb`, `label`, …) to a `PointCloud`: the common step of all file formats."""
 
 from collections.abc import Mapping
 
@@ -16,14 +16,14 @@ _COLOUR_NAMES = (("red", "green", "blue"), ("r", "g", "b"), ("diffuse_red", "dif
 _PACKED_NAMES = ("rgba", "rgb")
 
 
-def wanted(names: list[str]) -> list[str]:
-    """The names among `names` that `cloud_from_columns` would read; the others need not be decoded."""
+def readable_fields(names: list[str]) -> list[str]:
+    """The names among `names` that `cloud_from_columns` reads; the others are not decoded."""
     known = {"x", "y", "z", *LABEL_NAMES, *_PACKED_NAMES, *(name for three in _COLOUR_NAMES for name in three)}
     return [name for name in names if name.lower() in known]
 
 
-def narrowed(column: NDArray[np.float64], dtype: np.dtype) -> NDArray:
-    """A column read from text as the numbers its header promised; whole ones stay floats where one is NaN."""
+def cast_to_header_type(column: NDArray[np.float64], dtype: np.dtype) -> NDArray:
+    """A column read from text in the type of its header; integers stay floats where a value is NaN."""
     if dtype.kind != "f":
         return column.astype(np.int64) if (np.abs(column) <= 2.0**53).all() else column
     with np.errstate(over="ignore", under="ignore"):
@@ -67,7 +67,7 @@ def cloud_from_columns(
 
 def _points(columns: Mapping[str, NDArray]) -> NDArray[np.floating]:
     three = [columns[name] for name in "xyz"]
-    # float32 is what sensors give and halves the memory; doubles are kept, for maps far from their origin.
+    # Sensors give float32, which halves the memory; doubles are kept, for maps far from their origin.
     small = all(column.dtype.itemsize <= 4 and column.dtype.kind == "f" for column in three)
     points = np.empty((len(three[0]), 3), np.float32 if small else np.float64)
     for axis, column in enumerate(three):
@@ -78,14 +78,14 @@ def _points(columns: Mapping[str, NDArray]) -> NDArray[np.floating]:
 def _colours(columns: Mapping[str, NDArray]) -> NDArray[np.uint8] | None:
     for name in _PACKED_NAMES:
         if name in columns:
-            return unpacked(columns[name])
+            return unpack_colours(columns[name])
     for three in _COLOUR_NAMES:
         if all(name in columns for name in three):
-            return bytes_of_colours(np.stack([columns[name] for name in three], axis=1))
+            return colours_as_bytes(np.stack([columns[name] for name in three], axis=1))
     return None
 
 
-def unpacked(packed: NDArray) -> NDArray[np.uint8]:
+def unpack_colours(packed: NDArray) -> NDArray[np.uint8]:
     """(n, 3) uint8 colours of 32 packed bits 0xAARRGGBB, as integers or as the bits of a float32."""
     if packed.dtype == np.float64:
         packed = packed.astype(np.float32)
@@ -96,7 +96,7 @@ def unpacked(packed: NDArray) -> NDArray[np.uint8]:
     return np.stack([(bits >> shift).astype(np.uint8) for shift in (16, 8, 0)], axis=1)
 
 
-def bytes_of_colours(colours: NDArray) -> NDArray[np.uint8]:
+def colours_as_bytes(colours: NDArray) -> NDArray[np.uint8]:
     """(n, 3) uint8 of whole numbers 0–255, or of floats 0–1.
 
     Raises

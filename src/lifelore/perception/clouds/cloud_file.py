@@ -1,4 +1,4 @@
-"""`read_cloud`: a cloud from a file of any kind we know, or from an array; every failure is one line."""
+"""`read_cloud`: a cloud from a PCD, PLY, npz or npy file, or from an array; every failure is one line."""
 
 import os
 import warnings
@@ -30,18 +30,18 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     Parameters
     ----------
     source : path or (n, 3), (n, 4), (rows, columns, 3) array
-        A PCD, PLY, npz or npy file, told by its content first and its suffix second; or the points
-        themselves, a fourth column being labels.
+        A PCD, PLY, npz or npy file, recognised by its content, then by its suffix; or the points, with labels
+        as an optional fourth column.
     units : {"m", "mm"}
         Of the coordinates. A cloud in metres that looks like millimetres is refused, see `cloud_scale`.
     labels : {"auto", "plain", "parts"}
-        How labels become ids, see `label_rule`.
+        How labels become object numbers, see `label_rule`.
 
     Returns
     -------
     PointCloud
         In metres, in the sensor's frame, with at least one finite point; points that were not measured are
-        NaN. It says whether its labels were taken as parts.
+        NaN. `from_parts` is True where the labels were read as parts.
 
     Raises
     ------
@@ -51,9 +51,12 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     """
     check_rule(labels)
     if isinstance(source, np.ndarray):
-        return _told("array", lambda: _by_rule(in_metres(cloud_from_arrays(source, rule="plain"), units), labels))
+        return _one_line_errors(
+            "array",
+            lambda: _with_objects(in_metres(cloud_from_arrays(source, rule="plain"), units), labels),
+        )
     path = Path(source)
-    return _told(str(path), lambda: _by_rule(in_metres(_decoded(path), units), labels))
+    return _one_line_errors(str(path), lambda: _with_objects(in_metres(_decoded(path), units), labels))
 
 
 def _decoded(path: Path) -> PointCloud:
@@ -61,17 +64,17 @@ def _decoded(path: Path) -> PointCloud:
     return _reader(path, content)(content, "plain")
 
 
-def _by_rule(cloud: PointCloud, rule: str) -> PointCloud:
-    """Its labels, read as they stand, as ids; only here both are known, so only here it shows what was merged."""
+def _with_objects(cloud: PointCloud, rule: str) -> PointCloud:
+    """The cloud with its labels as object numbers; `from_parts` where labels were merged."""
     if cloud.labels is None:
         return cloud
     ids = ids_from_labels(cloud.labels, rule)
     return replace(cloud, labels=ids, from_parts=not np.array_equal(ids, cloud.labels))
 
 
-def _told(name: str, read: Callable[[], PointCloud]) -> PointCloud:
+def _one_line_errors(name: str, read: Callable[[], PointCloud]) -> PointCloud:
     try:
-        # A damaged number may overflow on its way; the checks after it judge what came of it.
+        # A damaged number may overflow in between; later checks judge the result.
         with np.errstate(all="ignore"), warnings.catch_warnings():
             warnings.simplefilter("ignore")
             return read()
@@ -79,18 +82,18 @@ def _told(name: str, read: Callable[[], PointCloud]) -> PointCloud:
         raise InputError(f"{name}: {_one_line(str(error))}") from None
     except MemoryError:
         raise InputError(f"{name}: does not fit into memory; crop or thin the cloud") from None
-    except Exception as error:  # a damaged file can fail anywhere in its decoder; it is still one line
-        raise InputError(f"{name}: is damaged or no cloud ({_one_line(str(error))}); write it again") from error
+    except Exception as error:  # a damaged file can fail anywhere in its decoder
+        raise InputError(f"{name}: is damaged or not a cloud ({_one_line(str(error))}); write it again") from error
 
 
 def _one_line(text: str) -> str:
-    # Names out of a damaged file may hold anything, control characters of a terminal among it.
+    # A damaged file may hold any characters, including control characters of a terminal.
     return "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))[:300]
 
 
 def _content(path: Path) -> bytes:
     try:
-        # A pipe or a device would keep the reader waiting for ever.
+        # Reading a pipe or a device could block for ever.
         if path.exists() and not path.is_file():
             raise InputError("is no file; give a PCD, PLY, npz or npy file")
         if path.stat().st_size > MAX_FILE_BYTES:

@@ -1,4 +1,4 @@
-"""Metres, and points a sensor cannot have seen: checked once, where a cloud comes in."""
+"""Checks of a new cloud: units are metres, and stray points are removed."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ MAX_SPAN = 20.0
 MIN_SPAN = 0.002
 """Metres. A cloud narrower than this after ``units=mm`` was in metres before."""
 STRAY = 50.0
-"""Metres from the median point; what lies beyond is a fault of the sensor or the file."""
+"""Metres from the median point; points beyond it are faults of the sensor or the file."""
 FAR = 1e8
 """Metres from the origin of the frame; double numbers resolve a voxel up to here, and no map is larger."""
 _SAMPLE = 100_000
@@ -28,7 +28,7 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
     Raises
     ------
     InputError
-        Unknown units, no finite point, a width that speaks for other units, or beyond `FAR`.
+        Unknown units, no finite point, a width that suggests other units, or beyond `FAR`.
     """
     check_units(units)
     points = cloud.points if units == "m" else cloud.points * cloud.points.dtype.type(UNITS[units])
@@ -52,7 +52,7 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
 
 
 def check_units(units: str) -> None:
-    """Refuse units that are not known."""
+    """Raise InputError for unknown units."""
     if units not in UNITS:
         raise InputError(f"units must be m or mm, got {units!r}")
 

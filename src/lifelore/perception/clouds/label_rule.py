@@ -1,6 +1,6 @@
-"""From the label field of a file to ids: 0 nothing, 1 the table, 2 and above objects.
+"""Object numbers from the label field of a file: 0 nothing, 1 the table, 2 and above objects.
 
-Two conventions exist and a file does not say which is its own:
+Two conventions exist, and a file does not say which it uses:
 
 - ``plain``: the label is the id.
 - ``parts``: 1–9 are parts of the table, 20–29 parts of the first object, 30–39 of the second, and so on;
@@ -24,9 +24,9 @@ PARTS_NOTICE = (
     "were taken as parts of objects (1-9 the table, 20-29 object 2, 30-39 object 3, …);"
     " --labels plain leaves them as they are"
 )
-"""What a person is told who left the rule to `auto`."""
+"""Message for a user who left the rule to `auto`."""
 MAX_OBJECTS = 1000
-"""More labels than this are not objects on a table but a field of another meaning."""
+"""Largest number of objects; a field with more labels has another meaning."""
 
 
 def ids_from_labels(labels: NDArray, rule: str = "auto") -> NDArray[np.int64]:
@@ -69,7 +69,7 @@ def ids_from_labels(labels: NDArray, rule: str = "auto") -> NDArray[np.int64]:
 
 
 def check_rule(rule: str) -> None:
-    """InputError for a rule that is not known."""
+    """Raise InputError for an unknown rule."""
     if rule not in RULES:
         raise InputError(f"labels must be one of {', '.join(RULES)}, got {rule!r}")
 

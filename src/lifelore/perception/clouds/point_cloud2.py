@@ -1,14 +1,11 @@
-"""`sensor_msgs/PointCloud2` messages as clouds; any object with the message's attributes will do.
-
-So a message of rclpy, rospy or rosbags is read alike, and none of them is imported.
-"""
+"""Clouds from `sensor_msgs/PointCloud2` messages of rclpy, rospy or rosbags, none of which is imported."""
 
 from typing import Any
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.perception.clouds.cloud_columns import MAX_POINTS, cloud_from_columns, wanted
+from lifelore.perception.clouds.cloud_columns import MAX_POINTS, cloud_from_columns, readable_fields
 from lifelore.perception.clouds.cloud_scale import in_metres
 from lifelore.perception.clouds.point_cloud import PointCloud
 
@@ -28,7 +25,7 @@ def cloud_from_message(message: Any, *, units: str = "m", labels: str = "auto") 
     Raises
     ------
     InputError
-        A size contradicts another, coordinates are missing, or the cloud is empty.
+        Sizes contradict each other, coordinates are missing, or the cloud is empty.
     """
     height, width, step = int(message.height), int(message.width), int(message.point_step)
     row = int(message.row_step) or width * step
@@ -47,7 +44,7 @@ def cloud_from_message(message: Any, *, units: str = "m", labels: str = "auto") 
 
 def _layout(message: Any, step: int) -> np.dtype:
     fields = {str(field.name): (int(field.datatype), int(field.offset)) for field in message.fields}
-    names = wanted(list(fields))
+    names = readable_fields(list(fields))
     order = ">" if message.is_bigendian else "<"
     for name in names:
         code, offset = fields[name]

@@ -1,6 +1,6 @@
-"""One point for each small cube a label occupies: clouds of any density become clouds of one density.
+"""Voxel thinning: one point per label and small cube, so that clouds of any density get the same density.
 
-Voxels belong to labels, so labels never mix: where two objects share a cube, each keeps a point in it.
+Voxels belong to labels: where two objects share a cube, each keeps a point in it.
 """
 
 from dataclasses import dataclass
@@ -19,12 +19,12 @@ _KEY_LIMIT = 2**61
 _LOW = 2**31 - 1
 _CHUNK = 1_000_000
 MAX_SCENE_POINTS = 2_000_000
-"""A cloud with more points is thinned to voxels before anything else is done with it."""
+"""Largest number of points of a scene; larger clouds are thinned first. More cost time and memory."""
 
 
 @dataclass(frozen=True, eq=False)
 class VoxelCloud:
-    """A cloud thinned to voxels, with the way back.
+    """A cloud thinned to voxels, and the voxel of each original point.
 
     Parameters
     ----------
@@ -86,18 +86,18 @@ def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POI
         return cloud
     lowest = np.min(cloud.points, axis=0, where=measured[:, None], initial=np.inf).astype(np.float64)
     origin = np.floor(lowest / size) * size
-    held = _Held.of(cloud, np.empty(0, np.int64))
+    voxels = _Voxels.of(cloud, np.empty(0, np.int64))
     for start in range(0, len(measured), _CHUNK):
         places = start + np.flatnonzero(measured[start : start + _CHUNK])
-        held = held.joined(_Held.of(cloud, places).merged(origin, size)).merged(origin, size)
-        while len(held.points) > at_most:
+        voxels = voxels.joined(_Voxels.of(cloud, places).merged(origin, size)).merged(origin, size)
+        while len(voxels.points) > at_most:
             size *= 2
-            held = held.merged(origin, size)
-    return PointCloud(held.points.astype(cloud.points.dtype), held.labels, held.colours, camera=cloud.camera)
+            voxels = voxels.merged(origin, size)
+    return PointCloud(voxels.points.astype(cloud.points.dtype), voxels.labels, voxels.colours, camera=cloud.camera)
 
 
 @dataclass(frozen=True, eq=False)
-class _Held:
+class _Voxels:
     """Voxels found so far: mean points, weights (points behind each), labels and colours."""
 
     points: NDArray[np.float64]
@@ -106,7 +106,7 @@ class _Held:
     colours: NDArray[np.uint8] | None
 
     @classmethod
-    def of(cls, cloud: PointCloud, places: NDArray[np.int64]) -> "_Held":
+    def of(cls, cloud: PointCloud, places: NDArray[np.int64]) -> "_Voxels":
         return cls(
             cloud.points[places].astype(np.float64),
             np.ones(len(places)),
@@ -114,7 +114,7 @@ class _Held:
             None if cloud.colours is None else cloud.colours[places],
         )
 
-    def joined(self, other: "_Held") -> "_Held":
+    def joined(self, other: "_Voxels") -> "_Voxels":
         def both(a: NDArray | None, b: NDArray | None) -> NDArray | None:
             return None if a is None or b is None else np.concatenate([a, b])
 
@@ -122,14 +122,14 @@ class _Held:
             np.concatenate([self.points, other.points]),
             np.concatenate([self.weights, other.weights]),
         )
-        return _Held(points, weights, both(self.labels, other.labels), both(self.colours, other.colours))
+        return _Voxels(points, weights, both(self.labels, other.labels), both(self.colours, other.colours))
 
-    def merged(self, origin: NDArray[np.float64], size: float) -> "_Held":
+    def merged(self, origin: NDArray[np.float64], size: float) -> "_Voxels":
         labels = np.zeros(len(self.points), np.int64) if self.labels is None else self.labels
         inverse, first, _, _ = _voxels(self.points, labels, size, origin)
         weights = np.bincount(inverse, self.weights).astype(np.float64)
         means = np.stack([np.bincount(inverse, self.weights * axis) for axis in self.points.T], axis=1)
-        return _Held(
+        return _Voxels(
             means / weights[:, None],
             weights,
             None if self.labels is None else self.labels[first],
@@ -148,7 +148,7 @@ def _voxels(
         none = np.empty(0, np.int64)
         return none, none, none, np.empty((0, 3))
     lowest, highest, top_label = _bounds(points, labels)
-    # Multiples of the size in the frame itself, so that a point keeps its cube whatever else is in the cloud.
+    # Multiples of the size in the frame, so that the cube of a point does not depend on the other points.
     low = np.floor(lowest / size) * size if origin is None else origin
     sides = np.floor((highest - low) / size) + 1.0
     if np.prod(sides) * (top_label + 1) > _KEY_LIMIT:

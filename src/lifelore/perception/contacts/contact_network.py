@@ -1,8 +1,8 @@
-"""Contact point networks: an object as the places where it meets others, joined by a minimum spanning tree.
+"""Contact point networks: the contact points of an object, joined by a minimum spanning tree.
 
 The edges are those of the minimum weighted spanning tree over the contact points, weights Euclidean (thesis
-§2.3.4). Networks of one object towards several others are merged by collecting the points and building the tree
-anew (§2.3.6).
+§2.3.4). To merge the networks of one object towards several others, the tree is built over all their points
+(§2.3.6).
 """
 
 from collections.abc import Iterable
@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 
 if TYPE_CHECKING:
     import networkx as nx
@@ -58,7 +58,7 @@ class ContactPointNetwork:
 
     @property
     def positions(self) -> NDArray[np.float64]:
-        """Where the nodes are, shape ``(k, 3)``, metres."""
+        """Positions of the nodes, shape ``(k, 3)``, metres."""
         return np.array([node.position for node in self.nodes]).reshape(-1, 3)
 
     def to_networkx(self) -> "nx.Graph":
@@ -75,7 +75,7 @@ class ContactPointNetwork:
 
     @classmethod
     def from_networkx(cls, graph: Any) -> "ContactPointNetwork":
-        """From a graph such as `to_networkx` makes; nodes in the graph's order, the edges kept."""
+        """From a graph such as `to_networkx` makes; nodes in the graph's order, with the graph's edges."""
         order = {name: number for number, name in enumerate(graph.nodes)}
         nodes = tuple(ContactPoint(**fields) for _, fields in graph.nodes(data=True))
         edges = np.array([[order[i], order[j]] for i, j in graph.edges], np.int64).reshape(-1, 2)
@@ -85,8 +85,8 @@ class ContactPointNetwork:
 def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:
     """Edges of the Euclidean minimum spanning tree, ``(k - 1, 2)``, each row ascending, rows in order.
 
-    Points at one place are joined like any others, by an edge of length 0. Of equally short edges, those of the
-    point that comes first in the order 1, 0, 2, 3, … are taken first: networkx breaks ties in this way.
+    Points at the same position are joined by an edge of length 0. Of equally short edges, those of the
+    point that comes first in the order 1, 0, 2, 3, … are taken first, as in networkx.
     """
     n = len(positions)
     if n < 2:
@@ -96,8 +96,8 @@ def spanning_edges(positions: NDArray[np.float64]) -> NDArray[np.int64]:
     tree = list(range(n))
     edges = []
     for edge in sorted(combinations([1, 0, *range(2, n)], 2), key=lambda pair: distance[pair[0]][pair[1]]):
-        kept, joined = tree[edge[0]], tree[edge[1]]
-        if kept != joined:
-            tree = [kept if part == joined else part for part in tree]
+        root, other_root = tree[edge[0]], tree[edge[1]]
+        if root != other_root:
+            tree = [root if part == other_root else part for part in tree]
             edges.append(sorted(edge))
     return np.array(sorted(edges), np.int64)

@@ -1,16 +1,45 @@
-"""Support vectors to contact points: connected components, each condensed to a place, a normal and an extent.
+"""Contact points from support vectors: connected components, each with position, normal and extent.
 
 Thesis: §2.3.4. Clusters are connected components under a length (single linkage), which keeps the same clusters
 when most points are thrown away; X-means and density clusterings cut one continuous strip of contact at random.
-The thesis clusters each object by itself; here the support vectors of both take part (`facing_clusters`), since a
-contact belongs to two: what hides a piece of it on one object leaves one contact where the other is seen whole.
+The thesis clusters each object separately; here the support vectors of both objects take part (`facing_clusters`):
+where part of a contact is hidden on one object, the other object keeps it one contact.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import kernel
-from lifelore.perception.contacts.contact_point import ContactPoint
+
+
+@dataclass(frozen=True, eq=False)
+class ContactPoint:
+    """A cluster of support vectors of one object towards another (thesis §2.3.4, χ).
+
+    Parameters
+    ----------
+    position : (3,) float64
+        α-weighted centroid, metres.
+    normal : (3,) float64
+        Unit vector out of the other object into this one, across the separating surface.
+    extent : (3,) float64
+        Lengths of the cluster along its principal axes, metres, descending.
+    strength : float
+        Sum of α over the cluster, > 0.
+    n_support : int
+        Support vectors in the cluster, ≥ 1.
+    other : int
+        The other object.
+    """
+
+    position: NDArray[np.float64]
+    normal: NDArray[np.float64]
+    extent: NDArray[np.float64]
+    strength: float
+    n_support: int
+    other: int
 
 
 @kernel
@@ -45,7 +74,7 @@ def linked(points: NDArray[np.float64], reach: float) -> NDArray[np.int64]:
 def contact_clusters(
     points: NDArray[np.float64], alpha: NDArray[np.float64], linkage: float, min_support: float
 ) -> list[NDArray[np.int64]]:
-    """Rows of each contact's support vectors on one object by itself, strongest contact first (thesis §2.3.4).
+    """Rows of each contact's support vectors on one object alone, strongest contact first (thesis §2.3.4).
 
     Parameters
     ----------
@@ -56,7 +85,7 @@ def contact_clusters(
     linkage : float
         Metres.
     min_support : float
-        Smaller clusters are left out, but the strongest of all is always kept.
+        Smaller clusters are left out, except the strongest.
     """
     return _strongest_first(linked(np.ascontiguousarray(points), linkage), alpha, min_support)
 
@@ -88,11 +117,11 @@ def facing_clusters(
 def _strongest_first(
     component: NDArray[np.int64], alpha: NDArray[np.float64], min_support: float
 ) -> list[NDArray[np.int64]]:
-    """Rows of each component that has any, by strength; those of too few rows go, but never the strongest."""
+    """Rows of each component, by strength; components of too few rows are dropped, except the strongest."""
     strength = np.bincount(component, weights=alpha)
     rows = [np.flatnonzero(component == number) for number in np.argsort(-strength, kind="stable")]
-    kept = [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
-    return kept or rows[:1]
+    large = [cluster for cluster in rows if len(cluster) >= max(min_support, 1)]
+    return large or rows[:1]
 
 
 def contact_point(
@@ -118,9 +147,9 @@ def extent(points: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 def contact_edges(first: list[NDArray[np.float64]], second: list[NDArray[np.float64]]) -> NDArray[np.int64]:
-    """Which contact of one object faces which of the other, (m, 2) ascending.
+    """Pairs of contacts that face each other, (m, 2) ascending.
 
-    Every contact faces the one on the other side that its support vectors come closest to.
+    Each contact faces the contact on the other side that is closest to its support vectors.
     """
     if not first or not second:
         return np.empty((0, 2), np.int64)

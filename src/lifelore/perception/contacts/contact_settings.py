@@ -1,4 +1,4 @@
-"""`ContactSettings`: all lengths by which contacts are looked for, in metres and independent of resolution."""
+"""`ContactSettings`: lengths and costs of the search for contacts, in metres and independent of resolution."""
 
 from dataclasses import dataclass
 
@@ -7,27 +7,27 @@ from lifelore.core.errors import InputError
 
 @dataclass(frozen=True)
 class ContactSettings:
-    """How near pairs, separators and contact points are found.
+    """Settings of near pairs, separators and contact points.
 
     Parameters
     ----------
     voxel : float
-        Side of the cells that the cloud is thinned to, metres; 0 for as it comes. With it a cost per point
-        means the same whatever the sensor's resolution.
+        Side of the voxels that the cloud is thinned to, metres; 0 does not thin. Thinning makes a cost per point
+        independent of the sensor's resolution.
     near : float
-        Pairs whose visible points come no closer are not looked at, metres. True contacts can look 36 mm apart
+        Largest visible gap of a near pair, metres. True contacts can look 36 mm apart
         (95th percentile; 72 mm where one object leans), because hidden faces have no points.
     length, cost : float
         Kernel length (metres) and cost per point at 3 mm spacing of the separator that contact points come from.
     wide_length, wide_cost : float
-        The same for the second, wider separator, from which features come as well.
+        The same for the second, wider separator, which adds features.
     linkage : float
         Support vectors closer than this belong to one contact, metres.
     min_support : float
         Smaller contacts are dropped, in support vectors at 3 mm spacing (thesis §2.3.4 drops below 7); the
         largest contact is never dropped.
     table_margin : float
-        So much of the table around an object takes part in the pair (object, table), metres.
+        Width of the strip of table around an object in the pair (object, table), metres.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""`Interface`: where two near objects of a scene bear on each other, and how; `interfaces` finds all of a scene.
+"""`Interface`: contacts and separators of two near objects; `interfaces` finds all interfaces of a scene.
 
 Thesis: §2.3.4 for a pair, §2.3.6 for a scene. A literal reading (hard margin, every contact of at least 7 support
 vectors) loses most contacts of a real depth camera; here a soft margin gives the contacts, and each separator also
@@ -12,8 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
-from lifelore.perception.contacts.contact_point import ContactPoint
-from lifelore.perception.contacts.contact_points import contact_edges, contact_point, facing_clusters
+from lifelore.perception.contacts.contact_points import ContactPoint, contact_edges, contact_point, facing_clusters
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
 from lifelore.perception.separation.separator import MOST_WORK, Separator, separate
@@ -21,17 +20,17 @@ from lifelore.perception.separation.separator import MOST_WORK, Separator, separ
 STANDARD_VOXEL = 0.003
 """Spacing (metres) at which `ContactSettings.cost` and `min_support` are stated."""
 LEAST_SHARE = 1000.0
-"""Evaluations of a kernel that each point of a pair may always cost a separator, however large the scene.
+"""Kernel evaluations per point that a separator may always use, also in large scenes; more cost time.
 
 On ordinary scenes half of the pairs need 160, one in a hundred 930, the worst 2100, and a scene's own share of
-`separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other need ever more the longer one looks.
+`separator.MOST_WORK` is 12,000 and more. Clouds that lie in each other never converge.
 """
-DEFAULT = ContactSettings()
+DEFAULT_CONTACT_SETTINGS = ContactSettings()
 
 
 @dataclass(frozen=True, eq=False)
 class Dipole:
-    """A separator in brief: where its support vectors lie on either side, and which way it faces.
+    """Summary of a separator: mean support vector on either side, and direction.
 
     Parameters
     ----------
@@ -51,26 +50,26 @@ class Dipole:
 
 @dataclass(frozen=True, eq=False)
 class Interface:
-    """Everything that a near pair of objects shows of how they bear on each other.
+    """Contacts, separators and gap of a near pair of objects.
 
     Parameters
     ----------
     a, b : int
         Objects, a < b; or an object and `TABLE`.
     gap : float
-        How near they look, metres: the mean of the up to five smallest distances from a point of a to the nearest
-        of b (`near_pairs.visible_gap`); so a little above the smallest of all.
+        Visible gap, metres: the mean of the up to five smallest distances from a point of a to the nearest of b
+        (`near_pairs.visible_gap`).
     contacts_a, contacts_b : tuple of ContactPoint
         Strongest first, at least one each.
     contact_edges : (m, 2) int64
         Row (i, j): ``contacts_a[i]`` faces ``contacts_b[j]``.
     dipoles : tuple of Dipole
-        One of each scale in `ContactSettings.scales`; with the table of the first alone.
+        One for each scale in `ContactSettings.scales`; with the table for the first alone.
     pair : NearPair, optional
         The two objects' points; `pair_features` needs them.
     max_violation : float
         How far the worst of its separators is from its optimum, see `Separator`; above 1e-3 only where clouds that
-        lie in each other (mixed-up labels) cost more work than there was. Infinite where not even that is known.
+        lie in each other (mixed-up labels) used up the work. Infinite where it was never evaluated.
     """
 
     a: int
@@ -84,11 +83,13 @@ class Interface:
     max_violation: float = 0.0
 
 
-def interfaces(cloud: LabelledCloud, settings: ContactSettings = DEFAULT) -> tuple[Interface, ...]:
+def interfaces(
+    cloud: LabelledCloud, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS
+) -> tuple[Interface, ...]:
     """The interfaces of all near pairs: objects in ascending order, then each object with the table.
 
     Deterministic: the same points give the same bits. The separators of a scene together may cost as much work as
-    `separator.MOST_WORK`, dealt out by their numbers of points; but each at least `LEAST_SHARE` a point.
+    `separator.MOST_WORK`, divided by their numbers of points, with at least `LEAST_SHARE` per point.
     """
     if settings.voxel and len(cloud.points):
         cloud = voxelised(cloud, settings.voxel).cloud
@@ -98,7 +99,9 @@ def interfaces(cloud: LabelledCloud, settings: ContactSettings = DEFAULT) -> tup
     return tuple(interface(pair, settings, share) for pair in pairs)
 
 
-def interface(pair: NearPair, settings: ContactSettings = DEFAULT, share: float = np.inf) -> Interface:
+def interface(
+    pair: NearPair, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS, share: float = np.inf
+) -> Interface:
     """One near pair's contacts and dipoles.
 
     Parameters
@@ -106,7 +109,7 @@ def interface(pair: NearPair, settings: ContactSettings = DEFAULT, share: float 
     pair : NearPair
     settings : ContactSettings
     share : float
-        Evaluations of a kernel that each point may cost a separator, > 0, within `separator.MOST_WORK` in all.
+        Kernel evaluations per point of a separator, > 0, at most `separator.MOST_WORK` in all.
     """
     scales = _scales(pair, settings)
     max_work = min(share * _n_points(pair), MOST_WORK)
@@ -128,8 +131,8 @@ def interface(pair: NearPair, settings: ContactSettings = DEFAULT, share: float 
 
 
 def _scales(pair: NearPair, settings: ContactSettings) -> list[tuple[float, float]]:
-    """(length, cost) of each separator of a pair, the cost for one point as densely as they lie here."""
-    # What stands on a table is judged by heights: the narrow separator gives its contacts, the wide one nothing.
+    """(length, cost) of each separator of a pair, the cost per point at this density."""
+    # Relations with the table are judged by heights: the narrow separator gives contacts, the wide one no feature.
     scales = settings.scales[:1] if pair.second.label == TABLE else settings.scales
     per_point = (settings.voxel / STANDARD_VOXEL) ** 2 if settings.voxel else 1.0
     return [(length, cost * per_point) for length, cost in scales]
@@ -169,6 +172,6 @@ def _dipole(pair: NearPair, found: Separator, length: float) -> Dipole:
 
 
 def _unit(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Each row at length 1; rows of zeros stay."""
+    """Each row scaled to length 1; rows of zeros stay."""
     length = np.linalg.norm(vectors, axis=1, keepdims=True)
     return vectors / np.where(length > 0, length, 1.0)

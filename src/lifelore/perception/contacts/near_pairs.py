@@ -1,4 +1,4 @@
-"""Which objects of a scene come near one another, and how near: boxes first, then the closest points."""
+"""Near pairs of objects and their visible gaps: boxes first, then the closest points."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +11,7 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.cell_cloud import CellCloud, cell_cloud, closest_distances
 
 CLOSEST = 5
-"""The gap is the mean over so many smallest distances, so that one stray point does not close it."""
+"""Number of smallest distances in the mean gap; more make it robust to stray points, and larger."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,7 +42,7 @@ class ObjectCloud:
         return cell_cloud(self.points)
 
     def within(self, low: NDArray[np.float64], high: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Its points inside a box, ``(m, 3)``."""
+        """The points inside a box, ``(m, 3)``."""
         return self.points[rows_within(self.points, low, high)]
 
 
@@ -71,7 +71,8 @@ def corners(points: NDArray[np.float64]) -> NDArray[np.float64]:
 def rows_within(
     points: NDArray[np.float64], low: NDArray[np.float64], high: NDArray[np.float64]
 ) -> NDArray[np.int64]:
-    """Rows of the points inside a box, ascending; one pass, since the table is long and asked for every object."""
+    """Rows of the points inside a box, ascending; one pass, because the table is large and searched for every
+    object."""
     rows = np.empty(len(points), np.int64)
     count = 0
     for i in range(len(points)):
@@ -97,30 +98,30 @@ def split_objects(cloud: LabelledCloud) -> dict[int, ObjectCloud]:
 def near_pairs(objects: dict[int, ObjectCloud], near: float, table_margin: float) -> list[NearPair]:
     """Pairs whose gap is at most `near`: objects (a < b) in order; then every object with the table around it.
 
-    The table counts as near whatever the gap, because an object's foot may be hidden.
+    The table is near at any gap, because an object's foot may be hidden.
 
     Parameters
     ----------
     objects : dict of int to ObjectCloud
-        As `split_objects` gives them.
+        From `split_objects`.
     near : float
         Metres.
     table_margin : float
-        So much of the table beyond an object's box is kept, metres.
+        Width of the strip of table around an object's box, metres.
     """
-    things = [thing for label, thing in objects.items() if label != TABLE]
-    pairs = [_near(a, b, near) for i, a in enumerate(things) for b in things[i + 1 :]]
+    bodies = [body for label, body in objects.items() if label != TABLE]
+    pairs = [_near(a, b, near) for i, a in enumerate(bodies) for b in bodies[i + 1 :]]
     if TABLE in objects:
-        ground = objects[TABLE]
-        pairs += [_standing(thing, _around(ground, thing, table_margin), near) for thing in things]
+        table_cloud = objects[TABLE]
+        pairs += [_standing(body, _around(table_cloud, body, table_margin), near) for body in bodies]
     return [pair for pair in pairs if pair is not None]
 
 
-def _around(table: ObjectCloud, thing: ObjectCloud, margin: float) -> ObjectCloud:
-    """The piece of table around an object; a wider one where objects in front hide all of it."""
-    far = max(box_distance(table, thing), float((table.high - table.low).max()))
+def _around(table: ObjectCloud, body: ObjectCloud, margin: float) -> ObjectCloud:
+    """The strip of table around an object, widened where objects in front hide all of it."""
+    far = max(box_distance(table, body), float((table.high - table.low).max()))
     while True:
-        low, high = thing.low - margin, thing.high + margin
+        low, high = body.low - margin, body.high + margin
         low[2], high[2] = -np.inf, np.inf
         piece = table.within(low, high)
         if len(piece) >= CLOSEST or margin > far:
@@ -135,10 +136,10 @@ def _near(first: ObjectCloud, second: ObjectCloud, near: float) -> NearPair | No
     return NearPair(first, second, gap) if gap <= near else None
 
 
-def _standing(thing: ObjectCloud, table: ObjectCloud, near: float) -> NearPair:
-    while not np.isfinite(gap := visible_gap(thing, table, near)):
+def _standing(body: ObjectCloud, table: ObjectCloud, near: float) -> NearPair:
+    while not np.isfinite(gap := visible_gap(body, table, near)):
         near *= 2
-    return NearPair(thing, table, gap)
+    return NearPair(body, table, gap)
 
 
 def box_distance(first: ObjectCloud, second: ObjectCloud) -> float:
@@ -148,10 +149,10 @@ def box_distance(first: ObjectCloud, second: ObjectCloud) -> float:
 
 
 def visible_gap(first: ObjectCloud, second: ObjectCloud, near: float) -> float:
-    """How near the visible points come, metres; infinity where none is within `near`, a bound on the search.
+    """Visible gap, metres; infinity where no distance is within `near`, a bound on the search.
 
     The mean of the up to `CLOSEST` smallest nearest-neighbour distances from points of `first` to `second`, of
-    those within `near`. So it lies above the smallest of all, and the two clouds' order matters a little.
+    those within `near`. It lies above the smallest distance, and depends slightly on the order of the two clouds.
     """
     closest = closest_distances(first.cells, second.cells, CLOSEST, near)
     return float(closest.mean()) if closest.size else np.inf

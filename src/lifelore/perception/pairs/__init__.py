@@ -1,4 +1,4 @@
-"""Pairs: the numbers that describe an ordered pair of objects, and the classes a pair may have.
+"""Pairs: features of an ordered pair of objects, and the classes of pairs.
 
-Read in this order: `pair_features`, `scene_pairs`, `directed_label`, `pair_class`, `gap_rule`, `objects_between`.
+Read in this order: `pair_features`, `scene_pairs`, `directed_label`, `gap_rule`, `objects_between`.
 """

@@ -1,9 +1,9 @@
-"""*adjacent* by an explicit length: things beside one another are adjacent up to a visible gap, none beyond it.
+"""Gap rule: neighbours are *adjacent* up to a given visible gap, and *none* beyond it.
 
-The limit is a parameter with a meaning, not something a handful of examples could teach (gaps of hand-labelled
-neighbours and strangers overlap from 20 to 30 mm). So in training both are one class, *beside*. Labels that
-contradict the limit by more than `MARGIN` teach what a gap cannot show: neighbours whose contact is hidden, and
-things close together of which one is above the other; those keep their names.
+The limit is a parameter, because few examples cannot teach it: gaps of hand-labelled *adjacent* and *none* pairs
+overlap from 20 to 30 mm. In training both are one class, `BESIDE`. Labels that contradict the limit by more than
+`MARGIN` keep their names: they show neighbours with a hidden contact, and close objects of which one is above the
+other.
 """
 
 from collections.abc import Sequence
@@ -14,30 +14,30 @@ from numpy.typing import NDArray
 from lifelore.core.relations import ADJACENT, NONE
 
 BESIDE = "beside="
-"""The inner class of what the gap decides; no user's label ends so."""
+"""Inner class of pairs that the gap decides; no user's label ends with ``=``."""
 MARGIN = 0.005
-"""Metres by which a label must contradict the limit to be more than noise of the gap."""
+"""Metres by which a label must contradict the limit to keep its name; the noise of a gap is smaller."""
 SOFTNESS = 0.002
-"""Metres over which the answer turns: the noise of a visible gap."""
+"""Metres over which the shares change from *adjacent* to *none*: the noise of a visible gap."""
 
 
 def applies(vocabulary: Sequence[str], adjacent_gap: float | None) -> bool:
-    """Whether these relations have neighbours and strangers to tell apart, and a limit is given."""
+    """Whether the vocabulary has *adjacent* and *none*, and a limit is given."""
     return adjacent_gap is not None and {ADJACENT, NONE} <= set(vocabulary)
 
 
 def inner_label(label: str, gap: float, adjacent_gap: float) -> str:
-    """The class that a pair trains: `BESIDE` where the gap explains its label."""
+    """The class of a training pair: `BESIDE` where the gap explains its label."""
     explained = (label == ADJACENT and gap <= adjacent_gap + MARGIN) or (
         label == NONE and gap >= adjacent_gap - MARGIN
     )
     return BESIDE if explained else label
 
 
-def decided(
+def resolve_beside(
     shares: dict[str, NDArray[np.float64]], gaps: NDArray[np.float64], adjacent_gap: float
 ) -> dict[str, NDArray[np.float64]]:
-    """Shares without `BESIDE`: it goes to *adjacent* below the limit and to *none* above it."""
+    """Shares without `BESIDE`, whose share goes to *adjacent* below the limit and to *none* above it."""
     outer = {name: share for name, share in shares.items() if name != BESIDE}
     beside = shares.get(BESIDE, np.zeros(len(gaps)))
     close = 0.5 - 0.5 * np.tanh((gaps - adjacent_gap) / (2 * SOFTNESS))

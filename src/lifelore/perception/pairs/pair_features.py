@@ -1,9 +1,9 @@
-"""`pair_features`: every near pair of a scene as a row of named numbers, in either order of the two objects.
+"""`pair_features`: a row of named features for each near pair of a scene, in both orders of the two objects.
 
-The displacement between contact points is the thesis's feature (§2.3.5). It is ambiguous by itself: a tall box
-behind a short one makes the same crease as a box on a box. What tells them apart is the separator's normal and the
-height of the contact relative to both objects ("does a go on below the contact?"), so both stand beside it. All
-columns but the last few are the same whichever way the scene is turned about the vertical.
+The displacement between contact points is the thesis's feature (§2.3.5). Alone it is ambiguous: a tall box behind
+a short one makes the same crease as a box on a box. The separator's normal and the height of the contact relative
+to both objects distinguish them. All columns but the last four are the same for any turn of the scene about the
+vertical.
 """
 
 from collections.abc import Sequence
@@ -18,9 +18,9 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.contacts.interface import Interface, interfaces
 from lifelore.perception.contacts.near_pairs import ObjectCloud
 from lifelore.perception.contacts.object_shape import ObjectShape, shape_of
-from lifelore.perception.pairs.objects_between import THIRD_COLUMNS, ThirdThings
+from lifelore.perception.pairs.objects_between import BETWEEN_COLUMNS, ObjectsBetween
 
-Rows = NDArray[np.float64]
+Array = NDArray[np.float64]
 N_SCALES = 2
 SCALE_COLUMNS = (
     "horizontal", "rise", "elevation", "distance", "normal_up", "below_a", "above_a", "below_b", "above_b",
@@ -36,7 +36,7 @@ VIEW_COLUMNS = ("behind", "right", "contact_behind", "contact_right")
 
 
 class HasInterfaces(Protocol):
-    """A scene: a cloud and what was found of its pairs."""
+    """A scene: a cloud and its interfaces."""
 
     @property
     def cloud(self) -> LabelledCloud: ...
@@ -52,22 +52,22 @@ class PairFeatures:
     Parameters
     ----------
     names : tuple of str
-        What each column holds; lengths in metres, angles in radians, shares in [0, 1].
+        Names of the columns; lengths in metres, angles in radians, shares in [0, 1].
     matrix : (n, d) float64
         Finite.
     pairs : (n, 2) int64
-        The ordered pair (a, b) of each row. Row 2i is interface i as it is, row 2i + 1 the same turned round.
+        The ordered pair (a, b) of each row. Row 2i is interface i, row 2i + 1 the same in the other order.
     gaps : (n,) float64
         Visible gap, metres.
     """
 
     names: tuple[str, ...]
-    matrix: Rows
+    matrix: Array
     pairs: NDArray[np.int64]
-    gaps: Rows
+    gaps: Array
 
-    def columns(self, names: Sequence[str]) -> Rows:
-        """Some of the columns, ``(n, len(names))``.
+    def columns(self, names: Sequence[str]) -> Array:
+        """The named columns, ``(n, len(names))``.
 
         Raises
         ------
@@ -87,7 +87,7 @@ def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interfac
     ----------
     scene : LabelledCloud or Scene
     found : sequence of Interface, optional
-        The scene's interfaces where they are known already.
+        The scene's interfaces, if already computed.
     """
     cloud = scene if isinstance(scene, LabelledCloud) else scene.cloud
     if found is None:
@@ -99,18 +99,18 @@ def pair_features(scene: LabelledCloud | HasInterfaces, found: Sequence[Interfac
         return PairFeatures(names, np.empty((0, len(names))), pairs, gaps)
     shapes: dict[int, ObjectShape] = {}
     for one in found:
-        for thing in _things(one):
-            if thing.label != TABLE and thing.label not in shapes:
-                shapes[thing.label] = shape_of(thing.points)
-    thirds = ThirdThings(found)
-    rows = [row for one in found for row in _both_ways(one, shapes, thirds, cloud.camera)]
+        for body in _bodies(one):
+            if body.label != TABLE and body.label not in shapes:
+                shapes[body.label] = shape_of(body.points)
+    objects_between = ObjectsBetween(found)
+    rows = [row for one in found for row in _both_ways(one, shapes, objects_between, cloud.camera)]
     return PairFeatures(names, np.array(rows), pairs, gaps)
 
 
 def column_names(n_scales: int) -> tuple[str, ...]:
-    """Names of all columns: of each scale, of geometry, of a third thing, of the camera's view."""
+    """Names of all columns: of each scale, of geometry, of a third object, of the camera's view."""
     scaled = [f"{name}_{scale}" for scale in range(n_scales) for name in SCALE_COLUMNS]
-    return (*scaled, *GEOMETRY_COLUMNS, *THIRD_COLUMNS, *VIEW_COLUMNS)
+    return (*scaled, *GEOMETRY_COLUMNS, *BETWEEN_COLUMNS, *VIEW_COLUMNS)
 
 
 COLUMNS = column_names(N_SCALES)
@@ -118,20 +118,23 @@ TURNING_COLUMNS = COLUMNS[: -len(VIEW_COLUMNS)]
 """The columns that stay the same when scene and camera are turned about the vertical by different angles."""
 
 
-def _things(one: Interface) -> tuple[ObjectCloud, ObjectCloud]:
+def _bodies(one: Interface) -> tuple[ObjectCloud, ObjectCloud]:
     if one.pair is None:
         raise InputError(f"the interface of {one.a} and {one.b} carries no points; make it with interfaces()")
     return one.pair.first, one.pair.second
 
 
 def _both_ways(
-    one: Interface, shapes: dict[int, ObjectShape], thirds: ThirdThings, camera: NDArray[np.float64] | None
-) -> Rows:
+    one: Interface,
+    shapes: dict[int, ObjectShape],
+    objects_between: ObjectsBetween,
+    camera: NDArray[np.float64] | None,
+) -> Array:
     """The rows of (a, b) and of (b, a), ``(2, d)``."""
     first, second = (
-        shapes[thing.label] if thing.label in shapes else shape_of(thing.points) for thing in _things(one)
+        shapes[body.label] if body.label in shapes else shape_of(body.points) for body in _bodies(one)
     )
-    # With the table there is one scale: its columns stand for the others too.
+    # With the table there is one scale; its columns are repeated for the others.
     dipoles = (one.dipoles + one.dipoles[-1:] * N_SCALES)[:N_SCALES]
     middles = np.array([(dipole.first + dipole.second) / 2 for dipole in dipoles])
     displacements = np.array([dipole.first - dipole.second for dipole in dipoles])
@@ -142,7 +145,7 @@ def _both_ways(
                 [
                     _scale_columns(sign * displacements, sign * normals, middles, a, b).ravel(),
                     _geometry_columns(a, b, one.gap, middles[0, 2]),
-                    thirds.between(label_a, label_b, middles[0]),
+                    objects_between.between(label_a, label_b, middles[0]),
                     _view_columns(a, b, sign * displacements[0], middles[0], camera),
                 ]
             )
@@ -154,7 +157,7 @@ def _both_ways(
     )
 
 
-def _scale_columns(displacement: Rows, normal: Rows, middle: Rows, a: ObjectShape, b: ObjectShape) -> Rows:
+def _scale_columns(displacement: Array, normal: Array, middle: Array, a: ObjectShape, b: ObjectShape) -> Array:
     """Displacement, normal and contact heights at each scale, ``(n_scales, len(SCALE_COLUMNS))``."""
     horizontal = np.hypot(displacement[:, 0], displacement[:, 1])
     rise = displacement[:, 2]
@@ -189,7 +192,7 @@ def _share(which: NDArray[np.bool_], among: NDArray[np.bool_]) -> float:
 
 
 def _view_columns(
-    a: ObjectShape, b: ObjectShape, displacement: Rows, middle: Rows, camera: NDArray[np.float64] | None
+    a: ObjectShape, b: ObjectShape, displacement: Array, middle: Array, camera: NDArray[np.float64] | None
 ) -> list[float]:
     """How far a lies behind and to the right of b as the camera sees the pair, by centres and by contacts.
 

@@ -1,4 +1,4 @@
-"""`ScenePairs`: what a relation model is shown of one scene, numbers only; and truths as labels of its rows."""
+"""`ScenePairs`: features and displacements of the near pairs of a scene, and the labels of each pair."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT, Interface, interfaces
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.pairs.pair_features import PairFeatures, pair_features
 
 
@@ -29,22 +29,24 @@ class ScenePairs:
 
     @property
     def with_table(self) -> NDArray[np.bool_]:
-        """Which pairs are of an object with the table, ``(n_pairs,)``."""
+        """Whether each pair is of an object with the table, ``(n_pairs,)``."""
         return self.features.pairs[::2, 1] == TABLE
 
     def labels(self, truth: Sequence[PairLabel], least_confidence: int) -> list[list[PairLabel]]:
-        """What `truth` says of each pair, with at least that confidence; empty where it is silent."""
-        said: dict[frozenset[int], list[PairLabel]] = {}
+        """The labels in `truth` of each pair with at least that confidence; empty where there are none."""
+        by_pair: dict[frozenset[int], list[PairLabel]] = {}
         for label in truth:
             if label.confidence >= least_confidence:
-                said.setdefault(frozenset((label.a, label.b)), []).append(label)
-        return [said.get(frozenset(map(int, pair)), []) for pair in self.features.pairs[::2]]
+                by_pair.setdefault(frozenset((label.a, label.b)), []).append(label)
+        return [by_pair.get(frozenset(map(int, pair)), []) for pair in self.features.pairs[::2]]
 
 
 def scene_pairs(
-    cloud: LabelledCloud, found: Sequence[Interface] | None = None, settings: ContactSettings = DEFAULT
+    cloud: LabelledCloud,
+    found: Sequence[Interface] | None = None,
+    settings: ContactSettings = DEFAULT_CONTACT_SETTINGS,
 ) -> ScenePairs:
-    """Look at a scene; `found` are its interfaces where they are known already."""
+    """The near pairs of a scene; `found` are its interfaces, if already computed."""
     if found is None:
         found = interfaces(cloud, settings)
     return ScenePairs(pair_features(cloud, found), tuple(_displacements(one) for one in found))

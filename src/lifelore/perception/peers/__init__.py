@@ -1,4 +1,4 @@
-"""Other methods for the same job, with the interface of `RelationClassifier`: what ours is measured beside."""
+"""Peers: other methods that learn relations, with the interface of `RelationClassifier`, for comparison."""
 
 from collections.abc import Callable
 
@@ -18,4 +18,5 @@ PEERS: dict[str, Callable[[], Peer]] = {
     "orientation histogram": orientation_trees,
     "angle-distance histogram": angle_distance_machine,
 }
-"""Name → a fresh peer. The thesis's own method is `RelationClassifier` with ``method="displacement"``."""
+"""Name → function that makes an unfitted peer. The thesis's own method is `RelationClassifier` with
+``method="displacement"``."""

@@ -1,9 +1,9 @@
 """Angles about gravity and distances in the style of Mees et al. (IROS 2017): 36 bins of angle, 3 of distance.
 
-For every point p of the one, with r = p - centroid, and every point q of the other, with d = q - p: the angle
+For every point p of one object, with r = p - centroid, and every point q of the other, with d = q - p: the angle
 between r and d (18 bins), and that between the planes (r, gravity) and (d, r) (18 bins). Of the distances |d| the
-nearest hundredth is counted up to 6 cm, up to 20 cm, and beyond. Their metric is learnt with large margins; here a
-support vector classifier weighs the bins.
+nearest hundredth is counted up to 6 cm, up to 20 cm, and beyond. The paper learns a metric with large margins;
+here a support vector classifier weighs the bins.
 """
 
 from typing import Any
@@ -12,10 +12,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.perception.peers.pair_classifier import PairClassifier
-from lifelore.perception.peers.seen_pairs import coarse
+from lifelore.perception.peers.peer import mean_of_voxels
 
 GRAIN = 0.015
-"""Metres; theirs is 1 to 3 cm."""
+"""Side of the voxels in metres; the paper uses 1 to 3 cm."""
 ANGLE_BINS = 18
 DISTANCE_EDGES = np.array([0.06, 0.20])
 NEAREST = 0.01
@@ -23,8 +23,8 @@ GRAVITY = np.array([0.0, 0.0, -1.0])
 
 
 def angle_distance_histogram(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Three histograms in a row, shape ``(39,)``; each sums to 1."""
-    points, others = coarse(first, GRAIN), coarse(second, GRAIN)
+    """Three histograms in one vector, shape ``(39,)``; each sums to 1."""
+    points, others = mean_of_voxels(first, GRAIN), mean_of_voxels(second, GRAIN)
     reference = points - points.mean(axis=0)
     offset = others[None] - points[:, None]
     reference_all = np.broadcast_to(reference[:, None], offset.shape)
@@ -35,7 +35,8 @@ def angle_distance_histogram(first: NDArray[np.float64], second: NDArray[np.floa
 
 
 def _angles(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Shares of the angles between vectors, ``(ANGLE_BINS,)`` over [0, π]; no length is at right angles."""
+    """Shares of the angles between vectors, ``(ANGLE_BINS,)`` over [0, π]; a vector of length 0 counts as a right
+    angle."""
     lengths = np.linalg.norm(first, axis=-1) * np.linalg.norm(second, axis=-1)
     cosine = np.clip((first * second).sum(axis=-1) / np.maximum(lengths, 1e-12), -1, 1)
     bins = np.minimum((np.arccos(cosine) / np.pi * ANGLE_BINS).astype(np.int64), ANGLE_BINS - 1)
@@ -43,7 +44,7 @@ def _angles(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[
 
 
 def angle_distance_machine(seed: int = 0) -> PairClassifier:
-    """A classifier that sees the three histograms alone."""
+    """A classifier on the three histograms alone."""
 
     def estimator(n_rows: int) -> Any:
         from sklearn.pipeline import make_pipeline

@@ -1,4 +1,4 @@
-"""The rule many systems ship: boxes along the axes, what is above what, and nothing learnt."""
+"""A rule on axis-aligned boxes, as many systems ship it: nothing is learned."""
 
 from collections.abc import Sequence
 from typing import Self
@@ -8,13 +8,13 @@ from numpy.typing import NDArray
 
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
 from lifelore.perception.pairs.directed_label import REVERSED
-from lifelore.perception.peers.peer import Peer, SeenPair
+from lifelore.perception.peers.peer import DescribedPair, Peer
 from lifelore.perception.relations.relation import Relation
 
 TOLERANCE = 0.02
-"""Metres by which a thing may start under the top of what carries it, or over the table."""
+"""Metres by which an object may start below the top of its support, or above the table."""
 OVERLAP = 0.15
-"""Share of the smaller ground plan that has to lie in the other for one thing to be over the other."""
+"""Least share of the smaller ground plan inside the other for one object to be above the other."""
 
 
 def boxes(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -39,16 +39,16 @@ class BoundingBoxRule(Peer):
 
     describe = staticmethod(boxes)
 
-    def fit_pairs(self, scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """Nothing is learnt."""
         return self
 
-    def predict_pairs(self, scene: Sequence[SeenPair]) -> tuple[Relation, ...]:
+    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
         """The relation of every near pair, each with confidence 1."""
         return tuple(pair.relation(_name(pair), 1.0) for pair in scene)
 
 
-def _name(pair: SeenPair) -> str:
+def _name(pair: DescribedPair) -> str:
     bottom, top, other_bottom, other_top, overlap = pair.rows[0].tolist()
     if pair.with_table:
         return ON if bottom <= TOLERANCE else NONE

@@ -12,5 +12,5 @@ def centroid_displacement(first: NDArray[np.float64], second: NDArray[np.float64
 
 
 def centroid_neighbours() -> PairClassifier:
-    """A classifier that sees the displacement of centroids alone."""
+    """A classifier on the displacement of centroids alone."""
     return PairClassifier(centroid_displacement, neighbours)

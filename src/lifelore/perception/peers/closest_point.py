@@ -5,10 +5,10 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.perception.peers.pair_classifier import PairClassifier, neighbours
-from lifelore.perception.peers.seen_pairs import SETTINGS
+from lifelore.perception.peers.peer import SETTINGS
 
 SHARE = 0.01
-"""Share of all points of the smaller object that are averaged: one pair of points is one camera pixel's noise."""
+"""Share of the smaller object's points that are averaged: a single pair has the noise of one camera pixel."""
 
 
 def closest_displacement(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -22,7 +22,7 @@ def closest_displacement(first: NDArray[np.float64], second: NDArray[np.float64]
 
 
 def _nearest(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[NDArray, NDArray]:
-    """Distance and number of the nearest of `second`, within a bound that lets at least one be found."""
+    """Distance and index of the nearest point of `second`, within a bound that finds at least one."""
     bound, tree = 2 * SETTINGS.near, KDTree(second)
     while True:
         found = tree.query(first, distance_upper_bound=bound)
@@ -33,5 +33,5 @@ def _nearest(first: NDArray[np.float64], second: NDArray[np.float64]) -> tuple[N
 
 
 def closest_point() -> PairClassifier:
-    """A classifier that sees the displacement of the closest points alone."""
+    """A classifier on the displacement of the closest points alone."""
     return PairClassifier(closest_displacement, neighbours)

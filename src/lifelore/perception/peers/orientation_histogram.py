@@ -1,7 +1,7 @@
 """Histograms over all pairs of points in the style of Fichtl et al. (ICRA 2014), read by randomised trees.
 
-For every point of the one and every point of the other: the elevation of their displacement over the horizontal,
-and its length; counted in two dimensions. Heading is left out, so a turned table changes nothing.
+For every point of one object and every point of the other: the elevation of their displacement over the
+horizontal, and its length; counted in two dimensions. Heading is left out, so a turned table changes nothing.
 """
 
 from typing import Any
@@ -10,10 +10,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.perception.peers.pair_classifier import PairClassifier
-from lifelore.perception.peers.seen_pairs import coarse
+from lifelore.perception.peers.peer import mean_of_voxels
 
 GRAIN = 0.015
-"""Metres; clouds are thinned to it first, since every point meets every other."""
+"""Side of the voxels in metres; clouds are thinned first, since all pairs of points are counted."""
 ELEVATION_BINS = 12
 DISTANCE_EDGES = np.array([0.0, 0.02, 0.04, 0.07, 0.11, 0.16, 0.23, 0.32, np.inf])
 """Metres, finer where objects meet."""
@@ -22,7 +22,7 @@ TREES = 100
 
 def orientation_histogram(first: NDArray[np.float64], second: NDArray[np.float64]) -> NDArray[np.float64]:
     """Shares of point pairs by elevation and distance, flat ``(ELEVATION_BINS * 8,)``, sums to 1."""
-    offset = coarse(first, GRAIN)[:, None] - coarse(second, GRAIN)[None]
+    offset = mean_of_voxels(first, GRAIN)[:, None] - mean_of_voxels(second, GRAIN)[None]
     distance = np.linalg.norm(offset, axis=-1).ravel()
     elevation = np.arcsin(np.clip(offset[..., 2].ravel() / np.maximum(distance, 1e-12), -1, 1))
     row = np.clip(((elevation / np.pi + 0.5) * ELEVATION_BINS).astype(np.int64), 0, ELEVATION_BINS - 1)
@@ -33,7 +33,7 @@ def orientation_histogram(first: NDArray[np.float64], second: NDArray[np.float64
 
 
 def orientation_trees(seed: int = 0) -> PairClassifier:
-    """A classifier that sees the two-dimensional histogram alone."""
+    """A classifier on the two-dimensional histogram alone."""
 
     def estimator(n_rows: int) -> Any:
         from sklearn.ensemble import ExtraTreesClassifier

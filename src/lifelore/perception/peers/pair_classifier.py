@@ -1,7 +1,8 @@
-"""`PairClassifier`: a peer that learns with a scikit-learn estimator; mirrored rows, pairs with the table apart.
+"""`PairClassifier`: a peer with a scikit-learn estimator, mirrored rows, and separate models for pairs with the
+table.
 
-Every labelled pair trains twice, once in either order, so that no method can learn which of the two a file names
-first. Asked about a pair, the estimator judges both orders, and the sum of what they say decides.
+Every labelled pair is a training row in both orders, so that no method can learn which object a file names first.
+A prediction adds the shares of both orders.
 """
 
 from collections.abc import Callable, Sequence
@@ -13,7 +14,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.relations import SYMMETRIC, PairLabel
 from lifelore.perception.pairs.directed_label import mirrored
-from lifelore.perception.peers.peer import Describe, Peer, SeenPair, labelled
+from lifelore.perception.peers.peer import Describe, DescribedPair, Peer, labelled_pairs
 from lifelore.perception.relations.relation import Relation
 
 
@@ -33,20 +34,20 @@ class PairClassifier(Peer):
         self._new_estimator = estimator
         self._estimators: dict[bool, Any] = {}
 
-    def fit_pairs(self, scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """As `fit`, from scenes that were looked at before."""
+    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+        """As `fit`, from scenes already described by `describe_pairs`."""
         rows: dict[bool, list[NDArray]] = {False: [], True: []}
         names: dict[bool, list[str]] = {False: [], True: []}
-        for pair, name in labelled(scenes, truths):
+        for pair, name in labelled_pairs(scenes, truths):
             rows[pair.with_table] += list(pair.rows)
             names[pair.with_table] += [name, mirrored(name, SYMMETRIC)]
         self._estimators = {kind: self._fitted(rows[kind], names[kind]) for kind in rows if rows[kind]}
         return self
 
-    def predict_pairs(self, scene: Sequence[SeenPair]) -> tuple[Relation, ...]:
-        """As `predict`, from a scene that was looked at before."""
+    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
+        """As `predict`, from a scene already described by `describe_pairs`."""
         if not self._estimators:
-            raise InputError("a classifier must be fitted before it is asked; call fit first")
+            raise InputError("a classifier must be fitted before it predicts; call fit first")
         judged: dict[int, Relation] = {}
         for kind, model in self._estimators.items():
             places = [at for at, pair in enumerate(scene) if pair.with_table == kind]
@@ -63,8 +64,8 @@ class PairClassifier(Peer):
         return model.fit(np.array(rows), np.array(names))
 
 
-def _judged(pair: SeenPair, classes: list[str], both: NDArray[np.float64]) -> Relation:
-    """The class with the largest share, the shares of the turned pair turned back."""
+def _judged(pair: DescribedPair, classes: list[str], both: NDArray[np.float64]) -> Relation:
+    """The class with the largest share, summed over both orders of the pair."""
     votes: dict[str, float] = {}
     for name, forward, backward in zip(classes, *both, strict=True):
         turned = mirrored(name, SYMMETRIC)
@@ -75,7 +76,7 @@ def _judged(pair: SeenPair, classes: list[str], both: NDArray[np.float64]) -> Re
 
 
 def _shares(model: Any, rows: NDArray[np.float64]) -> NDArray[np.float64]:
-    """What the model gives each class, ``(n, n_classes)``, rows sum to 1."""
+    """Share of each class, ``(n, n_classes)``, rows sum to 1."""
     if hasattr(model, "predict_proba"):
         return model.predict_proba(rows)
     margins = model.decision_function(rows)

@@ -1,11 +1,12 @@
-"""`Peer`: the interface of `RelationClassifier` for a method that describes each pair by numbers.
+"""`Peer`: the interface of `RelationClassifier` for a method that describes each pair by a vector.
 
-Looking and learning are apart: a scene is looked at once, and any number of models learn from what was seen.
+Describing and learning are separate: a scene is described once, and any number of models learn from it.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Self
 
 import numpy as np
@@ -14,17 +15,20 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import SYMMETRIC, PairLabel
-from lifelore.perception.pairs.directed_label import REVERSED
-from lifelore.perception.pairs.pair_class import LEAST_CONFIDENCE, pair_class
-from lifelore.perception.peers.seen_pairs import seen_pairs
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.near_pairs import NearPair, near_pairs, split_objects
+from lifelore.perception.pairs.directed_label import LEAST_CONFIDENCE, REVERSED, pair_class
 from lifelore.perception.relations.relation import Relation
 
+SETTINGS = ContactSettings()
+"""The contact settings of every peer."""
 Describe = Callable[[NDArray[np.float64], NDArray[np.float64]], NDArray[np.float64]]
 """Two clouds of points, (n, 3) and (m, 3), to a vector; always of the same length."""
 
 
 @dataclass(frozen=True, eq=False)
-class SeenPair:
+class DescribedPair:
     """A near pair without its points.
 
     Parameters
@@ -48,44 +52,44 @@ class SeenPair:
         return self.b == TABLE
 
     def relation(self, name: str, confidence: float) -> Relation:
-        """The relation of a directed class of this pair: turned round where the name says so."""
+        """The relation of a directed class of this pair, in the order that the name states."""
         if name.startswith(REVERSED):
             return Relation(self.b, self.a, name.removeprefix(REVERSED), confidence, self.gap)
         return Relation(self.a, self.b, name, confidence, self.gap)
 
 
 class Peer(ABC):
-    """A method that sees each pair as the vector that `describe` makes of it."""
+    """A method that represents each pair by the vector `describe`."""
 
     describe: Describe
 
     @abstractmethod
-    def fit_pairs(self, scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """As `fit`, from scenes that were looked at before."""
+    def fit_pairs(self, scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]) -> Self:
+        """As `fit`, from scenes already described by `describe_pairs`."""
 
     @abstractmethod
-    def predict_pairs(self, scene: Sequence[SeenPair]) -> tuple[Relation, ...]:
-        """As `predict`, from a scene that was looked at before."""
+    def predict_pairs(self, scene: Sequence[DescribedPair]) -> tuple[Relation, ...]:
+        """As `predict`, from a scene already described by `describe_pairs`."""
 
-    def look(self, cloud: LabelledCloud) -> tuple[SeenPair, ...]:
-        """The near pairs of a scene as this method sees them; objects first, then each object with the table."""
+    def describe_pairs(self, cloud: LabelledCloud) -> tuple[DescribedPair, ...]:
+        """The near pairs of a scene, described; pairs of objects first, then each object with the table."""
         seen = []
-        for pair in seen_pairs(cloud):
+        for pair in default_near_pairs(cloud):
             first, second = pair.first.points, pair.second.points
             rows = np.array([self.describe(first, second), self.describe(second, first)])
-            seen.append(SeenPair(pair.first.label, pair.second.label, pair.gap, rows))
+            seen.append(DescribedPair(pair.first.label, pair.second.label, pair.gap, rows))
         return tuple(seen)
 
     def fit(self, clouds: Sequence[LabelledCloud], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """Learn from scenes and what is said of their pairs with confidence 2 or more.
+        """Learn from scenes and the labels of their pairs with confidence 2 or more.
 
         Raises
         ------
         InputError
             `clouds` and `truths` differ in number, no label is of a near pair, or one pair has two relations (or
-            one in both directions that is not *adjacent* or *none*, all that a peer knows to be symmetric).
+            one in both directions that is not *adjacent* or *none*, the only symmetric relations of a peer).
         """
-        return self.fit_pairs([self.look(cloud) for cloud in clouds], truths)
+        return self.fit_pairs([self.describe_pairs(cloud) for cloud in clouds], truths)
 
     def predict(self, cloud: LabelledCloud) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included, of a kind (among objects, with the table) it knows.
@@ -93,26 +97,41 @@ class Peer(ABC):
         Raises
         ------
         InputError
-            A method that learns has not been fitted.
+            A learning method has not been fitted.
         """
-        return self.predict_pairs(self.look(cloud))
+        return self.predict_pairs(self.describe_pairs(cloud))
 
 
-def labelled(
-    scenes: Sequence[Sequence[SeenPair]], truths: Sequence[Sequence[PairLabel]]
-) -> list[tuple[SeenPair, str]]:
-    """Near pairs of which something is said, and the directed class that is said of (a, b)."""
+def labelled_pairs(
+    scenes: Sequence[Sequence[DescribedPair]], truths: Sequence[Sequence[PairLabel]]
+) -> list[tuple[DescribedPair, str]]:
+    """Labelled near pairs, and the directed class of (a, b)."""
     if len(scenes) != len(truths):
         raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
     found = []
     for pairs, truth in zip(scenes, truths, strict=True):
-        said: dict[frozenset[int], list[PairLabel]] = {}
+        by_pair: dict[frozenset[int], list[PairLabel]] = {}
         for label in truth:
             if label.confidence >= LEAST_CONFIDENCE:
-                said.setdefault(frozenset((label.a, label.b)), []).append(label)
+                by_pair.setdefault(frozenset((label.a, label.b)), []).append(label)
         for pair in pairs:
-            if labels := said.get(frozenset((pair.a, pair.b))):
+            if labels := by_pair.get(frozenset((pair.a, pair.b))):
                 found.append((pair, pair_class(labels, pair.a, SYMMETRIC)))
     if not found:
         raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
     return found
+
+
+# Peers process one scene after another: a small cache finds the near pairs once for all of them.
+@lru_cache(maxsize=8)
+def default_near_pairs(cloud: LabelledCloud) -> tuple[NearPair, ...]:
+    """Near pairs of a scene at the default settings: among objects, then each object with the table."""
+    if not cloud.objects:
+        return ()
+    objects = split_objects(voxelised(cloud, SETTINGS.voxel).cloud)
+    return tuple(near_pairs(objects, SETTINGS.near, SETTINGS.table_margin))
+
+
+def mean_of_voxels(points: NDArray[np.float64], grain: float) -> NDArray[np.float64]:
+    """The mean of the points in each cube of side `grain` metres, shape ``(k, 3)``."""
+    return voxelised(LabelledCloud(points, np.ones(len(points), np.int64)), grain).cloud.points

@@ -18,8 +18,7 @@ from collections.abc import Iterable
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.reasoning.core_vocabulary import other_words
-from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.fact import Fact, words_outside_core
 from lifelore.perception.relations.relation import Relation
 
 COMPOUND_RULES = """
@@ -39,7 +38,7 @@ fact("in", (A, B)) :- on(A, B), adjacent(A, B), object(B).
 #show fact/2.
 """
 """The program: ``relation(Name, A, B)``, ``object(A)`` and, where a name is not of the core vocabulary,
-``other_words`` are given; ``fact(Name, (A, …))`` are read off."""
+``words_outside_core`` are given; ``fact(Name, (A, …))`` are read off."""
 
 
 def compound_relations(
@@ -74,7 +73,7 @@ def compound_relations(
     things = sorted({*objects, *(label for r in relations for label in (r.a, r.b))} - {TABLE})
     given = [f"object({thing})." for thing in things]
     given += [f"relation({clingo.String(r.relation)},{r.a},{r.b})." for r in relations]
-    given += ["other_words."] if other_words(relations) else []
+    given += ["other_words."] if words_outside_core(relations) else []
     complaints: list[str] = []
     control = clingo.Control(["--warn=no-atom-undefined"], logger=lambda _, text: complaints.append(text))
     try:

@@ -46,7 +46,7 @@ class LabelDistribution:
         labels = pair_labels(candidates[0].a, candidates[0].b)
         named: dict[Label, float] = {}
         for relation in candidates:
-            label = label_of(relation)
+            label = relation_label(relation)
             if label in labels:
                 named[label] = max(named.get(label, 0.0), relation.confidence)
         total = sum(named.values())
@@ -88,7 +88,7 @@ def pair_labels(a: int, b: int) -> tuple[Label, ...]:
     return ((NONE, a, b), (ADJACENT, a, b), (ON, a, b), (ON, b, a), (BOTH, a, b), (BOTH, b, a))
 
 
-def label_of(relation: Relation) -> Label:
+def relation_label(relation: Relation) -> Label:
     """The label a relation states, in the form `pair_labels` gives: symmetric ones ordered, the table last."""
     a, b = relation.a, relation.b
     if relation.relation in SYMMETRIC:

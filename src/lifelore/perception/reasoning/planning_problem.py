@@ -14,7 +14,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
-from lifelore.perception.reasoning.core_vocabulary import other_words, without_carrier
+from lifelore.perception.reasoning.fact import objects_without_support, words_outside_core
 from lifelore.perception.relations.relation import Relation
 
 DOMAIN_NAME = "tabletop"
@@ -142,12 +142,12 @@ def pddl_names(things: Sequence[int], names: Mapping[int, str] | None = None) ->
 
 
 def _check(relations: Sequence[Relation], things: Sequence[int]) -> None:
-    if strange := other_words(relations):
+    if strange := words_outside_core(relations):
         raise InputError(
             f"relations of a planning problem must be {', '.join(CORE_RELATIONS)}, got {', '.join(strange)};"
             " perceive with a model of those words, such as the one shipped"
         )
-    if hanging := without_carrier(relations, things):
+    if hanging := objects_without_support(relations, things):
         raise InputError(
             "relations of a planning problem must say on what every object rests, by on or both; of"
             f" {', '.join(map(str, hanging))} nothing says so; `scene_logic.most_likely_scene` completes them"

@@ -12,8 +12,7 @@ from itertools import combinations
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, ON
-from lifelore.perception.reasoning.core_vocabulary import other_words
-from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.fact import Fact, words_outside_core
 from lifelore.perception.relations.relation import Relation
 
 DISCONNECTED, EXTERNALLY_CONNECTED = "dc", "ec"
@@ -43,7 +42,7 @@ def region_relations(
         for r in relations
         if r.relation in (ON, BOTH) or (r.relation == ADJACENT and r.gap <= touching)
     }
-    apart_too = not other_words(relations)
+    apart_too = not words_outside_core(relations)
     return tuple(
         Fact(EXTERNALLY_CONNECTED if pair in touch else DISCONNECTED, pair)
         for pair in combinations(everything, 2)

@@ -2,8 +2,7 @@
 
 from lifelore.core.relations import NONE
 from lifelore.perception.reasoning.compound_relations import compound_relations
-from lifelore.perception.reasoning.core_vocabulary import other_words, without_carrier
-from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.fact import Fact, objects_without_support, words_outside_core
 from lifelore.perception.reasoning.geometric_relations import geometric_relations
 from lifelore.perception.reasoning.region_calculus import region_relations
 from lifelore.perception.scene import Scene
@@ -16,7 +15,7 @@ def scene_facts(scene: Scene) -> tuple[Fact, ...]:
     relations themselves: *clear* or *disconnected* would be guesses (see `core_words`).
     """
     stated = {Fact(r.relation, (r.a, r.b)) for r in scene.relations if r.relation != NONE}
-    if other_words(scene.relations) or without_carrier(scene.relations, scene.objects):
+    if words_outside_core(scene.relations) or objects_without_support(scene.relations, scene.objects):
         return tuple(sorted(stated))
     derived = compound_relations(scene.relations, scene.objects)
     regions = region_relations(scene.relations, scene.objects)

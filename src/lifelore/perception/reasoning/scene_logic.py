@@ -29,10 +29,9 @@ from lifelore.perception.reasoning.label_distribution import (
     LabelDistribution,
     carries,
     label_distributions,
-    label_of,
+    relation_label,
 )
-from lifelore.perception.relations.pair_belief import PairBelief
-from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation import PairBelief, Relation
 
 SCALE = 1000
 """Weights to the nat: probabilities that differ by 0.1 % are told apart, and no sum leaves 64 bits."""
@@ -138,7 +137,7 @@ def contradictions(relations: Iterable[Relation], objects: Iterable[int] = ()) -
     objects : iterable of int
         Objects that must rest on something, beside those the relations name.
     """
-    labels = [label_of(r) for r in relations if r.relation in CORE_RELATIONS]
+    labels = [relation_label(r) for r in relations if r.relation in CORE_RELATIONS]
     things = {*objects, *(end for label in labels for end in label[1:])} - {TABLE}
     said: dict[frozenset[int], set[Label]] = {}
     for label in labels:
@@ -189,7 +188,7 @@ def _on_the_table(
     decided: Sequence[Relation], beliefs: Sequence[LabelDistribution], things: Iterable[int]
 ) -> list[Relation]:
     """``on(x, table)`` for each object without a carrier; as sure as it is that no other object carries it."""
-    carried = {step[0] for r in decided if (step := carries(label_of(r))) is not None}
+    carried = {step[0] for r in decided if (step := carries(relation_label(r))) is not None}
     free = [thing for thing in things if thing not in carried and thing not in _judged(beliefs)]
     sure = {x: prod(1 - b.carried(x) for b in beliefs if x in b.pair) for x in free}
     return [Relation(thing, TABLE, ON, sure[thing], inf) for thing in free]

@@ -1,10 +1,9 @@
-"""Relations found without labels: pairs that look alike get one name, rel 0, rel 1, … (thesis §2.3.5).
+"""Discovery of relations without labels: clusters of similar pairs (thesis §2.3.5).
 
-The thesis proposes X-means on the displacements between contact points. Its spheres of one size fit what
-displacements look like badly, so a better discovery stands beside it: a mixture of Gaussians of any shape on the
-direction of the contact, the gap and how much of one object stands over the other. The number of parts is
-chosen by the integrated completed likelihood (Biernacki, Celeux, Govaert 2000), which asks for parts that are
-apart, not for a good fit alone.
+The thesis proposes X-means on the displacements between contact points. Its spheres of equal size fit
+displacements poorly. `discover` uses a mixture of Gaussians of any shape on the direction of the contact, the gap
+and the overlap seen from above. The number of parts is chosen by the integrated completed likelihood (Biernacki,
+Celeux, Govaert 2000), which prefers separated parts.
 """
 
 from collections.abc import Sequence
@@ -20,7 +19,7 @@ from lifelore.perception.relations.x_means import Formula, x_means
 
 DISPLACEMENT = ("contact_right", "rise_0")
 """The displacement as the camera sees it, sideways and up: the plane of the thesis's Figure 2.4; metres."""
-LIKENESS = ("elevation_0", "normal_up_0", "gap", "a_over_b")
+FEATURES = ("elevation_0", "normal_up_0", "gap", "a_over_b")
 LEAST_GAP = 0.003
 """Metres. Gaps enter by their logarithm, and below it they are all contact."""
 ROUGHNESS = 1e-2
@@ -30,14 +29,14 @@ STARTS = 3
 
 @dataclass(frozen=True, eq=False)
 class Discovery:
-    """What was found.
+    """Clusters of pairs, the discovered relations.
 
     Parameters
     ----------
     labels : (n,) int64
         The relation of each pair, in 0 … n_relations - 1, the most frequent first.
     scenes : (n,) int64
-        Which of the given scenes each pair is of.
+        Index of the scene of each pair.
     pairs : (n, 2) int64
         The pair (a, b) in that scene, a the one whose centre is higher.
     """
@@ -48,7 +47,7 @@ class Discovery:
 
     @property
     def n_relations(self) -> int:
-        """How many relations were found."""
+        """Number of relations."""
         return int(self.labels.max()) + 1
 
 
@@ -78,19 +77,19 @@ def discover_by_displacement(
 
 
 def discover(features: Sequence[PairFeatures], rng: np.random.Generator, *, most: int = 10) -> Discovery:
-    """The better discovery: a mixture of Gaussians; arguments and errors as in `discover_by_displacement`."""
+    """Discovery by a mixture of Gaussians; arguments and errors as in `discover_by_displacement`."""
     from sklearn.mixture import GaussianMixture
     from threadpoolctl import threadpool_limits
 
-    scenes, pairs, rows = upright_rows(features, LIKENESS)
+    scenes, pairs, rows = upright_rows(features, FEATURES)
     if len(rows) == 1:
         return Discovery(np.zeros(1, np.int64), scenes, pairs)
-    gap = LIKENESS.index("gap")
+    gap = FEATURES.index("gap")
     rows[:, gap] = np.log(np.maximum(rows[:, gap], LEAST_GAP))
     spread = rows.std(axis=0)
     rows = (rows - rows.mean(axis=0)) / np.where(spread > 0, spread, 1.0)
     seed = int(rng.integers(2**31))
-    # No more parts than there are different rows; matrices this small gain nothing by threads.
+    # At most as many parts as different rows; threads do not speed up matrices this small.
     largest = min(most, max(1, len(rows) // 2), len(np.unique(rows, axis=0)))
     with threadpool_limits(limits=1):
         models = [
@@ -106,7 +105,7 @@ def upright_rows(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
     """Scene, pair and columns of every two near objects, each pair once: the one with the higher centre first.
 
-    Of the two orders of a pair one has to be chosen, or every relation with a direction would be found twice.
+    With both orders of a pair, every directed relation would be found twice.
     """
     scenes, pairs, rows = [], [], []
     for number, scene in enumerate(features):
@@ -114,10 +113,10 @@ def upright_rows(
         table = (scene.pairs == TABLE).any(axis=1)
         upper = np.zeros(len(rise), bool)
         upper[0::2], upper[1::2] = rise[0::2] >= 0, rise[0::2] < 0
-        kept = upper & ~table
-        scenes.append(np.full(kept.sum(), number))
-        pairs.append(scene.pairs[kept])
-        rows.append(scene.columns(names)[kept])
+        chosen = upper & ~table
+        scenes.append(np.full(chosen.sum(), number))
+        pairs.append(scene.pairs[chosen])
+        rows.append(scene.columns(names)[chosen])
     if not sum(map(len, rows)):
         raise InputError("features must hold at least one pair of near objects, got none")
     return np.concatenate(scenes).astype(np.int64), np.concatenate(pairs), np.concatenate(rows)
@@ -130,7 +129,7 @@ def _completed_criterion(model, rows: NDArray[np.float64]) -> float:
 
 
 def _by_size(labels: NDArray[np.integer]) -> NDArray[np.int64]:
-    """Clusters numbered anew, the largest first; of equal ones, the one that occurs first."""
+    """Clusters renumbered by size, largest first; of equal ones, the first to occur."""
     _, first, member, count = np.unique(labels, return_index=True, return_inverse=True, return_counts=True)
     rank = np.empty(len(count), np.int64)
     rank[np.lexsort((first, -count))] = np.arange(len(count))

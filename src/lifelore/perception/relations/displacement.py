@@ -1,4 +1,4 @@
-"""The thesis's classifier of displacements between contact points: k nearest neighbours that vote (§2.3.5)."""
+"""The thesis's classifier of displacements between contact points: votes of the k nearest neighbours (§2.3.5)."""
 
 from typing import Any, Self
 
@@ -18,8 +18,8 @@ class DisplacementNeighbours(ClassifierMixin, BaseEstimator):
     k : int
         The thesis's 4.
     omega : float, optional
-        Longer displacements are not learnt from (the thesis's threshold ω), metres; None learns from all. If every
-        one is longer, the shortest are kept, one of each class.
+        Largest displacement in training (the thesis's threshold ω), metres; None uses all. If all are longer, the
+        shortest of each class is used.
     weights : {"uniform", "distance"}
         Equal votes, or votes by the inverse of the distance (the thesis's alternative to ω).
     """
@@ -30,7 +30,7 @@ class DisplacementNeighbours(ClassifierMixin, BaseEstimator):
         self.weights = weights
 
     def fit(self, X: Any, y: Any) -> Self:
-        """Keep displacements ``(n, d)`` and their labels ``(n,)``."""
+        """Store displacements ``(n, d)`` and their labels ``(n,)``."""
         if self.weights not in ("uniform", "distance") or not self.k >= 1:
             raise ValueError(
                 f"weights must be uniform or distance and k at least 1, got {self.weights!r}, {self.k!r}"
@@ -38,17 +38,17 @@ class DisplacementNeighbours(ClassifierMixin, BaseEstimator):
         X, y = validate_data(self, X, y, dtype=np.float64)
         check_classification_targets(y)
         self.classes_, codes = np.unique(y, return_inverse=True)
-        kept = self._kept(np.linalg.norm(X, axis=1), codes)
-        self.displacements_, self.codes_ = X[kept], codes[kept]
+        chosen = self._short_enough(np.linalg.norm(X, axis=1), codes)
+        self.displacements_, self.codes_ = X[chosen], codes[chosen]
         return self
 
-    def _kept(self, length: NDArray[np.float64], codes: NDArray[np.int64]) -> NDArray[np.bool_]:
-        kept = np.full(len(length), True) if self.omega is None else length <= self.omega
+    def _short_enough(self, length: NDArray[np.float64], codes: NDArray[np.int64]) -> NDArray[np.bool_]:
+        chosen = np.full(len(length), True) if self.omega is None else length <= self.omega
         for code in range(len(self.classes_)):
             own = np.flatnonzero(codes == code)
-            if not kept[own].any():
-                kept[own[length[own].argmin()]] = True
-        return kept
+            if not chosen[own].any():
+                chosen[own[length[own].argmin()]] = True
+        return chosen
 
     def predict_proba(self, X: Any) -> NDArray[np.float64]:
         """Share of the neighbours' votes for each of ``classes_``, ``(n, n_classes)``, rows sum to 1."""
@@ -66,7 +66,7 @@ def votes(
     known: NDArray[np.float64],
     codes: NDArray[np.int64],
     n_classes: int,
-    asked: NDArray[np.float64],
+    queries: NDArray[np.float64],
     k: int,
     weights: str,
 ) -> NDArray[np.float64]:
@@ -74,15 +74,15 @@ def votes(
 
     Returns ``(len(asked), n_classes)``, rows sum to 1.
     """
-    distance, at = KDTree(known).query(asked, k=[*range(1, min(k, len(known)) + 1)])  # type: ignore[arg-type]
+    distance, at = KDTree(known).query(queries, k=[*range(1, min(k, len(known)) + 1)])  # type: ignore[arg-type]
     vote = np.ones_like(distance) if weights == "uniform" else _inverse(distance)
-    shares = np.zeros((len(asked), n_classes))
-    np.add.at(shares, (np.arange(len(asked))[:, None], codes[at]), vote)
+    shares = np.zeros((len(queries), n_classes))
+    np.add.at(shares, (np.arange(len(queries))[:, None], codes[at]), vote)
     return shares / shares.sum(axis=1, keepdims=True)
 
 
 def _inverse(distance: NDArray[np.float64]) -> NDArray[np.float64]:
-    """1 / distance, where a neighbour at the very place alone has a say."""
+    """1 / distance; a neighbour at distance 0 alone votes."""
     at_place = distance == 0
     found = at_place.any(axis=1, keepdims=True)
     return np.where(found, at_place, 1.0 / np.where(at_place, 1.0, distance))

@@ -1,7 +1,7 @@
-"""Relations of pairs by the thesis's method: each displacement between contact points votes, the votes are united.
+"""Relations of pairs by the thesis's method: votes of the displacements between contact points.
 
-Thesis: §2.3.5, Alg. 1. A pair in which one displacement says *on* and another *adjacent* is *both*, the union of
-the two; elsewhere the relation that most displacements name wins. The share of agreeing votes is the confidence.
+Thesis: §2.3.5, Alg. 1. A pair with displacements voting *on* and others *adjacent* is *both*, their union;
+otherwise the relation with most votes wins. The share of agreeing votes is the confidence.
 """
 
 from collections.abc import Sequence
@@ -14,18 +14,18 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import ADJACENT, BOTH, ON, PairLabel
-from lifelore.perception.pairs.directed_label import mirrored
-from lifelore.perception.pairs.pair_class import pair_class
+from lifelore.perception.pairs.directed_label import mirrored, pair_class
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 
 UNIONS = {frozenset({ON, ADJACENT}): BOTH, frozenset({"~" + ON, ADJACENT}): "~" + BOTH}
-"""What two labels of one pair make together."""
+"""The union of two labels of one pair."""
 MOST_NEIGHBOURS = 1000
+"""Largest k; more cost time and memory."""
 
 
 @dataclass(frozen=True)
 class NeighbourSettings:
-    """How displacements vote: see `DisplacementNeighbours`.
+    """Settings of the votes, see `DisplacementNeighbours`.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ class DisplacementRelations:
         said = frozenset(self.classes[at] for at in found.argmax(axis=1))
         united = UNIONS.get(said)
         if united in self.classes:
-            # The parts agree on the union: their votes are votes for it.
+            # Votes for the parts count for their union.
             mean[united] += sum(mean[name] for name in said)
             mean.update(dict.fromkeys(said, 0.0))
         return mean

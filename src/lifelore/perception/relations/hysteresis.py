@@ -1,13 +1,13 @@
-"""`RelationFilter`: the relations of a stream of clouds, without flicker.
+"""`RelationFilter`: removes flicker from the relations of a stream of clouds.
 
-A label of a pair is believed after it was seen `hold` frames in a row with a confidence of at least `enter`, and
-given up only when another one is believed, or when for `hold` frames in a row it was not seen with a confidence of
-at least `leave`. So a pair changes at most once in `hold` frames, a label that alternates with others from frame
-to frame never enters for ``hold ≥ 2``, and a pair never has two labels: ``on(a, b)`` and ``on(b, a)`` exclude each
-other. Loops over three and more objects can arise while pairs change at different frames; put
-`scene_logic.most_likely_scene` after the filter where that matters.
+A label of a pair is accepted after `hold` frames in a row with a confidence of at least `enter`. It is dropped
+when another label is accepted, or after `hold` frames in a row without a confidence of at least `leave`. So a pair
+changes at most once in `hold` frames, a label that alternates with others from frame to frame is never accepted
+for ``hold ≥ 2``, and a pair never has two labels: ``on(a, b)`` and ``on(b, a)`` exclude each other. Loops over
+three and more objects can arise while pairs change at different frames; `scene_logic.most_likely_scene` after the
+filter removes them.
 
-The thesis looks at single clouds; a robot looks all the time (§2.4.3 proposes to watch what moves together).
+The thesis uses single clouds; a robot sees a stream (§2.4.3 proposes to observe what moves together).
 """
 
 from collections.abc import Iterable
@@ -21,23 +21,23 @@ from lifelore.perception.relations.relation import Relation
 
 @dataclass
 class _Pair:
-    """What the filter remembers of a pair."""
+    """State of a pair."""
 
-    believed: Relation | None = None
+    accepted: Relation | None = None
     doubted: int = 0
     challenger: tuple[str, int, int] | None = None
     seen: int = 0
 
 
 class RelationFilter:
-    """Predicates that hold still; feed it each frame's relations in turn.
+    """Filters the relations of successive frames.
 
     Parameters
     ----------
     enter : float
-        Least confidence at which a frame speaks for a new label, in [0, 1].
+        Least confidence that supports a new label, in [0, 1].
     leave : float
-        Confidence below which a frame speaks against a believed label, in [0, `enter`].
+        Confidence below which a frame counts against an accepted label, in [0, `enter`].
     hold : int
         Frames in a row, ≥ 1.
 
@@ -60,45 +60,45 @@ class RelationFilter:
         self._pairs: dict[tuple[int, int], _Pair] = {}
 
     def update(self, relations: Iterable[Relation]) -> tuple[Relation, ...]:
-        """Take one frame; the believed relations after it, pairs ascending, *none* left out.
+        """Process one frame; returns the accepted relations, pairs ascending, without *none*.
 
-        Of several relations over one pair the most confident speaks; pairs the frame does not name are not seen.
-        A believed relation carries the confidence and gap with which it was last seen.
+        Of several relations of one pair the most confident counts; pairs without a relation in the frame are
+        unseen. An accepted relation carries the confidence and gap with which it was last seen.
         """
         frame: dict[tuple[int, int], Relation] = {}
         for relation in sorted(relations, key=lambda r: (-r.confidence, _key(r))):
             frame.setdefault((min(relation.a, relation.b), max(relation.a, relation.b)), relation)
         for pair in sorted({*frame, *self._pairs}):
             self._step(self._pairs.setdefault(pair, _Pair()), frame.get(pair))
-        self._pairs = {pair: m for pair, m in self._pairs.items() if m.believed or m.challenger}
-        return self.believed
+        self._pairs = {pair: m for pair, m in self._pairs.items() if m.accepted or m.challenger}
+        return self.accepted
 
     @property
-    def believed(self) -> tuple[Relation, ...]:
-        """What holds now, without a new frame."""
-        kept = (self._pairs[pair].believed for pair in sorted(self._pairs))
-        return tuple(relation for relation in kept if relation and relation.relation != NONE)
+    def accepted(self) -> tuple[Relation, ...]:
+        """The accepted relations, without a new frame."""
+        all_accepted = (self._pairs[pair].accepted for pair in sorted(self._pairs))
+        return tuple(relation for relation in all_accepted if relation and relation.relation != NONE)
 
     def _step(self, memory: _Pair, seen: Relation | None) -> None:
-        if seen is not None and seen.confidence >= self.enter and not _same(memory.believed, seen):
+        if seen is not None and seen.confidence >= self.enter and not _same(memory.accepted, seen):
             memory.seen = memory.seen + 1 if memory.challenger == _key(seen) else 1
             memory.challenger = _key(seen)
         else:
             memory.challenger, memory.seen = None, 0
         if seen is not None and memory.seen >= self.hold:
-            memory.believed, memory.doubted, memory.challenger, memory.seen = seen, 0, None, 0
-        elif memory.believed is not None:
+            memory.accepted, memory.doubted, memory.challenger, memory.seen = seen, 0, None, 0
+        elif memory.accepted is not None:
             self._doubt(memory, seen)
 
     def _doubt(self, memory: _Pair, seen: Relation | None) -> None:
-        """Refresh the believed relation, or count against it."""
-        if seen is not None and _same(memory.believed, seen) and seen.confidence >= self.leave:
-            memory.believed, memory.doubted = seen, 0
+        """Update the accepted relation, or count against it."""
+        if seen is not None and _same(memory.accepted, seen) and seen.confidence >= self.leave:
+            memory.accepted, memory.doubted = seen, 0
             return
         memory.doubted += 1
         if memory.doubted >= self.hold:
-            # A challenger starts anew, or the pair would change again before `hold` frames are over.
-            memory.believed, memory.doubted, memory.challenger, memory.seen = None, 0, None, 0
+            # The challenger restarts, or the pair would change again within `hold` frames.
+            memory.accepted, memory.doubted, memory.challenger, memory.seen = None, 0, None, 0
 
 
 def _key(relation: Relation) -> tuple[str, int, int]:
@@ -108,5 +108,5 @@ def _key(relation: Relation) -> tuple[str, int, int]:
     return relation.relation, a, b
 
 
-def _same(believed: Relation | None, seen: Relation) -> bool:
-    return believed is not None and _key(believed) == _key(seen)
+def _same(accepted: Relation | None, seen: Relation) -> bool:
+    return accepted is not None and _key(accepted) == _key(seen)

@@ -1,7 +1,7 @@
-"""Several relations of one pair at a time: each label is learnt by itself, yes or no, for every ordered pair.
+"""Multi-label relations: one yes-or-no model per label, for every ordered pair.
 
-So *under*, *left_of* and *in_front_of* are learnt like any other word, none of them built in. View-dependent words
-need a camera in the clouds.
+*under*, *left_of* and *in_front_of* are learned like any other name; none is built in. View-dependent names need a
+camera in the clouds.
 """
 
 from collections.abc import Mapping, Sequence
@@ -14,52 +14,52 @@ from lifelore.core.relations import NONE, PairLabel
 from lifelore.perception.pairs.directed_label import REVERSED, as_directed
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.trees.tree_relations import TreeRelations, Vocabulary
-from lifelore.perception.trees.tree_training import Rows, TreeSettings, grown
+from lifelore.perception.trees.tree_training import TrainingRows, TreeSettings, grow_trees
 
 NO, YES = "0", "1"
 ON_TABLE = "with table: "
 FEATURE_SHARE = 0.5
-"""Of the columns tried at each split: what a word means may show in one column alone (*left_of* in "right")."""
+"""Share of columns tried at each split; large, because one column may decide (*left_of*: "right")."""
 
 
 def fit_labels(
     scenes: Sequence[ScenePairs],
     truths: Sequence[Sequence[PairLabel]],
-    words: Vocabulary,
+    vocabulary: Vocabulary,
     columns: Sequence[str],
     settings: TreeSettings,
     least_confidence: int,
 ) -> dict[str, TreeRelations]:
-    """A model of yes and no for each name but *none*, from every order of every pair that is spoken of.
+    """A yes-or-no model for each name except *none*, from both orders of every labelled pair.
 
-    Pairs of objects and pairs with the table have models of their own; the latter are called `ON_TABLE` + name.
-    They know the order (object, table) alone, so a name said with the table first has a model beside them, called
-    `ON_TABLE` + ``~`` + name.
+    Pairs of objects and pairs with the table have separate models; the latter are named `ON_TABLE` + name. They
+    use the order (object, table) alone, so a label with the table first has its own model, named `ON_TABLE` +
+    ``~`` + name.
     """
     rows: dict[bool, list[tuple[NDArray[np.float64], frozenset[str], int]]] = {False: [], True: []}
     for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
         features = scene.features.columns(columns)
-        for pair, said in enumerate(scene.labels(truth, least_confidence)):
-            for row in _rows_of(scene, pair) if said else ():
-                holds = _names_in_order(said, int(scene.features.pairs[row, 0]), words.symmetric)
+        for pair, pair_labels in enumerate(scene.labels(truth, least_confidence)):
+            for row in _rows_of(scene, pair) if pair_labels else ():
+                holds = _names_in_order(pair_labels, int(scene.features.pairs[row, 0]), vocabulary.symmetric)
                 rows[bool(scene.with_table[pair])].append((features[row], holds, number))
     settings = replace(settings, feature_share=FEATURE_SHARE)
     return {
-        prefix + name: grown(_yes_and_no(rows[table], name), columns, settings, settings.n_trees)
+        prefix + name: grow_trees(_yes_and_no(rows[table], name), columns, settings, settings.n_trees)
         for table, prefix in ((False, ""), (True, ON_TABLE))
-        for name in (*words.names, *(_turned(rows[True]) if table else ()))
+        for name in (*vocabulary.names, *(_turned(rows[True]) if table else ()))
         if name != NONE and rows[table]
     }
 
 
-def _yes_and_no(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]], name: str) -> Rows:
-    matrix, said, origin = zip(*rows, strict=True)
-    holds = np.array([YES if name in names else NO for names in said])
-    return Rows(np.array(matrix), holds, np.array(origin, np.int64))
+def _yes_and_no(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]], name: str) -> TrainingRows:
+    matrix, pair_labels, origin = zip(*rows, strict=True)
+    holds = np.array([YES if name in names else NO for names in pair_labels])
+    return TrainingRows(np.array(matrix), holds, np.array(origin, np.int64))
 
 
 def _turned(rows: Sequence[tuple[NDArray[np.float64], frozenset[str], int]]) -> list[str]:
-    """What holds in the other order somewhere, sorted."""
+    """Names that hold in the other order for some row, sorted."""
     return sorted(
         {name for _, names, _ in rows for name in names if name.startswith(REVERSED)} - {REVERSED + NONE}
     )
@@ -70,9 +70,9 @@ def _rows_of(scene: ScenePairs, pair: int) -> tuple[int, ...]:
     return (2 * pair,) if scene.with_table[pair] else (2 * pair, 2 * pair + 1)
 
 
-def _names_in_order(said: Sequence[PairLabel], first: int, symmetric: frozenset[str]) -> frozenset[str]:
-    """What holds of the pair in the order that starts with `first`; ``~`` marks the other order."""
-    return frozenset(as_directed(label, first, symmetric) for label in said)
+def _names_in_order(pair_labels: Sequence[PairLabel], first: int, symmetric: frozenset[str]) -> frozenset[str]:
+    """Names that hold for the pair in the order that starts with `first`; ``~`` marks the other order."""
+    return frozenset(as_directed(label, first, symmetric) for label in pair_labels)
 
 
 def label_shares(
@@ -80,8 +80,8 @@ def label_shares(
 ) -> list[dict[str, float]]:
     """Probability of each name for each pair; ``~`` marks the other order, symmetric names stand once."""
     found: list[dict[str, float]] = [{} for _ in scene.with_table]
-    for called, model in models.items():
-        name, table = called.removeprefix(ON_TABLE), called.startswith(ON_TABLE)
+    for key, model in models.items():
+        name, table = key.removeprefix(ON_TABLE), key.startswith(ON_TABLE)
         rows = model.shares(scene.features.columns(model.columns))
         yes = rows[:, model.classes.index(YES)] if YES in model.classes else np.zeros(len(rows))
         for pair in np.flatnonzero(scene.with_table == table):

@@ -1,11 +1,12 @@
-"""`RelationClassifier`: learns what a user's words for relations mean, from scenes in which they were said.
+"""`RelationClassifier`: learns a user's relations from labelled scenes and predicts them for other scenes.
 
-Thesis: §2.3.5. Any set of labels may be brought; the order of a pair carries no information, the direction is
+Thesis: §2.3.5. Any set of labels is allowed. The order of a labelled pair carries no information; the direction is
 inferred. ``method="displacement"`` is the thesis's own classifier.
 """
 
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any, Self
 
@@ -14,55 +15,58 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.protocols import Progress
 from lifelore.core.relations import ADJACENT_GAP, PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT, Interface
-from lifelore.perception.pairs import gap_rule
-from lifelore.perception.pairs.directed_label import REVERSED
-from lifelore.perception.pairs.pair_class import LEAST_CONFIDENCE as LEAST_CONFIDENCE
-from lifelore.perception.pairs.pair_class import pair_class
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface
+from lifelore.perception.pairs.directed_label import LEAST_CONFIDENCE as LEAST_CONFIDENCE
+from lifelore.perception.pairs.directed_label import REVERSED, pair_class
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.relations.displacement_relations import NeighbourSettings, fit_displacements
 from lifelore.perception.relations.label_relations import fit_labels, label_shares
-from lifelore.perception.relations.pair_belief import PairBelief
-from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation import PairBelief, Relation
+from lifelore.perception.relations.relation_model import (
+    OBJECTS,
+    WITH_TABLE,
+    RelationModel,
+    check_options,
+    learned_vocabulary,
+)
+from lifelore.perception.relations.relation_model_file import SHIPPED, read_model, write_model
 from lifelore.perception.relations.symmetric_names import symmetric_names
 from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
 from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
 
-METHODS = ("trees", "displacement")
-OBJECTS, WITH_TABLE = "objects", "table"
 DEFAULT_TREES = TreeSettings()
 
 
 class RelationClassifier:
-    """Learns relations from labelled scenes and says them of others.
+    """Learns relations from labelled scenes and predicts them for others.
 
     Parameters
     ----------
     method : {"trees", "displacement"}
         Trees on pair features, or the thesis's nearest neighbours among displacements.
     adjacent_gap : float, optional
-        Metres; where *adjacent* and *none* are both learnt, things beside one another are adjacent up to this
-        visible gap. May be changed on a fitted classifier. None leaves it to the examples.
+        Metres; where *adjacent* and *none* are both learned, neighbours are adjacent up to this visible gap. May
+        be changed on a fitted classifier. None learns the limit from the examples.
     multi_label : bool
-        Every relation is learnt by itself, and several may hold of a pair (``under`` beside ``left_of``); a pair
-        of which the truths say anything is a counterexample for all they do not say of it.
+        Every relation is learned separately, and several may hold for a pair (``under`` and ``left_of``). A
+        labelled pair is a counterexample for all relations that its labels do not name.
     symmetric : collection of str, optional
-        Relations that hold of (b, a) when they hold of (a, b); None infers them from the examples.
+        Relations that hold for (b, a) when they hold for (a, b); None infers them from the examples.
     omega, weights, k
-        Of the thesis's method, see `NeighbourSettings`.
+        Settings of the thesis's method, see `NeighbourSettings`.
     settings : ContactSettings
-        How contacts are looked for, the same in training and in use.
+        Settings of the search for contacts, the same in training and prediction.
     trees : TreeSettings
 
     Attributes
     ----------
     names : tuple of str
-        The relations that were learnt, sorted.
+        The learned relations, sorted.
     symmetric : frozenset of str
     learnt_from : dict of str to int
-        How many labels of near pairs, sure enough, were learnt from, by relation; empty for a loaded model. Labels
-        of pairs that are not near teach nothing.
+        Number of training labels by relation: labels of near pairs with enough confidence. Empty for a loaded
+        model.
 
     Raises
     ------
@@ -80,15 +84,10 @@ class RelationClassifier:
         omega: float | None = None,
         weights: str = "uniform",
         k: int = 4,
-        settings: ContactSettings = DEFAULT,
+        settings: ContactSettings = DEFAULT_CONTACT_SETTINGS,
         trees: TreeSettings = DEFAULT_TREES,
     ) -> None:
-        if method not in METHODS:
-            raise InputError(f"method must be one of {', '.join(METHODS)}, got {method!r}")
-        if multi_label and method != "trees":
-            raise InputError("multi_label needs method 'trees', got 'displacement'; drop one of the two")
-        if adjacent_gap is not None and not 0 < adjacent_gap < 1:
-            raise InputError(f"adjacent_gap must be metres in (0, 1), got {adjacent_gap!r}; 0.0225 is 22.5 mm")
+        check_options(method, adjacent_gap, multi_label)
         self.method = method
         self.adjacent_gap = adjacent_gap
         self.multi_label = multi_label
@@ -107,7 +106,7 @@ class RelationClassifier:
         truths: Sequence[Sequence[PairLabel]],
         progress: Progress | None = None,
     ) -> Self:
-        """Learn from scenes and what is said of their pairs, with confidence 2 or more.
+        """Learn from scenes and the labels of their pairs with confidence 2 or more.
 
         Raises
         ------
@@ -124,14 +123,14 @@ class RelationClassifier:
         return self.fit_pairs(scenes, truths)
 
     def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
-        """As `fit`, from scenes that were looked at before."""
+        """As `fit`, from the result of `scene_pairs` for each scene."""
         if len(scenes) != len(truths):
             raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
         near = [
             label
             for scene, truth in zip(scenes, truths, strict=True)
-            for said in scene.labels(truth, LEAST_CONFIDENCE)
-            for label in said
+            for pair_labels in scene.labels(truth, LEAST_CONFIDENCE)
+            for label in pair_labels
         ]
         if not near:
             raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
@@ -150,16 +149,16 @@ class RelationClassifier:
         return self
 
     def _check_one_class(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> None:
-        # Before anything is grown: a contradiction should not come to light after minutes of training.
+        # Before training, so that a contradiction is reported at once and not after minutes.
         for scene, truth in zip(scenes, truths, strict=True):
-            for first, said in zip(
+            for first, pair_labels in zip(
                 scene.features.pairs[::2, 0], scene.labels(truth, LEAST_CONFIDENCE), strict=True
             ):
-                if said:
-                    pair_class(said, int(first), self.symmetric)
+                if pair_labels:
+                    pair_class(pair_labels, int(first), self.symmetric)
 
     def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
-        words = self.words
+        words = self.vocabulary
         if self.multi_label:
             columns = (*TURNING_COLUMNS, *VIEW_COLUMNS)
             return dict(fit_labels(scenes, truths, words, columns, self.trees, LEAST_CONFIDENCE))
@@ -173,28 +172,25 @@ class RelationClassifier:
         return {kind: model for kind, model in ((OBJECTS, objects), (WITH_TABLE, table)) if model is not None}
 
     @property
-    def words(self) -> Vocabulary:
-        """What is learnt: names, which are symmetric, and the limit of *adjacent* where it applies."""
-        applies = (
-            gap_rule.applies(self.names, self.adjacent_gap) and self.method == "trees" and not self.multi_label
-        )
-        return Vocabulary(self.names, self.symmetric, self.adjacent_gap if applies else None)
+    def vocabulary(self) -> Vocabulary:
+        """The learned names, which are symmetric, and the limit of *adjacent* where it applies."""
+        return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names, self.symmetric)
 
     def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included; then of every object with the table.
 
-        With `multi_label` every relation that is likelier than not. Pairs that are not near are left out.
+        With `multi_label` every relation with a probability of at least 0.5. Pairs that are not near are left out.
 
         Parameters
         ----------
         cloud : LabelledCloud
         found : sequence of Interface, optional
-            Its interfaces where they are known already.
+            Its interfaces, if already computed.
         """
         return self.predict_pairs(scene_pairs(cloud, found, self.settings))
 
     def predict_pairs(self, scene: ScenePairs) -> tuple[Relation, ...]:
-        """As `predict`, from a scene that was looked at before."""
+        """As `predict`, from the result of `scene_pairs`."""
         beliefs = self.beliefs_of(scene)
         if not self.multi_label:
             return tuple(belief.best() for belief in beliefs)
@@ -203,13 +199,13 @@ class RelationClassifier:
         )
 
     def beliefs(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[PairBelief, ...]:
-        """How likely each relation is, for every near pair; in the order of `predict`."""
+        """Probability of each relation for every near pair, in the order of `predict`."""
         return self.beliefs_of(scene_pairs(cloud, found, self.settings))
 
     def beliefs_of(self, scene: ScenePairs) -> tuple[PairBelief, ...]:
-        """As `beliefs`, from a scene that was looked at before."""
+        """As `beliefs`, from the result of `scene_pairs`."""
         if not self.models:
-            raise InputError("a classifier must be fitted before it is asked; call fit or load a model")
+            raise InputError("a classifier must be fitted before it predicts; call fit or load a model")
         shares = self._shares(scene)
         return tuple(
             PairBelief(int(a), int(b), float(gap), mine)
@@ -218,7 +214,7 @@ class RelationClassifier:
         )
 
     def _shares(self, scene: ScenePairs) -> list[dict[str, float]]:
-        """Shares of each pair; empty for pairs of which nothing was learnt."""
+        """Shares of each pair; empty for pairs of a kind without training labels."""
         if self.multi_label:
             return label_shares(self.models, scene, self.symmetric)
         if self.method == "displacement":
@@ -227,17 +223,68 @@ class RelationClassifier:
                 self.models[kind].shares(moved) if kind in self.models else {}
                 for kind, moved in zip(kinds, scene.displacements, strict=True)
             ]
-        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.words)
+        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.vocabulary)
+
+    def to_model(self) -> RelationModel:
+        """Everything learned, as plain data.
+
+        Raises
+        ------
+        InputError
+            The classifier is not fitted.
+        """
+        if not self.models:
+            raise InputError("a classifier must be fitted before it is saved; call fit first")
+        return RelationModel(
+            self.method,
+            self.adjacent_gap,
+            self.multi_label,
+            self.settings,
+            self.neighbours,
+            self.names,
+            self.symmetric,
+            self.models,
+        )
+
+    @classmethod
+    def from_model(cls, model: RelationModel) -> Self:
+        """The fitted classifier that `to_model` described; another `fit` uses the same options."""
+        classifier = cls(
+            model.method,
+            adjacent_gap=model.adjacent_gap,
+            multi_label=model.multi_label,
+            symmetric=model.symmetric,
+            settings=model.settings,
+            **asdict(model.neighbours),
+        )
+        classifier.names, classifier.symmetric = model.names, model.symmetric
+        classifier.models = dict(model.models)
+        return classifier
 
     def save(self, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
-        """Write the fitted classifier to an npz file, see `relation_model_file`."""
-        from lifelore.perception.relations.relation_model_file import save_model
+        """Write the fitted classifier to an npz file; `about` holds notes for people, as JSON values.
 
-        save_model(self, path, about)
+        Raises
+        ------
+        InputError
+            The classifier is not fitted.
+        StoreError
+            The disk refuses.
+        """
+        write_model(self.to_model(), path, about)
 
-    @staticmethod
-    def load(path: str | Path) -> "RelationClassifier":
-        """Read what `save` wrote."""
-        from lifelore.perception.relations.relation_model_file import load_model
+    @classmethod
+    def load(cls, path: str | Path) -> Self:
+        """Read the classifier that `save` wrote.
 
-        return load_model(path)
+        Raises
+        ------
+        InputError
+            The file is missing, damaged, newer, or no relation model.
+        """
+        return cls.from_model(read_model(path))
+
+
+def shipped_model() -> RelationClassifier:
+    """The classifier that comes with the package, trained on simulated tabletop scenes alone."""
+    return RelationClassifier.load(SHIPPED)

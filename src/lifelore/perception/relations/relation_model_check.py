@@ -1,8 +1,7 @@
-"""What must hold of a relation model from a file, so that asking it can neither fail nor hang.
+"""Checks of a relation model from a file, so that its predictions can neither fail nor hang.
 
-A file may be damaged, or be a stranger's: every number that is used is looked at once, when it is loaded.
-
-Raises everywhere: InputError, with what is wrong; who reads the file adds its name.
+A file may be damaged or of unknown origin: every number is checked once, on loading. All functions raise
+InputError without the name of the file; the reader adds it.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,16 +16,16 @@ from lifelore.perception.pairs import gap_rule
 from lifelore.perception.pairs.directed_label import REVERSED, mirrored
 from lifelore.perception.pairs.pair_features import COLUMNS
 from lifelore.perception.relations.label_relations import NO, ON_TABLE, YES
-from lifelore.perception.relations.relation_classifier import OBJECTS, WITH_TABLE
+from lifelore.perception.relations.relation_model import OBJECTS, WITH_TABLE
 from lifelore.perception.trees.tree_relations import CARRIED, Vocabulary, carried_columns, inner_symmetric
 
 LEAST_LENGTH, LARGEST_LENGTH, LARGEST_NUMBER = 1e-4, 100.0, 1e6
-"""Metres, metres, and what else a setting may be: beyond them sums overflow or looking takes for ever."""
+"""Least and largest length, metres, and largest other setting: beyond them sums overflow or searches never end."""
 TEMPERATURES = 0.05, 20.0
 
 
 def check_header(header: Mapping[str, Any]) -> None:
-    """The parts are there and of their kinds; names are words, settings are numbers that can be worked with."""
+    """Check that all header fields exist with the right types, names and ranges."""
     kinds = {
         "method": str,
         "multi_label": bool,
@@ -46,7 +45,7 @@ def check_header(header: Mapping[str, Any]) -> None:
         raise InputError(f"names must neither start with ~ nor end with =, got {odd!r:.60}")
     for name, value in header["settings"].items():
         _check_setting(name, value)
-    if not header["models"] or not all(isinstance(told, dict) for told in header["models"].values()):
+    if not header["models"] or not all(isinstance(fields, dict) for fields in header["models"].values()):
         raise InputError("models must be described, at least one")
 
 
@@ -57,11 +56,11 @@ def is_number(value: Any) -> bool:
     )
 
 
-def _check_words(what: str, words: Any) -> None:
+def _check_words(name: str, words: Any) -> None:
     if not isinstance(words, list) or not all(isinstance(word, str) for word in words):
-        raise InputError(f"{what} must be words, got {words!r:.60}")
+        raise InputError(f"{name} must be words, got {words!r:.60}")
     if len(set(words)) < len(words):
-        raise InputError(f"{what} must differ, got {words!r:.60}")
+        raise InputError(f"{name} must differ, got {words!r:.60}")
 
 
 def _check_setting(name: str, value: Any) -> None:
@@ -74,28 +73,33 @@ def _check_setting(name: str, value: Any) -> None:
         raise InputError(f"the setting {name} must be from {least:g} to {most:g}, got {value!r:.60}")
 
 
-def check_classes(kind: str, classes: Any, words: Vocabulary, multi_label: bool) -> None:
-    """A model's classes are words of the vocabulary, or yes and no."""
+def check_classes(kind: str, classes: Any, vocabulary: Vocabulary, multi_label: bool) -> None:
+    """Check that a part's classes are names of the vocabulary, or yes and no."""
     _check_words(f"classes of {kind}", classes)
     if multi_label:
         name = kind.removeprefix(ON_TABLE)
         known = name.removeprefix(REVERSED) if kind.startswith(ON_TABLE) else name
-        if known not in words.names or not classes or not set(classes) <= {NO, YES}:
+        if known not in vocabulary.names or not classes or not set(classes) <= {NO, YES}:
             raise InputError(f"the model of {kind!r:.60} must say {NO} or {YES} of a word that is learnt")
         return
     if kind not in (OBJECTS, WITH_TABLE):
         raise InputError(f"models must be called {OBJECTS} and {WITH_TABLE}, got {kind!r:.60}")
-    beside = {gap_rule.BESIDE} if kind == OBJECTS and words.adjacent_gap is not None else set()
-    strange = {name.removeprefix(REVERSED) for name in classes} - set(words.names) - beside
+    beside = {gap_rule.BESIDE} if kind == OBJECTS and vocabulary.adjacent_gap is not None else set()
+    strange = {name.removeprefix(REVERSED) for name in classes} - set(vocabulary.names) - beside
     if strange or not classes:
         raise InputError(f"classes of {kind} must be words that are learnt, got {sorted(strange)!r:.60}")
 
 
 def check_trees(
-    kind: str, told: Mapping[str, Any], n_classes: int, n_features: int, words: Vocabulary, multi_label: bool
+    kind: str,
+    fields: Mapping[str, Any],
+    n_classes: int,
+    n_features: int,
+    vocabulary: Vocabulary,
+    multi_label: bool,
 ) -> None:
-    """What is told of trees fits them, and what they will be shown."""
-    classes, columns, temperature = told["classes"], told["columns"], told["temperature"]
+    """Check that the header fields of trees fit the trees and the features."""
+    classes, columns, temperature = fields["classes"], fields["columns"], fields["temperature"]
     if len(classes) != n_classes or not isinstance(columns, list) or len(columns) != n_features:
         raise InputError("names and trees do not fit together")
     if not is_number(temperature) or not TEMPERATURES[0] <= temperature <= TEMPERATURES[1]:
@@ -103,10 +107,12 @@ def check_trees(
             f"temperature must be from {TEMPERATURES[0]} to {TEMPERATURES[1]}, got {temperature!r:.60}"
         )
     if kind == OBJECTS and not multi_label:
-        symmetric = inner_symmetric(words.symmetric)
+        symmetric = inner_symmetric(vocabulary.symmetric)
         if not {mirrored(name, symmetric) for name in classes} <= set(classes):
             raise InputError("classes of objects must be those of both orders")
-    carried = carried_columns(words.names, words.symmetric) if kind == WITH_TABLE and not multi_label else ()
+    carried = (
+        carried_columns(vocabulary.names, vocabulary.symmetric) if kind == WITH_TABLE and not multi_label else ()
+    )
     own = columns[: len(columns) - len(carried)]
     if tuple(columns[len(own) :]) != carried or not set(map(str, own)) <= set(COLUMNS):
         unknown = [name for name in columns if name not in COLUMNS and not str(name).startswith(CARRIED)]
@@ -114,7 +120,7 @@ def check_trees(
 
 
 def check_displacements(displacements: NDArray[Any], codes: NDArray[Any], classes: Sequence[str]) -> None:
-    """Displacements are finite numbers of three columns, their codes those of classes."""
+    """Check that displacements are finite rows of three, with codes of existing classes."""
     fit = displacements.ndim == 2 and displacements.shape == (codes.size, 3) and codes.ndim == 1 and codes.size
     if not fit or displacements.dtype.kind != "f" or codes.dtype.kind != "i":
         raise InputError("displacements must be three columns of numbers, and have a whole number as code each")

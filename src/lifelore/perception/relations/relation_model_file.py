@@ -1,21 +1,24 @@
-"""A fitted `RelationClassifier` as one npz of arrays and a JSON text; no pickle; equal models, equal bytes."""
+"""Relation models as npz files of arrays and a JSON header: read, checked and written without pickle.
+
+Equal models give equal bytes.
+"""
 
 import io
 import json
 import zipfile
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.atomic_write import whole_file
+from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, StoreError
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.relations.displacement_relations import DisplacementRelations, NeighbourSettings
-from lifelore.perception.relations.relation_classifier import RelationClassifier
+from lifelore.perception.relations.relation_model import RelationModel
 from lifelore.perception.relations.relation_model_check import (
     check_classes,
     check_displacements,
@@ -30,44 +33,39 @@ VERSION = 1
 SUFFIX = ".npz"
 """End of the name of every relation model file."""
 LARGEST = 2**28
-"""Bytes that a model may unpack to: a stranger's file must not fill the memory."""
+"""Largest size of a model after unpacking, in bytes, so that no file fills the memory."""
 SHIPPED = Path(__file__).parent / "models" / "tabletop.npz"
 DAMAGED = "is no relation model that can be read ({}); write it anew with `lifelore learn-relations --out`"
 
 
-def shipped_model() -> RelationClassifier:
-    """The model that comes with the package, trained on simulated tabletop scenes alone."""
-    return load_model(SHIPPED)
-
-
-def save_model(model: RelationClassifier, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
-    """Write a fitted model; `about` is for people: how it was trained, as JSON values.
+def write_model(model: RelationModel, path: str | Path, about: Mapping[str, Any] | None = None) -> None:
+    """Write a model; `about` holds notes for people, such as how it was trained, as JSON values.
 
     Raises
     ------
     InputError
-        The model is not fitted.
+        A value of the model cannot be read back.
     StoreError
-        Nothing can be written there.
+        The disk refuses.
     """
     content = model_bytes(model, about)
     try:
-        with whole_file(path) as file:
+        with atomic_write(path) as file:
             file.write(content)
     except OSError as error:
         raise StoreError(f"the model cannot be written to {path}: {error.strerror}") from None
 
 
 def check_model_path(path: str | Path) -> None:
-    """Refuse a place that no model can be written to, before hours are spent on one."""
+    """Raise InputError for a path that no model can be written to, before hours of training."""
     place = Path(path)
     if place.is_dir() or not place.parent.is_dir():
-        what = "is a folder" if place.is_dir() else "lies in a folder that does not exist"
-        raise InputError(f"out must be a file to write the model to; {path} {what}")
+        reason = "is a folder" if place.is_dir() else "lies in a folder that does not exist"
+        raise InputError(f"out must be a file to write the model to; {path} {reason}")
 
 
-def load_model(path: str | Path) -> RelationClassifier:
-    """The model that `save_model` wrote.
+def read_model(path: str | Path) -> RelationModel:
+    """The model that `write_model` wrote.
 
     Raises
     ------
@@ -78,7 +76,7 @@ def load_model(path: str | Path) -> RelationClassifier:
 
 
 def model_about(path: str | Path) -> dict[str, Any]:
-    """What the model says of itself: how it was trained, its names, its settings."""
+    """The header of a model file: how the model was trained, its names, its settings."""
     _, header = _opened(_content(path), str(path))
     return header
 
@@ -90,10 +88,8 @@ def _content(path: str | Path) -> bytes:
         raise InputError(f"the relation model {path} cannot be read: {error.strerror}") from None
 
 
-def model_bytes(model: RelationClassifier, about: Mapping[str, Any] | None = None) -> bytes:
+def model_bytes(model: RelationModel, about: Mapping[str, Any] | None = None) -> bytes:
     """The model as the bytes of an npz file."""
-    if not model.models:
-        raise InputError("a classifier must be fitted before it is saved; call fit first")
     header: dict[str, Any] = {
         "format": FORMAT,
         "version": VERSION,
@@ -115,9 +111,9 @@ def model_bytes(model: RelationClassifier, about: Mapping[str, Any] | None = Non
         }
     check_header({**header, "models": {kind: {} for kind in model.models}})
     arrays: dict[str, NDArray[Any]] = {}
-    for number, (kind, one) in enumerate(model.models.items()):
-        parts, columns = _parts(one)
-        header["models"][kind] = {"at": number, **parts}
+    for number, (kind, part) in enumerate(model.models.items()):
+        fields, columns = _fields(part)
+        header["models"][kind] = {"at": number, **fields}
         arrays.update({f"{number}.{name}": column for name, column in columns.items()})
     text = json.dumps(header, sort_keys=True, allow_nan=False).encode()
     stream = io.BytesIO()
@@ -125,61 +121,63 @@ def model_bytes(model: RelationClassifier, about: Mapping[str, Any] | None = Non
     return stream.getvalue()
 
 
-def _parts(one: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    if isinstance(one, TreeRelations):
-        told = {"classes": list(one.classes), "columns": list(one.columns), "temperature": one.temperature}
-        return told, one.trees.arrays()
-    told = {"classes": list(one.classes), "k": int(one.k), "weights": one.weights}
-    return told, {"displacements": one.displacements, "codes": one.codes}
+def _fields(part: TreeRelations | DisplacementRelations) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Header fields and arrays of one part of a model."""
+    if isinstance(part, TreeRelations):
+        fields = {"classes": list(part.classes), "columns": list(part.columns), "temperature": part.temperature}
+        return fields, part.trees.arrays()
+    fields = {"classes": list(part.classes), "k": int(part.k), "weights": part.weights}
+    return fields, {"displacements": part.displacements, "codes": part.codes}
 
 
-def model_from_bytes(content: bytes, where: str = "the model") -> RelationClassifier:
-    """The model of `model_bytes`; `where` is named when it cannot be read."""
+def model_from_bytes(content: bytes, where: str = "the model") -> RelationModel:
+    """The model of `model_bytes`; errors name `where`."""
     arrays, header = _opened(content, where)
     try:
         check_header(header)
-        model = RelationClassifier(
+        model = RelationModel(
             header["method"],
-            adjacent_gap=header["adjacent_gap"],
-            multi_label=header["multi_label"],
-            symmetric=header["symmetric"],
-            settings=ContactSettings(**{name: float(value) for name, value in header["settings"].items()}),
-            **_neighbours(header),
+            header["adjacent_gap"],
+            header["multi_label"],
+            ContactSettings(**{name: float(value) for name, value in header["settings"].items()}),
+            _neighbours(header),
+            tuple(header["names"]),
+            frozenset(header["symmetric"]),
+            {},
         )
-        model.names, model.symmetric = tuple(header["names"]), frozenset(header["symmetric"])
-        for kind, told in header["models"].items():
-            prefix = f"{told['at']}."
-            mine = {name.removeprefix(prefix): a for name, a in arrays.items() if name.startswith(prefix)}
-            model.models[kind] = _whole(model, kind, told, mine)
+        models = {kind: _part(model, kind, fields, arrays) for kind, fields in header["models"].items()}
     except KeyError as error:
         raise InputError(f"{where} {DAMAGED.format(f'{error} is missing')}") from None
     except (TypeError, ValueError, AttributeError, OverflowError) as error:
         raise InputError(f"{where} {DAMAGED.format(error)}") from None
-    return model
+    return replace(model, models=models)
 
 
-def _neighbours(header: Mapping[str, Any]) -> dict[str, Any]:
-    """The settings of the votes; files of the first models tell them of each part alone, and ω not at all."""
+def _neighbours(header: Mapping[str, Any]) -> NeighbourSettings:
+    """Settings of the nearest neighbours; files of the first models have `k` and `weights` in each part, no ω."""
     if header["method"] != "displacement":
-        return {}
-    told = header.get("neighbours")
-    if told is None:
-        told = {name: next(iter(header["models"].values()))[name] for name in ("k", "weights")}
-    return asdict(NeighbourSettings(**told))
+        return NeighbourSettings()
+    fields = header.get("neighbours")
+    if fields is None:
+        fields = {name: next(iter(header["models"].values()))[name] for name in ("k", "weights")}
+    return NeighbourSettings(**fields)
 
 
-def _whole(
-    model: RelationClassifier, kind: str, told: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
+def _part(
+    model: RelationModel, kind: str, fields: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]
 ) -> TreeRelations | DisplacementRelations:
-    check_classes(kind, told["classes"], model.words, model.multi_label)
-    classes = tuple(told["classes"])
+    """One part of a model from its header fields and its arrays, checked."""
+    prefix = f"{fields['at']}."
+    own = {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
+    check_classes(kind, fields["classes"], model.vocabulary, model.multi_label)
+    classes = tuple(fields["classes"])
     if model.method == "trees":
-        trees = TreeEnsemble.from_arrays(arrays)
-        check_trees(kind, told, trees.n_classes, trees.n_features, model.words, model.multi_label)
-        return TreeRelations(classes, tuple(told["columns"]), trees, float(told["temperature"]))
-    check_displacements(arrays["displacements"], arrays["codes"], classes)
-    votes = NeighbourSettings(told["k"], None, told["weights"])
-    return DisplacementRelations(classes, arrays["displacements"], arrays["codes"], votes.k, votes.weights)
+        trees = TreeEnsemble.from_arrays(own)
+        check_trees(kind, fields, trees.n_classes, trees.n_features, model.vocabulary, model.multi_label)
+        return TreeRelations(classes, tuple(fields["columns"]), trees, float(fields["temperature"]))
+    check_displacements(own["displacements"], own["codes"], classes)
+    votes = NeighbourSettings(fields["k"], None, fields["weights"])
+    return DisplacementRelations(classes, own["displacements"], own["codes"], votes.k, votes.weights)
 
 
 def _opened(content: bytes, where: str) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""What somebody said of scenes: `relations.csv` and `planes.csv`.
+"""Readers of labels of scenes: `relations.csv` and `planes.csv`.
 
 `relations.csv` has the columns scene, a, b, relation, confidence: ids as merged from the cloud's labels, 1 the
 table; confidence 3 certain, 2 probable, 1 doubtful. `planes.csv` has scene, nx, ny, nz, d: the table's plane in
@@ -40,7 +40,7 @@ def read_relations(path: str | Path) -> dict[str, tuple[PairLabel, ...]]:
             raise _wrong(path, line, f"a and b must differ, got {label.a} twice")
         truths.setdefault(_name(path, line, row, "scene"), []).append(label)
     if not truths:
-        raise InputError(f"{path} must say something of a scene, got no rows below the header")
+        raise InputError(f"{path} must label at least one scene, got no rows below the header; add rows")
     return {scene: tuple(labels) for scene, labels in truths.items()}
 
 
@@ -109,5 +109,5 @@ def _name(path: str | Path, line: int, row: Mapping[str, str], column: str) -> s
     return text
 
 
-def _wrong(path: str | Path, line: int, what: str) -> InputError:
-    return InputError(f"{path}, line {line}: {what}")
+def _wrong(path: str | Path, line: int, message: str) -> InputError:
+    return InputError(f"{path}, line {line}: {message}")

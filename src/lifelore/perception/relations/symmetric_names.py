@@ -1,4 +1,4 @@
-"""Which of a user's relations are symmetric: by what is known, what was written, or whether a direction shows."""
+"""Symmetric relations among a user's names: by definition, by labels in both orders, or by a test on features."""
 
 from collections.abc import Sequence
 
@@ -10,10 +10,10 @@ from lifelore.perception.pairs.scene_pairs import ScenePairs
 
 FOLDS = 5
 FEWEST = 10
-"""Examples below which a name counts as directed: with fewer the trees may miss a direction that is there, and a
-directed name taken for symmetric loses what it says."""
+"""Least number of examples for the test; with fewer a name counts as directed, because the trees may miss its
+direction."""
 CHANCE = 1.64
-"""Standard deviations above one half from which a direction shows: 5 % of symmetric names pass for directed."""
+"""Standard deviations above one half that count as a direction: 5 % of symmetric names pass for directed."""
 
 
 def symmetric_names(
@@ -24,8 +24,8 @@ def symmetric_names(
 ) -> frozenset[str]:
     """The symmetric ones of `names`.
 
-    A core relation is what its definition says. Any other is symmetric if it was written of some pair both ways,
-    or if trees that saw other scenes cannot tell (a, b) from (b, a) better than a coin.
+    A core relation follows its definition. Any other is symmetric if some pair is labelled in both orders, or if
+    trees trained on other scenes cannot distinguish (a, b) from (b, a) better than chance.
     """
     sure = [[label for label in truth if label.confidence >= least_confidence] for truth in truths]
     return frozenset(
@@ -40,8 +40,8 @@ def _examples(
     rows, origin = [], []
     for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
         features = scene.features.columns((*TURNING_COLUMNS, *VIEW_COLUMNS))
-        for pair, said in enumerate(scene.labels(truth, least_confidence)):
-            for label in said:
+        for pair, pair_labels in enumerate(scene.labels(truth, least_confidence)):
+            for label in pair_labels:
                 if label.relation == name and not scene.with_table[pair]:
                     turned = int(label.a != scene.features.pairs[2 * pair, 0])
                     rows.append(features[[2 * pair + turned, 2 * pair + 1 - turned]])
@@ -59,11 +59,11 @@ def _is_symmetric(name: str, known: tuple[np.ndarray, np.ndarray], truths: Seque
     rows, scene = known
     if len(rows) < FEWEST or len(np.unique(scene)) < 2:
         return False
-    return _told_apart(rows, scene) < len(rows) / 2 + CHANCE * np.sqrt(len(rows)) / 2
+    return _right_directions(rows, scene) < len(rows) / 2 + CHANCE * np.sqrt(len(rows)) / 2
 
 
-def _told_apart(rows: np.ndarray, scene: np.ndarray) -> int:
-    """How many held-out pairs the trees put the right way round."""
+def _right_directions(rows: np.ndarray, scene: np.ndarray) -> int:
+    """Number of held-out pairs whose direction the trees predict right."""
     from lifelore.perception.trees.tree_classifier import TreeClassifier
 
     right = 0
@@ -71,10 +71,10 @@ def _told_apart(rows: np.ndarray, scene: np.ndarray) -> int:
     folds = min(FOLDS, int(place.max()) + 1)
     for fold in range(folds):
         seen = place % folds != fold
-        # All columns at every split: the direction may show in a single one.
+        # All columns at every split, because a single one may show the direction.
         trees = TreeClassifier(50, feature_share=1.0).fit(
             rows[seen].reshape(-1, rows.shape[2]), np.tile([1, 0], seen.sum())
         )
-        asked = rows[~seen]
-        right += int((trees.predict_proba(asked[:, 0])[:, 1] > trees.predict_proba(asked[:, 1])[:, 1]).sum())
+        held_out = rows[~seen]
+        right += int((trees.predict_proba(held_out[:, 0])[:, 1] > trees.predict_proba(held_out[:, 1])[:, 1]).sum())
     return right

@@ -1,7 +1,7 @@
-"""X-means: k-means that finds its number of clusters by splitting where the Bayesian criterion says so.
+"""X-means: k-means that finds its number of clusters by splits that improve the Bayesian criterion.
 
 Pelleg and Moore, "X-means: extending k-means with efficient estimation of the number of clusters", ICML 2000; the
-thesis proposes it to find relations without labels (§2.3.5). Their printed likelihood slips in three places, see
+thesis proposes it to find relations without labels (§2.3.5). Their printed likelihood has three errors, see
 `bayesian_criterion`; the corrected one is the default.
 """
 
@@ -43,7 +43,7 @@ def x_means(
     most: int = 20,
     formula: Formula = "corrected",
 ) -> Clustering:
-    """Cluster points, their number of clusters found.
+    """Cluster points; the number of clusters is found.
 
     From `least` centres: improve the centres (k-means to convergence); split each in two along a random direction,
     2-means within its region, and keep the halves where their criterion on the region's points is the larger; and
@@ -125,7 +125,7 @@ def _first_centres(points: NDArray[np.float64], k: int, rng: np.random.Generator
 
 
 def _improved(points: NDArray[np.float64], centres: NDArray[np.float64], formula: Formula) -> Clustering:
-    """k-means to convergence from `centres`; centres that own no point are let go."""
+    """k-means to convergence from `centres`; centres without points are dropped."""
     labels = np.full(len(points), -1)
     while True:
         nearest = ((points[:, None] - centres[None]) ** 2).sum(axis=-1).argmin(axis=1)
@@ -143,7 +143,7 @@ def _split_centres(
     gains, halves = [], []
     for number, centre in enumerate(model.centres):
         region = points[model.labels == number]
-        # Drawn for every centre, so that whether one can split moves no other.
+        # Drawn for every centre, so that a split of one does not change the draws of others.
         direction = rng.normal(size=points.shape[1])
         split = _halved(region, centre, direction, formula)
         whole = bayesian_criterion(region, centre[None], np.zeros(len(region), np.int64), formula)

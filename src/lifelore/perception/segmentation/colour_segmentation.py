@@ -1,4 +1,4 @@
-"""Objects by their colour: the thesis's own simple method.
+"""Segmentation by colour: clusters of a colour histogram, the thesis's method.
 
 The colours are normalised by their brightness, counted in a three-dimensional histogram, and the occupied
 bins are clustered by k-means, each weighing as much as the points in it. With k = 3 the smallest cluster is
@@ -31,14 +31,14 @@ def colour_classes(
     Parameters
     ----------
     points : (n, 3) metres
-        What is left once the table is gone.
+        Points above the table.
     colours : (n, 3) uint8
     k : int
         Clusters, ≥ 2. Up to 3, the smallest is the background; above, all below `min_share` are noise.
     min_share : float
         Share of the points, in 0–1.
     neighbours : int
-        Of the vote that cleans up; 1 leaves every point as it is.
+        Neighbours in the vote that corrects points; 1 changes none.
 
     Returns
     -------
@@ -62,7 +62,7 @@ def colour_classes(
 
 
 def normalised(colours: NDArray[np.uint8]) -> NDArray[np.float64]:
-    """(n, 3) shares of red, green and blue, summing to 1; black counts as grey."""
+    """(n, 3) shares of red, green and blue, which sum to 1; black counts as grey."""
     wide = colours.astype(np.float64)
     total = wide.sum(axis=1, keepdims=True)
     return np.divide(wide, total, out=np.full_like(wide, 1 / 3), where=total > 0)

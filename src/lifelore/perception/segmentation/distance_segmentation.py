@@ -1,7 +1,6 @@
-"""Objects of an unlabelled scene: what stands above the table, cut into clusters by distance.
+"""Segmentation by distance: points above the table in Euclidean clusters.
 
-Two things that touch are one cluster; the thesis (§2.5) argues that a perceiver may fail so, and that it must
-be survived.
+Two objects that touch are one cluster; the thesis (§2.5) argues that later steps must tolerate such errors.
 """
 
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ _MAX_VOXELS = 200_000
 
 @dataclass(frozen=True)
 class SegmentationSettings:
-    """How an unlabelled scene is cut.
+    """Settings of the segmentation of an unlabelled scene.
 
     Parameters
     ----------
@@ -29,7 +28,7 @@ class SegmentationSettings:
     table_band : float
         Metres; points no higher than this above the table, and no deeper below it, are the table.
     reach : float
-        Metres above the table that still count as scene.
+        Height of the scene above the table, metres.
     tolerance : float
         Metres; points nearer than this are one object.
     min_area : float

@@ -1,4 +1,4 @@
-"""The table's plane in a cloud: RANSAC for the right one of many, least squares for the right place."""
+"""The table's plane in a cloud: RANSAC finds it, least squares refines it."""
 
 from dataclasses import dataclass
 
@@ -8,12 +8,12 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 
 NEAR = 0.01
-"""Metres from a plane within which a point speaks for it: about three sigma of a depth camera at 1.2 m."""
+"""Metres from a plane within which a point supports it: about three sigma of a depth camera at 1.2 m."""
 _HYPOTHESES = 400
 _SAMPLE = 4000
 _BATCH = 50
 _LEAST_SHARE = 0.05
-"""A box of points without order has at most a few hundredths of them in any such slab."""
+"""Least share of the points on a plane; unordered points have at most a few hundredths in any such slab."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,18 +82,18 @@ def dominant_plane(
 
 
 def refined(points: NDArray[np.float64], plane: Plane, near: float = NEAR) -> Plane:
-    """The least-squares plane of the points near `plane`, found anew up to five times from its own points."""
-    held = None
+    """The least-squares plane of the points near `plane`, repeated up to five times with the new plane."""
+    near_plane = None
     for _ in range(5):
-        before, held = held, np.abs(plane.height(points)) <= near
-        if before is not None and np.array_equal(before, held):
+        before, near_plane = near_plane, np.abs(plane.height(points)) <= near
+        if before is not None and np.array_equal(before, near_plane):
             return plane  # the same points give the same plane
-        close = points[held]
+        close = points[near_plane]
         if len(close) < 3:
             return plane
         centre = close.mean(axis=0)
         close -= centre
-        # Two arrays: of one array and its own transpose NumPy computes another sum, with other last bits.
+        # A copy: for an array and its own transpose NumPy uses another sum, with other last bits.
         spread = close.T @ close.copy()
         normal = np.linalg.eigh(spread)[1][:, 0]
         if normal @ plane.normal < 0:
@@ -107,7 +107,7 @@ def _hypotheses(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if len(sample) < 3:
         return np.empty((0, 3)), np.empty(0)
-    # Under a known up most triples are of no use, so more are drawn.
+    # With a known up direction most triples are rejected, so more are drawn.
     draws = _HYPOTHESES * (1 if up is None else 10)
     a, b, c = sample[rng.integers(0, len(sample), (3, draws))]
     normals = np.cross(b - a, c - a)

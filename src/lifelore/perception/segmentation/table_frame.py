@@ -31,10 +31,10 @@ def to_scene(
     cloud : PointCloud
         In the sensor's frame. More than two million measured points are thinned to 3 mm voxels first.
     up : "table", "z", or (3,) numbers
-        Where up is: the normal of the table's plane; the frame's own z, which stays as it is; or a vector in
-        the frame of the cloud, of any length.
+        Up direction: the normal of the table's plane; the z axis of the frame, unchanged; or a vector of any
+        length in the frame of the cloud.
     segmentation : SegmentationSettings, optional
-        How an unlabelled cloud is cut into objects; a labelled one keeps its labels.
+        How an unlabelled cloud is segmented; a labelled cloud keeps its labels.
 
     Returns
     -------
@@ -46,8 +46,8 @@ def to_scene(
     Raises
     ------
     InputError
-        No point was measured, the camera stands farther off than any cloud is read (`cloud_scale.FAR`), `up`
-        breaks its rule, or no plane can be found.
+        No point was measured, the camera is beyond `cloud_scale.FAR`, `up` breaks its rule, or no plane can be
+        found.
     """
     _check_camera(cloud.camera)
     cloud = thinned(cloud)
@@ -75,9 +75,9 @@ def _check_camera(camera: NDArray[np.float64] | None) -> None:
 def table_plane(cloud: PointCloud) -> Plane:
     """The table's plane in the frame of the cloud, its normal on the side of the objects.
 
-    Of the points labelled as table where there are any, else of those that no label claims. The normal
-    points to where the labelled objects are; without labels to where three quarters of what is seen over the
-    plane's outline stand, else to the camera.
+    Found among the points labelled as table, if any, else among the unlabelled points. The normal points to the
+    labelled objects; without labels to the side with three quarters of the points over the plane's outline, else
+    to the camera.
 
     Raises
     ------
@@ -105,7 +105,7 @@ def _table_plane(
 
 
 def _table_candidates(points: NDArray[np.float64], labels: NDArray[np.int64] | None) -> NDArray[np.float64]:
-    """The points the table's plane is sought among: its own, else those of no object."""
+    """Candidate points of the table's plane: those labelled as table, else the unlabelled."""
     if labels is None or not labels.any():
         return points
     for mask in (labels == TABLE, labels == UNLABELLED):
@@ -117,7 +117,7 @@ def _table_candidates(points: NDArray[np.float64], labels: NDArray[np.int64] | N
 def _seen_side(points: NDArray[np.float64], plane: Plane) -> float:
     """+1, -1 or 0: the side of the plane where three quarters of the points over its outline stand.
 
-    A table hides what is beyond it, so whatever is seen over its outline stands on the camera's side.
+    A table hides the points behind it, so points over its outline are on the camera's side.
     """
     flat = points @ upright(plane.normal)[:2].T
     height = plane.height(points)
@@ -148,7 +148,7 @@ def _pose(
 
 
 def check_up(up: Up) -> None:
-    """Refuse what is neither "table" nor "z" nor a direction."""
+    """Raise InputError unless `up` is "table", "z" or a direction."""
     if not isinstance(up, str):
         _unit(up)
     elif up not in ("table", "z"):
@@ -169,7 +169,7 @@ def _unit(up: ArrayLike) -> NDArray[np.float64]:
 def _table_height(
     heights: NDArray[np.float64], points: NDArray[np.float64], normal: NDArray[np.float64], labels: NDArray | None
 ) -> float | None:
-    """Height of the table along a known up: of its labels, else of a broad level plane with little below it."""
+    """Height of the table along a known up: of its labels, else of a broad level plane with few points below."""
     if labels is not None and (labels == TABLE).any():
         return float(np.median(heights[labels == TABLE]))
     free = np.ones(len(points), bool) if labels is None else labels < TABLE

@@ -1,4 +1,4 @@
-"""Sums of Gaussians at many points, by one expansion a cell and a bound on what it leaves out.
+"""Sums of Gaussians at many points, by one Taylor expansion per cell, with an error bound.
 
 With w = source - centre and u = point - centre, lengths in units of the kernel's,
 
@@ -15,16 +15,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.compiled.jit import kernel
-from lifelore.perception.separation.gaussian import Array, fall
+from lifelore.perception.separation.gaussian import Array, exp_of_negative
 
 WIDEST = 0.5
 """Greatest radius of a cell for which the bound holds, in lengths of the kernel."""
 _FAR_SQUARED = 80.0
 """Sources beyond this squared distance from a cell's centre count as zero, and as `_FAR_LEFT` in the bound."""
 _FAR_LEFT = 1e-15
-"""More than such a source is worth anywhere in a cell: e^{-(√80 - ½)²/2} < 4.3e-16."""
+"""Upper bound of such a source's contribution in a cell: e^{-(√80 - ½)²/2} < 4.3e-16."""
 _BLOCK = 128
-"""Sources or points that go through the same arithmetic together: short enough to stay in the fastest cache."""
+"""Sources or points in one loop: few enough to stay in the fastest cache."""
 
 
 class Cells(NamedTuple):
@@ -40,7 +40,7 @@ class Cells(NamedTuple):
     radius: Array
 
 
-def cells_of(points: Array, starts: NDArray[np.int64]) -> Cells:
+def far_field_cells(points: Array, starts: NDArray[np.int64]) -> Cells:
     """The cells of points (3, n) that are sorted by cell; every cell holds a point."""
     low, high = (extreme.reduceat(points, starts[:-1], axis=1) for extreme in (np.minimum, np.maximum))
     return Cells(starts, (low + high) / 2, np.sqrt(((high - low) ** 2).sum(axis=0)) / 2)
@@ -76,7 +76,7 @@ def far_field(points: Array, cells: Cells, sources: Array, weights: Array, order
 
 @kernel
 def _expand(cells, sources, weights, order, inverse, coefficients, left):
-    """Write each cell's `coefficients` (c, K), and add to `left` (c,) what they leave out at the cell's radius."""
+    """Write each cell's `coefficients` (c, K), and add to `left` (c,) the error bound at the cell's radius."""
     x, y, z, reach = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
     by_x, by_y, by_z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
     for cell in range(cells.radius.shape[0]):
@@ -87,7 +87,7 @@ def _expand(cells, sources, weights, order, inverse, coefficients, left):
                 y[i] = sources[1, at + i] - cells.centre[1, cell]
                 z[i] = sources[2, at + i] - cells.centre[2, cell]
                 squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
-                near = weights[at + i] * fall(-0.5 * squared)
+                near = weights[at + i] * exp_of_negative(-0.5 * squared)
                 by_x[i] = near if squared <= _FAR_SQUARED else 0.0
                 reach[i] = np.sqrt(squared) * cells.radius[cell]
                 portion = reach[i] / (order + 2)
@@ -119,7 +119,7 @@ def _expand(cells, sources, weights, order, inverse, coefficients, left):
 
 @kernel
 def _total(terms, m):
-    """The sum of the first `m` terms, m a multiple of 4, in four strands that do not wait for each other."""
+    """The sum of the first `m` terms, m a multiple of 4, in four independent sums."""
     s0 = s1 = s2 = s3 = 0.0
     for i in range(0, m, 4):
         s0 += terms[i]
@@ -143,7 +143,7 @@ def _evaluate(points, cells, coefficients, order, left, sums, error):
                 y[i] = points[1, at + i] - cells.centre[1, cell]
                 z[i] = points[2, at + i] - cells.centre[2, cell]
                 squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
-                sums[at + i] = fall(-0.5 * squared)
+                sums[at + i] = exp_of_negative(-0.5 * squared)
                 share[i] = np.sqrt(squared) * outwards
                 error[at + i] = left[cell]
             for i in range(m):

@@ -1,6 +1,6 @@
-"""The Gaussian kernel k(x, z) = exp(-|x - z|²/2) in lengths of the kernel, written so that compilers use vectors.
+"""The Gaussian kernel k(x, z) = exp(-|x - z|²/2) in lengths of the kernel, written for vectorised machine code.
 
-`math.exp` keeps a loop scalar; the polynomial here lets eight points go at once and gives the same bits in plain
+`math.exp` keeps a loop scalar; this polynomial processes eight points at once and gives the same bits in plain
 Python. Points are (3, n) arrays already divided by the kernel's length.
 """
 
@@ -20,7 +20,7 @@ _LEAST = -700.0
 
 
 @inlined
-def fall(x):
+def exp_of_negative(x):
     """exp(x) for x ≤ 0, to 1e-14 relative: powers of two split off, the rest by Taylor to order 11."""
     x = x if x > _LEAST else _LEAST
     shifted = np.float64(x * _LOG2_E + _TO_EXPONENT)
@@ -47,12 +47,12 @@ def kernel_row(points: Array, i: int, row: Array) -> None:
     xi, yi, zi = x[i], y[i], z[i]
     for j in range(row.shape[0]):
         dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
-        row[j] = fall(-0.5 * (dx * dx + dy * dy + dz * dz))
+        row[j] = exp_of_negative(-0.5 * (dx * dx + dy * dy + dz * dz))
 
 
 @kernel
 def kernel_sums(points: Array, sources: Array, weights: Array, which: NDArray[np.int64], sums: Array) -> None:
-    """Write Σ_j weights_j k(points_i, sources_j) into sums[i] for every i in `which`, to the last bit of the sum.
+    """Write Σ_j weights_j k(points_i, sources_j) into sums[i] for every i in `which`.
 
     points : (3, n), sources : (3, k), weights : (k,), sums : (n,)
     """
@@ -63,7 +63,7 @@ def kernel_sums(points: Array, sources: Array, weights: Array, which: NDArray[np
         xi, yi, zi = points[0, i], points[1, i], points[2, i]
         for j in range(n_sources):
             dx, dy, dz = x[j] - xi, y[j] - yi, z[j] - zi
-            terms[j] = weights[j] * fall(-0.5 * (dx * dx + dy * dy + dz * dz))
+            terms[j] = weights[j] * exp_of_negative(-0.5 * (dx * dx + dy * dy + dz * dz))
         a = b = c = d = 0.0
         for j in range(0, n_sources, 4):
             a += terms[j]

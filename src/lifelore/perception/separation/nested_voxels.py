@@ -1,4 +1,4 @@
-"""A pair of clouds at several resolutions: each voxel stands for its points and carries their joint cost."""
+"""Voxel pyramid of a pair of clouds: each voxel represents its points, with their summed cost."""
 
 from typing import NamedTuple
 
@@ -13,9 +13,9 @@ FINEST = 1 / 32
 DOUBLINGS = 4
 """From the smallest voxel to the cell of the far field: half a length wide."""
 COARSEST = 3
-"""Doublings of the coarsest level: a quarter of a length, wider voxels say too little about the points in them."""
+"""Doublings of the coarsest level: a quarter of a length, wider voxels describe their points too poorly."""
 _GROWTH = 3.0
-"""A level is worth its time if it has so many times fewer voxels than the one below it."""
+"""Least ratio of voxels between two levels; levels with more voxels are left out."""
 _BITS = 17
 """Most bits of a voxel's index along an axis: three of them, the side and the cell's digits fit into 64."""
 
@@ -38,7 +38,7 @@ class Level(NamedTuple):
     edge: float
 
 
-class Nested(NamedTuple):
+class VoxelPyramid(NamedTuple):
     """All levels, coarsest first, the last one being the points sorted by voxel.
 
     order : (n,) int64, the sorted points' places in the input
@@ -50,7 +50,7 @@ class Nested(NamedTuple):
     cell_starts: NDArray[np.int64]
 
 
-def nested(points: Array, side: Array, cost: float) -> Nested:
+def voxel_pyramid(points: Array, side: Array, cost: float) -> VoxelPyramid:
     """Sort points (3, n), given in lengths of the kernel, into voxels, and sum the voxels up."""
     low = points.min(axis=1)
     span = float((points.max(axis=1) - low).max())
@@ -68,7 +68,7 @@ def nested(points: Array, side: Array, cost: float) -> Nested:
         if len(begins) * _GROWTH <= len(finer):
             levels.insert(0, _level(points, side, cost, begins, finer, edge * 2**doubling))
             finer = begins
-    return Nested(levels, order, np.append(_begins(key >> (3 * DOUBLINGS)), n))
+    return VoxelPyramid(levels, order, np.append(_begins(key >> (3 * DOUBLINGS)), n))
 
 
 @kernel
@@ -98,7 +98,7 @@ def _sorted(key: NDArray[np.int64], bits: int) -> tuple[NDArray[np.int64], NDArr
 
 
 def _begins(key: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Where each run of equal keys begins."""
+    """First index of each run of equal keys."""
     return np.append(0, np.flatnonzero(key[1:] != key[:-1]) + 1)
 
 

@@ -2,7 +2,7 @@
 
     f(x) = Σ y_i α_i k(x_i, x) + b,    k(x, z) = exp(-|x - z|² / 2l²),    0 ≤ α_i ≤ C
 
-Support vectors lie where the clouds face one another; they are the raw material of contact points.
+Support vectors lie where the clouds face one another; contact points are clusters of them.
 Thesis: §2.3.4, with a soft margin instead of its hard one.
 """
 
@@ -13,20 +13,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.perception.separation.gaussian import Array, kernel_sums
-from lifelore.perception.separation.nested_voxels import nested
+from lifelore.perception.separation.nested_voxels import voxel_pyramid
 from lifelore.perception.separation.separator_descent import descend
 
 MOST_STEPS = 500_000
-"""Steps of the optimiser at most: seconds; soft margins need hundreds to thousands."""
+"""Largest number of optimiser steps, some seconds; soft margins need hundreds to thousands."""
 MOST_WORK = 3e9
-"""Evaluations of a Gaussian at most: four seconds."""
+"""Largest number of evaluations of a Gaussian, four seconds."""
 _FURTHEST = 1e12
-"""Beyond, squares of distances lose the distances between neighbours."""
+"""Largest distance in kernel lengths; beyond it squares lose the distances between neighbours."""
 
 
 @dataclass(frozen=True, eq=False)
 class Separator:
-    """The surface between two clouds, and the points that carry it.
+    """The separating surface of two clouds and its support vectors.
 
     Parameters
     ----------
@@ -41,8 +41,8 @@ class Separator:
     length : float
         The kernel's length l, metres.
     max_violation : float
-        How far the optimality (Karush-Kuhn-Tucker) conditions are from being met, over all points; ≥ 0. Where
-        `max_work` ran out, an upper bound; infinite where nothing is known.
+        Largest violation of the optimality (Karush-Kuhn-Tucker) conditions over all points, ≥ 0. Where `max_work`
+        ran out, an upper bound; infinite where it was never evaluated.
     """
 
     points_first: Array
@@ -101,14 +101,14 @@ def separate(
     length : float
         The kernel's length, metres, > 0.
     cost : float
-        C, the most weight one point can carry, > 0.
+        C, the largest weight of a point, > 0.
     tolerance : float
         Greatest violation of the optimality conditions, > 0; 1e-3 is libsvm's default.
     max_steps : int
-        Steps after which to stop, whatever the violation then is; it is reported.
+        Steps after which to stop; the violation is reported.
     max_work : float
-        Evaluations of the kernel after which to stop likewise, > 0. Clouds that lie *in* each other have no
-        surface between them, and could be worked on for minutes.
+        Kernel evaluations after which to stop, > 0. Clouds that lie *in* each other have no surface between them
+        and would take minutes.
 
     Raises
     ------
@@ -136,7 +136,7 @@ def separate(
     points = np.concatenate([a, b])
     n, n_first = len(points), len(a)
     side = np.where(np.arange(n) < n_first, 1.0, -1.0)
-    levels = nested(_scaled(points, length), side, cost)
+    levels = voxel_pyramid(_scaled(points, length), side, cost)
     dual, violation = descend(levels, tolerance, max_steps, max_work)
     beta = np.empty(n)
     beta[levels.order] = dual.beta

@@ -1,29 +1,32 @@
-"""From the coarsest voxels to the points: each level's solution starts the next, which working sets finish."""
+"""Coarse-to-fine solution of the separator's dual: each level starts from the coarser solution and uses working
+sets."""
 
 import numpy as np
 
-from lifelore.perception.separation.far_field import WIDEST, Cells, cells_of
+from lifelore.perception.separation.far_field import WIDEST, Cells, far_field_cells
 from lifelore.perception.separation.gaussian import Array
-from lifelore.perception.separation.nested_voxels import Level, Nested
+from lifelore.perception.separation.nested_voxels import Level, VoxelPyramid
 from lifelore.perception.separation.separator_dual import Dual, Indices
 from lifelore.perception.separation.separator_smo import ascend
 
 MOST_WORKING = 2000
-"""Points in a working set at most: bounds the memory, 8 bytes times its square."""
+"""Largest working set in points: its memory is 8 bytes times its square."""
 MOST_ROUNDS = 100
-"""Working sets a level at most."""
+"""Largest number of working sets per level; more cost time, not accuracy."""
 COARSE_TOLERANCE = 1e-2
-"""Violation allowed on a coarse level: finer would be lost in the step to the next."""
+"""Violation allowed on a coarse level: the step to the next level loses more precision."""
 BAND = 0.25
 """Points within this share of the violation from violating join the working set beforehand."""
 STEEP = 8.0
-"""How fast f may change with distance, per length of the kernel, when a level's members are looked through."""
+"""Assumed bound on the change of f per kernel length, when a level's members are selected."""
 GUESS_BAND = 0.1
-"""How far a level's f may be from the next one's, when its first working set is chosen. Neither is relied on."""
+"""Assumed difference of f between two levels, for the first working set. Results depend on neither bound."""
 
 
-def descend(nested: Nested, tolerance: float, max_steps: int, max_work: float = np.inf) -> tuple[Dual, float]:
-    """Solve level after level; the points' dual and its violation.
+def descend(
+    nested: VoxelPyramid, tolerance: float, max_steps: int, max_work: float = np.inf
+) -> tuple[Dual, float]:
+    """Solve all levels, coarsest first; returns the points' dual and its violation.
 
     Parameters
     ----------
@@ -31,10 +34,10 @@ def descend(nested: Nested, tolerance: float, max_steps: int, max_work: float = 
     tolerance : float
         Violation at which to stop.
     max_steps : int
-        Steps of the optimiser over all levels, after which to stop whatever the violation.
+        Optimiser steps over all levels, after which to stop.
     max_work : float
-        Evaluations of a Gaussian after which to stop: each coarser voxel's weight is then shared out evenly among
-        the points in it, and the violation reported is a bound, infinite where it was never evaluated.
+        Evaluations of a Gaussian after which to stop: each coarser voxel's weight is then divided evenly among its
+        points, and the reported violation is a bound, infinite where it was never evaluated.
     """
     dual, violation = None, np.inf
     for level in nested.levels:
@@ -52,12 +55,12 @@ def descend(nested: Nested, tolerance: float, max_steps: int, max_work: float = 
 
 
 def _cells(level: Level, starts: Indices) -> Cells | None:
-    cells = cells_of(level.points, starts)
+    cells = far_field_cells(level.points, starts)
     return cells if cells.radius.max() <= WIDEST else None
 
 
 def _optimise(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tuple[float, int]:
-    """Working set after working set, from a first one; the violation at the end and the steps left."""
+    """Optimise over working sets, starting with `working`; returns the violation and the remaining steps."""
     if len(working) and dual.affords(len(working)):
         changed, before, steps = _step(dual, working, tolerance, max_steps)
         max_steps -= steps
@@ -93,7 +96,7 @@ def _step(dual: Dual, working: Indices, tolerance: float, max_steps: int) -> tup
 
 
 def _working_set(dual: Dual, most: float, least: float) -> Indices:
-    """Free points, violators and those about to be, ascending; the worst of either end if there are too many."""
+    """Free points, violators and near violators, ascending; the worst of either end if there are too many."""
     free = dual.free()
     bias = float(dual.slope[free].mean()) if len(free) else (most + least) / 2
     chosen = _violating(dual, bias, dual.error + BAND * (most - least))
@@ -115,16 +118,16 @@ def _violating(dual: Dual, bias: float, band: Array | float) -> Indices:
 
 
 def _thinned(side: Array) -> Indices:
-    """Every point, or an even choice of either side's."""
+    """All points, or an even subset of each side."""
     parts = [np.flatnonzero(side == sign) for sign in (1, -1)]
     most = MOST_WORKING // 2
     return np.concatenate([p[np.linspace(0, len(p) - 1, min(len(p), most)).astype(np.int64)] for p in parts])
 
 
 def _refined(coarse: Dual, level: Level, last: bool) -> tuple[Dual, Indices]:
-    """The next level's dual with the coarse one's weights, and whom to look at first.
+    """The next level's dual with the coarse level's weights, and its first working set.
 
-    A free voxel's weight goes to its members deepest in the margin, as much as each may carry.
+    A free voxel's weight goes to its members deepest in the margin, up to their caps.
     """
     starts, bias = coarse.level.starts, coarse.bias()
     counts = np.diff(starts)

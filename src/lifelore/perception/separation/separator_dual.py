@@ -1,7 +1,7 @@
-"""The dual of one level, kept up to date: multipliers, and slopes that are exact or known within a bound.
+"""The dual of one level: multipliers, and slopes that are exact or within a known error.
 
-Notation as in `separator_smo`: β = yα, slope r = y - Kβ. Whatever a decision hangs on (the slopes of a working
-set, the extremes, the bias) is evaluated exactly first.
+Notation as in `separator_smo`: β = yα, slope r = y - Kβ. Slopes of a working set, extremes and the bias are
+evaluated exactly before they are used.
 """
 
 from dataclasses import dataclass, field
@@ -33,12 +33,12 @@ class Dual:
     beta : (m,) float64
         Σβ = 0 and lower ≤ β ≤ upper.
     scope : (k,) int64 or None
-        The points that are looked at, ascending; the others keep the slope they are given. None: all.
+        Points whose slopes are computed, ascending; others keep a given slope. None: all.
     cells : Cells or None
-        Far-field cells of the level's points, if all are looked at; None: every sum is exact.
+        Far-field cells of the level's points, if all slopes are computed; None: every sum is exact.
     work, max_work : float
-        Evaluations of a Gaussian so far, and how many there may be. Once they are spent nothing is settled any
-        more: slopes stay within their errors.
+        Evaluations of a Gaussian so far, and their limit. At the limit slopes are no longer evaluated and stay
+        within their errors.
 
     Attributes
     ----------
@@ -70,33 +70,33 @@ class Dual:
         return self.work >= self.max_work
 
     def affords(self, n_points: int) -> bool:
-        """Whether the work that is left pays for the sums of all support vectors at so many points."""
+        """Whether the remaining work allows the sums of all support vectors at `n_points` points."""
         return self.work + n_points * float(np.count_nonzero(self.beta)) <= self.max_work
 
     def steps_left(self, n_points: int) -> float:
-        """How many steps over so many points half the work left pays for; the other half is for their effect."""
+        """Steps over `n_points` points that half of the remaining work allows; the rest updates the slopes."""
         each = (self.max_work - self.work) / (2 * n_points)
         return max(each / (_PER_STEP + 2), (each - n_points) / _PER_STEP, 1.0)
 
     def count_steps(self, n_steps: int, n_points: int) -> None:
-        """Add the work of so many steps over so many points: no row of the kernel is computed twice."""
+        """Add the work of `n_steps` steps over `n_points` points; no kernel row is computed twice."""
         self.work += (_PER_STEP * n_steps + min(2 * n_steps, n_points)) * n_points
 
     def evaluate(self) -> None:
-        """All slopes from all multipliers; those already exact stay so. With too little work left, nothing."""
+        """Compute all slopes; exact slopes stay. Does nothing if too little work remains."""
         support = np.flatnonzero(self.beta)
         if self.work + self._cost(len(support)) > self.max_work:
             self.work = max(self.work, self.max_work)
             return
         exact = self.error == 0
-        kept = self.slope[exact]
+        exact_slopes = self.slope[exact]
         scope = slice(None) if self.scope is None else self.scope
         self.slope[scope], self.error[scope] = self.level.side[scope], 0.0
         self.pull(support, self.beta[support])
-        self.slope[exact], self.error[exact] = kept, 0.0
+        self.slope[exact], self.error[exact] = exact_slopes, 0.0
 
     def pull(self, which: Indices, weights: Array) -> None:
-        """Take the sums of Gaussians of `weights` at the points `which` off all slopes."""
+        """Subtract from all slopes the sums of Gaussians at the points `which` with `weights`."""
         points = self.level.points
         n, k = points.shape[1], len(which)
         if k == 0:
@@ -116,12 +116,12 @@ class Dual:
         return len(self.cells.radius) * n_sources * _PER_CELL + self.level.points.shape[1] * _PER_POINT
 
     def _cost(self, n_sources: int) -> float:
-        """Of the sums of so many sources at all points that are looked at."""
+        """Work of the sums of `n_sources` sources at all points in scope."""
         n_points = self.level.points.shape[1] if self.scope is None else len(self.scope)
         return min(self._far_cost(n_sources), n_points * n_sources)
 
     def settle(self, which: Indices) -> None:
-        """Evaluate the slopes of `which` exactly, where they are not and work is left."""
+        """Evaluate the slopes of `which` exactly, where work remains."""
         which = which[self.error[which] > 0]
         if len(which) and not self.affords(len(which)):
             self.work = max(self.work, self.max_work)
@@ -141,7 +141,7 @@ class Dual:
     def extremes(self, tolerance: float) -> tuple[float, float]:
         """max{r : β < upper} and min{r : β > lower}: exact if within `tolerance`, else possibly too close.
 
-        With the work spent: as far apart as the errors allow.
+        Without remaining work: as far apart as the errors allow.
         """
         rising, falling = np.flatnonzero(self.beta < self.upper), np.flatnonzero(self.beta > self.lower)
         if len(rising) == 0 or len(falling) == 0:
@@ -163,7 +163,7 @@ class Dual:
         return np.flatnonzero((self.beta > self.lower) & (self.beta < self.upper))
 
     def bias(self) -> float:
-        """The mean slope of free points, which at an optimum all have the same; without any, the middle."""
+        """The mean slope of free points, equal at an optimum; without any, the middle of the extremes."""
         free = self.free()
         if len(free):
             self.settle(free)

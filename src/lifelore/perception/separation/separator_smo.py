@@ -10,16 +10,17 @@ from lifelore.core.compiled.jit import kernel
 from lifelore.perception.separation.gaussian import Array, kernel_row
 
 _LEAST_CURVATURE = 1e-12
-"""Two points at one place have none; libsvm's τ."""
+"""Least curvature, for two points at one position; libsvm's τ."""
 MOST_KEPT = 2**26
-"""Numbers of the kernel matrix kept at most, half a gigabyte; beyond that rows are computed anew."""
+"""Largest number of stored kernel values, half a gigabyte; beyond it rows are computed again."""
 
 
 @kernel
 def ascend(
     points: Array, lower: Array, upper: Array, beta: Array, slope: Array, tolerance: float, max_steps: int
 ) -> int:
-    """Change `beta` and its `slope` in place until the violation is below `tolerance`; the steps taken.
+    """Change `beta` and its `slope` in place until the violation is below `tolerance`; returns the number of
+    steps.
 
     points : (3, m), all others (m,); rows of the kernel matrix are computed when first needed.
     """
@@ -27,7 +28,7 @@ def ascend(
     room = max(2, min(m, MOST_KEPT // m))
     rows = np.empty((room, m))
     place = np.full(m, -1)
-    kept = 0
+    n_rows = 0
     for step in range(max_steps):
         i, most, least = 0, -np.inf, np.inf
         for k in range(m):
@@ -37,13 +38,13 @@ def ascend(
                 least = slope[k]
         if most - least < tolerance:
             return step
-        if room < m and kept + 2 > room:
+        if room < m and n_rows + 2 > room:
             place[:] = -1
-            kept = 0
+            n_rows = 0
         if place[i] < 0:
-            kernel_row(points, i, rows[kept])
-            place[i] = kept
-            kept += 1
+            kernel_row(points, i, rows[n_rows])
+            place[i] = n_rows
+            n_rows += 1
         row_i = rows[place[i]]
         j, best = 0, -1.0
         for k in range(m):
@@ -53,9 +54,9 @@ def ascend(
                 if gain > best:
                     j, best = k, gain
         if place[j] < 0:
-            kernel_row(points, j, rows[kept])
-            place[j] = kept
-            kept += 1
+            kernel_row(points, j, rows[n_rows])
+            place[j] = n_rows
+            n_rows += 1
         row_j = rows[place[j]]
         move = (most - slope[j]) / max(2.0 - 2.0 * row_i[j], _LEAST_CURVATURE)
         room_i, room_j = upper[i] - beta[i], beta[j] - lower[j]

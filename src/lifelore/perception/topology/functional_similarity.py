@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.contacts.contact_point import ContactPoint
+from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.scene import Scene
 
 STEEP = np.sqrt(0.5)
@@ -54,7 +54,7 @@ def role(scene: Scene, label: int) -> Counter:
     InputError
         The scene has no such object; the table is one where something bears on it.
     """
-    scene = scene.bearing
+    scene = scene.without_unrelated_contacts
     if label not in scene.networks:
         raise InputError(f"object must be one of {sorted(scene.networks)}, got {label}")
     network = scene.networks[label]

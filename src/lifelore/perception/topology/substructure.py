@@ -10,7 +10,8 @@ correspond. Two readings of "the same network":
                general part of the tree of more nodes (errata E15): an object touched once more, in the middle,
                can lose the edge that the first reading asks for. Here its skeleton stays part of itself.
 
-Contact points between mere neighbours (*none*) count like others; `Scene.bearing` leaves them out.
+Contact points between unrelated neighbours (*none*) count like others; `Scene.without_unrelated_contacts` leaves
+them out.
 
 Searched by clingo with a bound on conflicts: the problem is NP-complete.
 

@@ -1,4 +1,4 @@
-"""`TreeClassifier`: a scikit-learn estimator that trains extremely randomised trees and keeps them as arrays."""
+"""`TreeClassifier`: a scikit-learn estimator of extremely randomised trees, stored as arrays."""
 
 from typing import Any, Self
 
@@ -23,7 +23,7 @@ class TreeClassifier(ClassifierMixin, BaseEstimator):
     feature_share : float or "sqrt"
         Share of the columns tried at each split.
     balanced : bool
-        Weigh classes by the inverse of their frequency.
+        Weight classes by the inverse of their frequency.
     random_state : int, optional
     """
 

@@ -1,7 +1,6 @@
-"""`TreeEnsemble`: decision trees as flat arrays, with a prediction of their own; scikit-learn only trains them.
+"""`TreeEnsemble`: decision trees as flat arrays that NumPy alone can predict with; scikit-learn trains them.
 
-So a model is a handful of arrays (no pickle), and asking it needs NumPy alone: a command starts without the 0.7 s
-that importing scikit-learn takes.
+A model is a few arrays without pickle, and a command starts without the 0.7 s of importing scikit-learn.
 """
 
 from collections.abc import Mapping
@@ -15,9 +14,9 @@ from lifelore.core.errors import InputError
 
 LEAF = -1
 MOST_TREES, MOST_STEPS = 10_000, 1000
-"""More trees, or longer ways from a root to a leaf, are refused: a file must not keep one waiting."""
+"""Largest number of trees, and of steps from root to leaf, in a file: they bound the time of a prediction."""
 CHUNK = 4096
-"""Rows judged at once: bounds the memory at CHUNK × trees × classes numbers."""
+"""Rows per prediction step; the memory is CHUNK × trees × classes numbers."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,14 +28,14 @@ class TreeEnsemble:
     roots : (n_trees,) int32
         Node at which each tree begins.
     feature : (n_nodes,) int16
-        Column that a node asks for, `LEAF` at a leaf.
+        Column that a node compares, `LEAF` at a leaf.
     threshold : (n_nodes,) float32
         Rows with ``x <= threshold`` go left.
     left, right : (n_nodes,) int32
     leaf : (n_nodes,) int32
-        Row of `shares` that a leaf answers with; 0 at inner nodes.
+        Row of `shares` of a leaf; 0 at inner nodes.
     shares : (n_leaf_answers, n_classes) float32
-        Each row sums to 1; equal answers are kept once.
+        Each row sums to 1; equal rows are stored once.
     n_features : int
     depth : int
         Steps that lead from any root to a leaf.
@@ -81,11 +80,11 @@ class TreeEnsemble:
 
     @property
     def n_classes(self) -> int:
-        """Classes that it tells apart."""
+        """Number of classes."""
         return self.shares.shape[1]
 
     def predict_proba(self, rows: NDArray[np.float64]) -> NDArray[np.float64]:
-        """Mean of the trees' answers, ``(n, n_classes)``, rows sum to 1.
+        """Mean share over the trees, ``(n, n_classes)``, rows sum to 1.
 
         Parameters
         ----------
@@ -110,12 +109,12 @@ class TreeEnsemble:
 
     @classmethod
     def from_arrays(cls, arrays: Mapping[str, NDArray[Any]]) -> "TreeEnsemble":
-        """From what `arrays` gave.
+        """From the result of `arrays`.
 
         Raises
         ------
         InputError
-            Something is missing, or the numbers cannot be trees.
+            An array is missing, or the numbers cannot be trees.
         """
         missing = [name for name in cls.__dataclass_fields__ if name not in arrays]
         if missing:

@@ -1,4 +1,4 @@
-"""Training of `TreeRelations`: rows in both orders, sureness set on scenes that were held out."""
+"""Training of `TreeRelations`: rows in both orders, temperature calibrated on held-out scenes."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -10,8 +10,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.relations import PairLabel
 from lifelore.perception.pairs import gap_rule
-from lifelore.perception.pairs.directed_label import mirrored
-from lifelore.perception.pairs.pair_class import pair_class
+from lifelore.perception.pairs.directed_label import mirrored, pair_class
 from lifelore.perception.pairs.pair_features import GEOMETRY_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.trees.tree_ensemble import MOST_TREES
@@ -19,22 +18,23 @@ from lifelore.perception.trees.tree_relations import (
     Shares,
     TreeRelations,
     Vocabulary,
-    both_orders,
     carried_columns,
     inner_symmetric,
+    mean_of_both_orders,
     object_shares,
     table_rows,
 )
 
 FOLDS = 5
+"""Folds of the scenes for calibration; more cost time."""
 FEW_ROWS = 40
-"""Below it leaves may hold a single row: a handful of examples should at least be told apart."""
+"""Number of rows below which leaves may hold a single row, so that few examples can be separated."""
 TEMPERATURES = np.geomspace(0.3, 2.0, 39)
 
 
 @dataclass(frozen=True)
 class TreeSettings:
-    """How trees are grown: see `TreeClassifier`.
+    """Settings of the trees, see `TreeClassifier`.
 
     Parameters
     ----------
@@ -75,8 +75,8 @@ class TreeSettings:
 
 
 @dataclass(frozen=True, eq=False)
-class Rows:
-    """Training rows with their classes and the scene each comes from."""
+class TrainingRows:
+    """Training rows, their classes, and the scene of each row."""
 
     matrix: NDArray[np.float64]
     classes: NDArray[np.str_]
@@ -86,52 +86,54 @@ class Rows:
 def fit_trees(
     scenes: Sequence[ScenePairs],
     truths: Sequence[Sequence[PairLabel]],
-    words: Vocabulary,
+    vocabulary: Vocabulary,
     columns: Sequence[str],
     settings: TreeSettings,
     least_confidence: int,
 ) -> tuple[TreeRelations | None, TreeRelations | None]:
     """Models for pairs of objects and for pairs with the table; None where the truths have no such pair."""
-    rows = _object_rows(scenes, truths, words, columns, least_confidence)
+    rows = _object_rows(scenes, truths, vocabulary, columns, least_confidence)
     objects, seen = None, [{} for _ in scenes]
     if len(rows.scene):
-        objects = grown(rows, columns, settings, settings.n_trees)
+        objects = grow_trees(rows, columns, settings, settings.n_trees)
         held_out = _held_out(rows, columns, settings, len(scenes))
-        objects = _calibrated(objects, held_out, rows, inner_symmetric(words.symmetric))
+        objects = _calibrated(objects, held_out, rows, inner_symmetric(vocabulary.symmetric))
         seen = [
-            object_shares(model or objects, scene, words.symmetric, words.adjacent_gap)
+            object_shares(model or objects, scene, vocabulary.symmetric, vocabulary.adjacent_gap)
             for model, scene in zip(held_out, scenes, strict=True)
         ]
-    return objects, _fit_table(scenes, truths, words, settings, least_confidence, seen)
+    return objects, _fit_table(scenes, truths, vocabulary, settings, least_confidence, seen)
 
 
 def _object_rows(
     scenes: Sequence[ScenePairs],
     truths: Sequence[Sequence[PairLabel]],
-    words: Vocabulary,
+    vocabulary: Vocabulary,
     columns: Sequence[str],
     least_confidence: int,
-) -> Rows:
-    """Two rows for each labelled pair of objects: as it is, and turned round with its label."""
-    symmetric = inner_symmetric(words.symmetric)
+) -> TrainingRows:
+    """Two rows for each labelled pair of objects: in both orders, each with its class."""
+    symmetric = inner_symmetric(vocabulary.symmetric)
     matrix, classes, origin = [], [], []
     for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
         features = scene.features.columns(columns)
-        for pair, (said, table) in enumerate(
+        for pair, (pair_labels, table) in enumerate(
             zip(scene.labels(truth, least_confidence), scene.with_table, strict=True)
         ):
-            if table or not said:
+            if table or not pair_labels:
                 continue
-            name = pair_class(said, int(scene.features.pairs[2 * pair, 0]), words.symmetric)
-            if words.adjacent_gap is not None:
-                name = gap_rule.inner_label(name, float(scene.features.gaps[2 * pair]), words.adjacent_gap)
+            name = pair_class(pair_labels, int(scene.features.pairs[2 * pair, 0]), vocabulary.symmetric)
+            if vocabulary.adjacent_gap is not None:
+                name = gap_rule.inner_label(name, float(scene.features.gaps[2 * pair]), vocabulary.adjacent_gap)
             matrix += [features[2 * pair], features[2 * pair + 1]]
             classes += [name, mirrored(name, symmetric)]
             origin += [number, number]
-    return Rows(np.array(matrix).reshape(-1, len(columns)), np.array(classes, str), np.array(origin, np.int64))
+    return TrainingRows(
+        np.array(matrix).reshape(-1, len(columns)), np.array(classes, str), np.array(origin, np.int64)
+    )
 
 
-def grown(rows: Rows, columns: Sequence[str], settings: TreeSettings, n_trees: int) -> TreeRelations:
+def grow_trees(rows: TrainingRows, columns: Sequence[str], settings: TreeSettings, n_trees: int) -> TreeRelations:
     """Trees over these rows, not calibrated."""
     from lifelore.perception.trees.tree_classifier import TreeClassifier
 
@@ -142,9 +144,9 @@ def grown(rows: Rows, columns: Sequence[str], settings: TreeSettings, n_trees: i
 
 
 def _held_out(
-    rows: Rows, columns: Sequence[str], settings: TreeSettings, n_scenes: int
+    rows: TrainingRows, columns: Sequence[str], settings: TreeSettings, n_scenes: int
 ) -> list[TreeRelations | None]:
-    """For each scene a model that has not seen it; None where there are too few to hold any out."""
+    """For each scene a model trained without it; None where there are too few scenes."""
     models: list[TreeRelations | None] = [None] * n_scenes
     if n_scenes < 2:
         return models
@@ -152,23 +154,23 @@ def _held_out(
     for fold in range(folds):
         kept = rows.scene % folds != fold
         if kept.any():
-            part = Rows(rows.matrix[kept], rows.classes[kept], rows.scene[kept])
-            model = grown(part, columns, settings, max(settings.n_trees // 2, 1))
+            part = TrainingRows(rows.matrix[kept], rows.classes[kept], rows.scene[kept])
+            model = grow_trees(part, columns, settings, max(settings.n_trees // 2, 1))
             models[fold::folds] = [model] * len(models[fold::folds])
     return models
 
 
 def _calibrated(
-    model: TreeRelations, held_out: Sequence[TreeRelations | None], rows: Rows, symmetric: frozenset[str]
+    model: TreeRelations, held_out: Sequence[TreeRelations | None], rows: TrainingRows, symmetric: frozenset[str]
 ) -> TreeRelations:
-    """The model at the temperature that fits what was held out best."""
+    """The model with the temperature of least log loss on the held-out scenes."""
     right = []
     for number in np.unique(rows.scene):
         one = held_out[number]
         if one is None:
             continue
         mine = rows.scene == number
-        shares = both_orders(one, rows.matrix[mine], symmetric)
+        shares = mean_of_both_orders(one, rows.matrix[mine], symmetric)
         truth = rows.classes[mine][::2]
         for row, name in zip(shares, truth, strict=True):
             right.append((row, one.classes.index(str(name)) if str(name) in one.classes else None))
@@ -182,7 +184,7 @@ def best_temperature(answers: Sequence[tuple[NDArray[np.float64], int]]) -> floa
         return 1.0
     loss = np.zeros(len(TEMPERATURES))
     for row, true in answers:
-        # A truth that no tree voted for would cost infinitely much at any temperature.
+        # A true class without a vote would have infinite loss at any temperature.
         logs = np.log(np.maximum(row, 1e-3))[None] / TEMPERATURES[:, None]
         loss += np.log(np.exp(logs - logs[:, [true]]).sum(axis=1))
     return float(TEMPERATURES[loss.argmin()])
@@ -191,7 +193,7 @@ def best_temperature(answers: Sequence[tuple[NDArray[np.float64], int]]) -> floa
 def _fit_table(
     scenes: Sequence[ScenePairs],
     truths: Sequence[Sequence[PairLabel]],
-    words: Vocabulary,
+    vocabulary: Vocabulary,
     settings: TreeSettings,
     least_confidence: int,
     seen: Sequence[Shares],
@@ -200,15 +202,17 @@ def _fit_table(
     matrix, classes, origin = [], [], []
     for number, (scene, truth) in enumerate(zip(scenes, truths, strict=True)):
         at = np.flatnonzero(scene.with_table)
-        rows = table_rows(scene, seen[number], words.names, words.symmetric, columns)
+        rows = table_rows(scene, seen[number], vocabulary.names, vocabulary.symmetric, columns)
         labels = scene.labels(truth, least_confidence)
         for row, pair in zip(rows, at, strict=True):
             if labels[pair]:
                 matrix.append(row)
-                classes.append(pair_class(labels[pair], int(scene.features.pairs[2 * pair, 0]), words.symmetric))
+                classes.append(
+                    pair_class(labels[pair], int(scene.features.pairs[2 * pair, 0]), vocabulary.symmetric)
+                )
                 origin.append(number)
     if not matrix:
         return None
-    rows = Rows(np.array(matrix), np.array(classes, str), np.array(origin, np.int64))
-    names = (*columns, *carried_columns(words.names, words.symmetric))
-    return grown(rows, names, settings, settings.table_trees)
+    rows = TrainingRows(np.array(matrix), np.array(classes, str), np.array(origin, np.int64))
+    names = (*columns, *carried_columns(vocabulary.names, vocabulary.symmetric))
+    return grow_trees(rows, names, settings, settings.table_trees)

@@ -18,11 +18,10 @@ from threadpoolctl import threadpool_limits
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
 from lifelore.experiments.chapter2.tabletop_pairs import MIX
-from lifelore.perception.relations.relation_classifier import RelationClassifier
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
 
 CAMERAS = ("stereo", "kinect")
@@ -54,7 +53,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         model = shipped_model()
         for k in range(cell["first"], min(cell["first"] + LOT, settings["images"])):
             rng = stream(seed, "image timing", camera, k)
-            cloud = draw_scene(int(rng.integers(2**31)), k, drawn).cloud
+            cloud = sample_scene(int(rng.integers(2**31)), k, drawn).cloud
             if not images:
                 timed_stages(cloud, model)  # compiled and warm
             image = timed_image(cloud, model, settings["repeats"])

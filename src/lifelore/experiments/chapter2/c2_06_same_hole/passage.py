@@ -12,7 +12,7 @@ from scipy import ndimage
 
 from lifelore.core.errors import InputError
 from lifelore.domains.tabletop.pose import Pose
-from lifelore.domains.tabletop.shapes import BALL, BOX, Part, Shape
+from lifelore.domains.tabletop.shapes import BALL, BOX, Shape, ShapePart
 
 GRID = 0.003
 """Metres between sticks, and between places looked at along one."""
@@ -65,7 +65,7 @@ def _inside(points: NDArray[np.float64], shapes: Sequence[Shape], poses: Sequenc
     return within
 
 
-def _inside_part(points: NDArray[np.float64], part: Part) -> NDArray[np.bool_]:
+def _inside_part(points: NDArray[np.float64], part: ShapePart) -> NDArray[np.bool_]:
     if part.kind == BOX:
         return np.asarray((np.abs(points) <= np.array(part.size) + MARGIN).all(axis=1), np.bool_)
     if part.kind == BALL:

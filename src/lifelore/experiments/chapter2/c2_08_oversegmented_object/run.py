@@ -16,7 +16,7 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.tabletop import TabletopScene, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopScene, sample_scene
 from lifelore.experiments.chapter2.cut_objects import cut_object
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
 from lifelore.experiments.chapter2.scene_example import scene_row
@@ -72,7 +72,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def simulated_cuts(seed: int, number: int) -> list[tuple[Row, Scene]]:
     """The cuts of one thing of scene `number`: of those that stand by themselves and can be cut, one by chance."""
     own_seed = int(stream(seed, "over-segmented").integers(2**31))
-    scene = draw_scene(own_seed, number, TabletopSettings(n_objects=(2, 4), shapes="all"))
+    scene = sample_scene(own_seed, number, TabletopSettings(n_objects=(2, 4), shapes="all"))
     rng = stream(seed, "cuts", number)
     for label in rng.permutation(free_standing(scene.truth)).tolist():
         cuts = cuts_of(scene.cloud, label, scene.name, rng, true_outline(scene, label))

@@ -18,13 +18,13 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
-from lifelore.domains.tabletop.tabletop import TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.pair_validation import THRESHOLD
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
 from lifelore.experiments.chapter2.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_points import linked
-from lifelore.perception.contacts.interface import DEFAULT
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
 from lifelore.perception.separation.separator import separate
 
 LOT, REAL_LOT = 4, 4
@@ -50,14 +50,14 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         last = min(cell["first"] + LOT, settings["pairs"])
         drawn = TabletopSettings(arrangement="pair", mix=MIX, shapes="all", camera=settings["camera"])
         own = int(stream(seed, "parted pairs").integers(2**31))
-        scenes = [(s.cloud, s.truth) for s in (draw_scene(own, k, drawn) for k in range(cell["first"], last))]
+        scenes = [(s.cloud, s.truth) for s in (sample_scene(own, k, drawn) for k in range(cell["first"], last))]
     found = [parted(settings, *pair) for cloud, truth in scenes for pair in bearing_pairs(cloud, truth)]
     return {"kind": "real" if "real" in cell else "simulated", "pairs": found}
 
 
 def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[tuple[Points, Points, str]]:
     """Points of a and b, and the relation, of each pair of things that bears one."""
-    thin = voxelised(without_table(cloud), DEFAULT.voxel).cloud
+    thin = voxelised(without_table(cloud), DEFAULT_CONTACT_SETTINGS.voxel).cloud
     for label in truth:
         if TABLE not in (label.a, label.b) and label.relation != NONE and label.confidence >= LEAST_CONFIDENCE:
             yield thin.of(label.a), thin.of(label.b), label.relation
@@ -121,7 +121,7 @@ def counts(a: Points, b: Points, length: float, cost: float) -> list:
     """Support vectors, contacts and contacts of at least 7, each of a and of b; and the separator's violation."""
     found = separate(a, b, length=length, cost=cost)
     sides = [a[found.support_first], b[found.support_second]]
-    sizes = [np.bincount(linked(np.ascontiguousarray(side), DEFAULT.linkage)) for side in sides]
+    sizes = [np.bincount(linked(np.ascontiguousarray(side), DEFAULT_CONTACT_SETTINGS.linkage)) for side in sides]
     contacts = [len(one) for one in sizes]
     strong = [int((one >= THRESHOLD).sum()) for one in sizes]
     return [*map(len, sides), *contacts, *strong, round(found.max_violation, 5)]

@@ -22,7 +22,7 @@ from lifelore.experiments.chapter2.tabletop_pairs import (
     pair_rows,
     without_table,
 )
-from lifelore.perception.contacts.interface import DEFAULT, interfaces
+from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces
 from lifelore.perception.scene import Scene
 
 BLOCK, BALL = 2, 3
@@ -69,8 +69,8 @@ def pictures(worlds: list[TabletopScene], rows: list[Row]) -> list[dict]:
     world = next(world for world in worlds if world.name == rows[at]["scene"])
     found = []
     for words, settings in (
-        ("every contact", loose_settings(DEFAULT.length, DEFAULT.cost)),
-        (f"of at least {THRESHOLD}", DEFAULT),
+        ("every contact", loose_settings(DEFAULT_CONTACT_SETTINGS.length, DEFAULT_CONTACT_SETTINGS.cost)),
+        (f"of at least {THRESHOLD}", DEFAULT_CONTACT_SETTINGS),
     ):
         between = interfaces(without_table(world.cloud), settings)
         n = len(contacts_of(between[0])["a"])

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.demonstrations.competence import competence_by_steps, competence_by_paths
+from lifelore.action.demonstrations.competence import competence_by_paths, competence_by_steps
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.demonstrations.simulated_person import simulated_demonstration
 from lifelore.action.priors.action_prior import ActionPrior

@@ -12,7 +12,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.learning.curve import Curve, new_curve
-from lifelore.core.learning.q_learning import Learner, Rows, Schedule, cumulative, learn, new_learner, uniform_rows
+from lifelore.core.learning.q_learning import (
+    QLearner,
+    Rows,
+    Schedule,
+    cumulative,
+    learn,
+    new_learner,
+    uniform_rows,
+)
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.episode_value import return_moments
 from lifelore.core.planning.episodes import episode_returns
@@ -46,12 +54,12 @@ class Arena:
         world, own = stream(*stream_of, "world"), stream(*stream_of, "policy")
         return episode_returns(self.tables, self.rows.q_row, cumulative(probs), MAX_STEPS, n, world=world, own=own)
 
-    def begin(self, stream_of: tuple) -> Learner:
+    def begin(self, stream_of: tuple) -> QLearner:
         """A Q-learner before its first episode."""
         world, own = stream(*stream_of, "world"), stream(*stream_of, "learner")
         return new_learner(self.task.n_observations, N_ACTIONS, world, own)
 
-    def learn(self, learner: Learner, schedule: Schedule) -> Curve:
+    def learn(self, learner: QLearner, schedule: Schedule) -> Curve:
         """Q-learning for the episodes of `schedule`; a later call with the same learner goes on."""
         n = len(schedule.epsilon)
         curve = new_curve(n)

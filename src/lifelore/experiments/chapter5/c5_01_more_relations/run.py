@@ -21,7 +21,7 @@ from lifelore.domains.tabletop.photograph import FIRST_OBJECT, photograph
 from lifelore.domains.tabletop.physics import Tabletop
 from lifelore.domains.tabletop.pose import Pose, about
 from lifelore.domains.tabletop.shapes import ball, box, cup
-from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, draw_scene
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.arranged_scenes import Placement, arranged, settled, turned
 from lifelore.experiments.chapter2.spoilt_scenes import shipped_model_digest
 from lifelore.experiments.chapter2.tabletop_pairs import without_table
@@ -32,7 +32,7 @@ from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.reasoning.geometric_relations import geometric_relations
 from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_model_file import shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 
 LOT = 8
@@ -96,7 +96,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
     own = int(stream(seed, "word scenes", shapes).integers(2**31))
-    return draw_scene(own, number, TabletopSettings(shapes=shapes))
+    return sample_scene(own, number, TabletopSettings(shapes=shapes))
 
 
 def _asked(seed: int, number: int) -> dict:
@@ -150,7 +150,7 @@ def compound_scene(kind: str, seed: int, number: int) -> TabletopScene:
         return _drawn(seed, "held-out", number)
     if kind == "leaning":
         own = int(stream(seed, "word scenes", kind).integers(2**31))
-        return draw_scene(own, number, TabletopSettings(arrangement="pair", mix={BOTH: 1.0}, shapes="all"))
+        return sample_scene(own, number, TabletopSettings(arrangement="pair", mix={BOTH: 1.0}, shapes="all"))
     return settled(OURS[kind], kind, seed, number) if kind in OURS else arranged(kind, seed, number)
 
 

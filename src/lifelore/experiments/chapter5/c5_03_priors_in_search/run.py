@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import FORMS, ActionPrior
 from lifelore.action.search import bandit
 from lifelore.action.search.depth_first import DepthFirstResult, depth_first, iterative_deepening, preferences
-from lifelore.action.search.tree_search import SearchSettings, search_guidance, play
+from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import best_actions, optimal_q
