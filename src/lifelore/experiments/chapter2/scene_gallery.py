@@ -24,7 +24,7 @@ def draw_gallery(
     Parameters
     ----------
     scenes : sequence of (cloud, document, caption)
-        As of `scene_picture.sample_scene`.
+        As of `scene_picture.draw_scene`.
     columns : int
         At least 1.
     layers : collection of str

@@ -38,7 +38,7 @@ def draw_cut_relations(
     Parameters
     ----------
     scenes : sequence of (cloud, document, caption)
-        As of `scene_picture.sample_scene`.
+        As of `scene_picture.draw_scene`.
     counts : sequence of mapping
         ``{"set", "cut", "said", "cuts"}``: so many cuts of a kind of which that was said.
     """

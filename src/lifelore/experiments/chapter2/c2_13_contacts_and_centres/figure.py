@@ -65,7 +65,7 @@ def draw_contacts_and_centres(
     Parameters
     ----------
     scenes : sequence of (cloud, document, caption)
-        Pictures side by side, as of `scene_picture.sample_scene`; four fill a row.
+        Pictures side by side, as of `scene_picture.draw_scene`; four fill a row.
     counts : mapping of title to mapping of kernel to numbers
         Scenes with 0, 1, 2, … nodes; the last of them, and more.
     panels : mapping of title to mapping of method to measurement

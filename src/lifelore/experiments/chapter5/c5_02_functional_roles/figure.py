@@ -44,7 +44,7 @@ def draw_role_precision(
         ``{"value", "ci95", "n"}``.
     methods : mapping of method to its name in words
     scenes : sequence of (cloud, document, caption)
-        As of `scene_picture.sample_scene`.
+        As of `scene_picture.draw_scene`.
     """
     wide = (_WIDTH - (len(scenes) + 1) * _GUTTER) / max(len(scenes), 1)
     height = _CHART + (0.75 * wide + _CAPTION + _GUTTER if scenes else 0.0)
