@@ -1,4 +1,8 @@
-"""Labels on a picture: each close to its object, none upon another, off the marks where there is room."""
+"""Labels on a picture: each close to its object, none upon another, off the marks where there is room.
+
+Why not adjustText: on five real scenes its labels did not overlap either, but it covered a mark once and took 1.2
+to 8 times as long.
+"""
 
 from collections.abc import Sequence
 

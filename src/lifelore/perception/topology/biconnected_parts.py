@@ -3,6 +3,9 @@
 A spanning forest gives one cycle for each other edge: that edge, and the way between its ends in the forest. Of
 these cycles, those that share an edge belong to one part, and no others are needed to find all parts: a part is a
 connected component of the graph's cycle matroid, which the fundamental circuits of any basis connect.
+
+Why not networkx: it gives the same parts in 26 of 26 real scenes at the same speed, but importing it takes 0.15 to
+0.2 s, more than a tenth of `lifelore perceive`.
 """
 
 from collections.abc import Iterable

@@ -9,6 +9,9 @@ elimination over whole numbers as bit rows): greedy is exact, cycles being a mat
 
 With r independent loops and k roots the work is k shortest-way trees and at most k r loops to try, a few
 microseconds each: 0.03 s for 49 blocks in a square, 1 s for 400. The answer is exact whatever the size.
+
+Why not networkx: `minimum_cycle_basis` finds the same loops in all of 12 networks of 26 real scenes, but takes 19
+ms where this takes 4, and 515 ms against 4.6 on a grid of 7 × 7 nodes.
 """
 
 from collections import Counter

@@ -1,17 +1,23 @@
-"""The three layers of one scene: its cloud, its contact point networks, its predicates (thesis Fig 2.8)."""
+"""The three layers of one scene: its cloud, its contact point networks, its predicates (thesis Fig 2.8).
+
+``python -m lifelore.experiments.pictures.scene_layers`` draws a simulated scene to ``docs/pictures``; it needs the
+extra ``sim``.
+"""
 
 from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.figures.scene_document import TABLE_NAME, Bond, read_document
 from lifelore.figures.scene_picture import draw_scene_on
-from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
+from lifelore.figures.style import GREY, LIGHT, house_style, new_figure, save_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+PATH = Path("docs/pictures/scene_layers.png")
 _PICTURE = (2.95, 2.21)
 _GUTTER, _HEAD, _MOST = 0.12, 0.3, 14
 
@@ -75,3 +81,17 @@ def _summary(cloud: LabelledCloud, document: Mapping, layers: tuple[str, ...]) -
     nodes = sum(len(network.at) for network in scene.networks.values())
     edges = sum(len(network.edges) for network in scene.networks.values())
     return f"{nodes} contact points, {edges} edges within objects, {len(scene.contact_edges)} between"
+
+
+def simulated_scene(seed: int = 3, objects: int = 4) -> tuple[LabelledCloud, dict]:
+    """A simulated cloud of some objects, and its perceived scene as a document."""
+    from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
+    from lifelore.perception.perceived_scene import perceived_scene
+    from lifelore.perception.scene_json import scene_document
+
+    cloud = sample_scene(seed, 0, TabletopSettings(n_objects=(objects, objects), shapes="all")).cloud
+    return cloud, scene_document(perceived_scene(cloud).without_unrelated_contacts)
+
+
+if __name__ == "__main__":
+    print(save_figure(draw_layers(*simulated_scene()), PATH))
