@@ -127,7 +127,7 @@ class Memory:
         return True
 
     def recall(self, kind: str, key: str, version: int) -> Record | None:
-        """The merged record of all robots, slots ascending, with the newest `about`; None if there is none."""
+        """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none."""
         with self._store.reading() as conn:
             return cache.read(conn, (kind, key, version))
 

@@ -133,7 +133,7 @@ class LifeSettings:
     memory : MemorySettings
     agent : str
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
-        `scratch` lives the same tasks for comparison. ``all``: `lore` and every baseline.
+        ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
     tasks : int
         Tasks to live through now, ≥ 1.
     destinations : int

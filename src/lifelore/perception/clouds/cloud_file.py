@@ -41,7 +41,7 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     -------
     PointCloud
         In metres, in the sensor's frame, with at least one finite point; points that were not measured are
-        NaN. `from_parts` is True where the labels were read as parts.
+        NaN. ``from_parts`` is True where the labels were read as parts.
 
     Raises
     ------
@@ -65,7 +65,7 @@ def _decoded(path: Path) -> PointCloud:
 
 
 def _with_objects(cloud: PointCloud, rule: str) -> PointCloud:
-    """The cloud with its labels as object numbers; `from_parts` where labels were merged."""
+    """The cloud with its labels as object numbers; ``from_parts`` where labels were merged."""
     if cloud.labels is None:
         return cloud
     ids = ids_from_labels(cloud.labels, rule)
