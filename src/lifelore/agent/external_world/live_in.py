@@ -54,10 +54,10 @@ def live_in(
 ) -> dict:
     """Live through `tasks` tasks of a world with two agents, ``lore`` and ``scratch``, on the same random streams.
 
-    Both agents learn each task by ε-greedy Q-learning from Q = 0. ``scratch`` explores uniformly. ``lore`` explores
-    by the action prior of its earlier tasks: after each task, the best actions of the learnt policy are counted by
-    context, in the states whose value is positive. If no reward of the world is positive, the agent learns no
-    prior (``n_contexts`` stays 0): add a constant to the rewards.
+    Both agents learn each task by ε-greedy Q-learning from Q = 0. ``scratch`` explores uniformly. ``lore``
+    explores by the action prior of its earlier tasks: after each task, the best actions of the learnt policy are
+    counted by context, in the states whose value is positive. If no reward of the world is positive, the agent
+    learns no prior (``n_contexts`` stays 0): add a constant to the rewards.
 
     Parameters
     ----------
