@@ -9,12 +9,13 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.core.streams import stream
+from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.perception.relations.relation import Relation
 
 BORDER = 0.005
@@ -155,10 +156,42 @@ def share(judged: Sequence[JudgedPair], right: Callable[[JudgedPair], bool]) -> 
     for pair in judged:
         by_scene.setdefault(pair.scene, []).append(right(pair))
     counts = np.array([(sum(answers), len(answers)) for answers in by_scene.values()], float)
-    clustered = ratio_estimate(counts[:, 0], counts[:, 1])
-    n_right, n = counts.sum(axis=0)
-    interval = clustered.ci95 if 0 < n_right < n else None
-    return Estimate(clustered.value, clustered.median, interval or wilson(int(n_right), int(n)), int(n))
+    return share_over_scenes(counts[:, 0], counts[:, 1])
+
+
+def share_over_scenes(
+    right: ArrayLike,
+    asked: ArrayLike,
+    interval_where_all_agree: Callable[[int, int], tuple[float, float]] | None = None,
+) -> Estimate:
+    """Share of right answers, scenes resampled (BCa); `UNMEASURED` of none.
+
+    Parameters
+    ----------
+    right, asked : (n,)
+        Of each scene how many answers are right, and how many there are.
+    interval_where_all_agree : callable, optional
+        ``(right, n)`` → (low, high), where no resample differs; default: Wilson's.
+    """
+    right, asked = np.asarray(right, float), np.asarray(asked, float)
+    n_right, n = int(right.sum()), int(asked.sum())
+    if not n:
+        return UNMEASURED
+    found = ratio_estimate(right, asked)
+    interval = found.ci95 if 0 < n_right < n else None
+    return Estimate(found.value, found.median, interval or (interval_where_all_agree or wilson)(n_right, n), n)
+
+
+def less_rate(share: Estimate, rate: float) -> Estimate:
+    """A share less a known rate."""
+    ends = (share.ci95[0] - rate, share.ci95[1] - rate) if share.ci95 else None
+    return Estimate(share.value - rate, share.median - rate, ends, share.n)
+
+
+def score_row(scored: RelationScore, keys: Sequence[str] = ("exact", "on", "adjacent", "macro_f1")) -> dict:
+    """Estimates of a score as plain data, and its recalls."""
+    recall = {name: number.to_dict() for name, number in scored.recall.items()}
+    return {**{key: getattr(scored, key).to_dict() for key in keys}, "recall": recall}
 
 
 def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:

@@ -124,6 +124,14 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
     return rows
 
 
+def data_sets(results: Sequence[Mapping]) -> dict[int | str, list[Row]]:
+    """The rows of each data set by its number, and of the real scenes under "real" where there are any."""
+    found: dict[int | str, list[Row]] = {}
+    for result in results:
+        found.setdefault(result["set"], []).extend(result["rows"])
+    return found
+
+
 def without_table(cloud: LabelledCloud) -> LabelledCloud:
     """The things' points alone."""
     kept = cloud.labels > TABLE
