@@ -1,4 +1,4 @@
-"""How right perceived relations are: exact with direction, by component, by class, each with an interval.
+"""Accuracy of perceived relations: exact with direction, by component and by class, each with an interval.
 
 The thesis's label of a pair is a vector (on, adjacent); *both* has both components, *none* has neither (§2.4.1).
 Here the direction counts as well: ``on(a, b)`` said of ``on(b, a)`` is wrong, exactly and in its `on` component.
@@ -19,7 +19,7 @@ from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.perception.relations.relation import Relation
 
 BORDER = 0.005
-"""Metres. Nobody can say of a gap so near `ADJACENT_GAP` on which side of it a noisy camera will see it."""
+"""Metres. A noisy camera may see a gap so near `ADJACENT_GAP` on either side of it."""
 HIDDEN = 0.03
 """Metres. A contact whose visible gap is larger lies on hidden faces."""
 RESAMPLES = 1000
@@ -28,14 +28,14 @@ CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
 
 @dataclass(frozen=True)
 class JudgedPair:
-    """A labelled pair and what was said of it.
+    """A labelled pair and its predicted relation.
 
     Parameters
     ----------
     scene : str
     truth : PairLabel
     said : Relation, optional
-        None where the pair was not spoken of, which says *none*.
+        The prediction; None where there is none, which counts as the relation *none*.
     gap : float
         Visible gap, metres; infinite where unknown.
     """
@@ -47,12 +47,12 @@ class JudgedPair:
 
     @property
     def relation(self) -> str:
-        """The relation that was said."""
+        """The predicted relation."""
         return self.said.relation if self.said else NONE
 
     @property
     def same_way(self) -> bool:
-        """Whether what was said names the pair in the truth's order, or has no order."""
+        """Whether the prediction names the pair in the truth's order, or has no order."""
         return self.relation in SYMMETRIC or self.said is None or self.said.a == self.truth.a
 
     @property
@@ -83,7 +83,7 @@ class JudgedPair:
 
     @property
     def hidden(self) -> bool:
-        """Whether it is a relation of nearness or contact that the camera sees from afar only."""
+        """Whether the pair is near or in contact although its visible gap is large."""
         return self.truth.relation != NONE and HIDDEN < self.gap < np.inf
 
 
@@ -110,7 +110,7 @@ def judged_scene(
     gaps: Mapping[frozenset[int], float] | None = None,
     least_confidence: int = 2,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside what was said of it.
+    """Each labelled pair of a scene beside its predicted relation.
 
     Parameters
     ----------

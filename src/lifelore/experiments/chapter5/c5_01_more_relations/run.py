@@ -1,9 +1,8 @@
-"""Scenes in which words of space are said: to learn from, to ask, from the other side, and for `between`, `in`.
+"""Cells of claim C5.1: scenes to learn words of space from, held-out scenes from two sides, compound relations.
 
-Cells of *lessons* and of held-out scenes keep the features of every near pair and all words that are true of it by
-`view_words`; held-out scenes once more as a camera on the other side of the table sees them. Cells of *compound*
-scenes count what the thesis's `between` and `in`, and definitions of our own, say of scenes that were settled on
-purpose.
+Cells of *lessons* and of held-out scenes store the features of every near pair and all its true words by
+`view_words`; held-out scenes also as a camera on the other side of the table sees them. Cells of *compound* scenes
+store the facts of the thesis's `between` and `in`, and of our own definitions, for purposely arranged scenes.
 """
 
 from collections.abc import Mapping, Sequence
