@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import difference_estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.engine.results_table import ResultsTable, curve_of
+from lifelore.experiments.engine.results_table import ResultsTable, computed_once, curve_of, tally
 
 KEYS = ("method", "schedule", "run")
 RECORDS = [
@@ -62,3 +62,27 @@ def test_what_is_not_there_is_refused():
         TABLE.values("first", agent=1)
     with pytest.raises(InputError, match="agree in number, got 8 and 4"):
         TABLE.paired("first", {"method": 1}, {"method": 2, "schedule": [0.1, 1.0]})
+
+
+def test_a_tally_counts_equal_records_in_the_order_of_their_values():
+    records = [{"kind": "b", "points": [1, 2]}, {"kind": "a", "points": [1]}, {"kind": "b", "points": [1, 2]}]
+    assert tally(records, "n") == [{"kind": "a", "points": [1], "n": 1}, {"kind": "b", "points": [1, 2], "n": 2}]
+    real = [{"kind": "real", "loops": None, "holes": k} for k in (1, 0)]
+    assert [row["holes"] for row in tally(real, "n")] == [0, 1]
+
+
+def test_work_is_computed_once_for_the_same_settings_and_results():
+    asked = []
+
+    @computed_once
+    def work(settings, results):
+        asked.append(settings["n"])
+        return settings["n"] + len(results)
+
+    assert [work({"n": 1}, [{}]), work({"n": 1}, [{}]), work({"n": 2}, [{}]), work({"n": 2}, [{"x": 0}])] == [
+        2,
+        2,
+        3,
+        3,
+    ]
+    assert asked == [1, 2, 2]

@@ -5,9 +5,9 @@ import pytest
 from matplotlib.patches import FancyArrowPatch, Polygon
 
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.experiments.chapter2.scene_gallery import draw_gallery
 from lifelore.experiments.pictures.scene_layers import draw_layers, predicate
 from lifelore.figures import scene_picture
+from lifelore.figures.gallery import draw_gallery
 from lifelore.figures.scene_document import Bond
 from lifelore.figures.scene_picture import draw_scene
 from lifelore.figures.style import MAX_BYTES, save_figure

@@ -13,6 +13,7 @@ _OBJECTS = (BLUE, ORANGE, GREEN, PURPLE, VERMILION, SKY, _SLATE, YELLOW)
 """More objects than these take them again, darker and then lighter; their labels tell them apart."""
 
 _RELATIONS = {"on": BLUE, "adjacent": ORANGE, "both": GREEN, "none": GREY}
+RELATION_MARKERS = {"on": "o", "adjacent": "s", "both": "^", "none": "x"}
 _METHODS = {
     "lifelore": BLUE,
     "thesis": VERMILION,

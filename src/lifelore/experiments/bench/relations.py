@@ -12,6 +12,15 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
+from lifelore.experiments.bench.relation_learners import (
+    LEARNERS,
+    LOGIC,
+    OURS,
+    SHIPPED,
+    SeenScene,
+    asked,
+    taught,
+)
 from lifelore.experiments.bench.relation_scenes import (
     HALF,
     HELD_OUT,
@@ -28,15 +37,6 @@ from lifelore.experiments.bench.relation_scenes import (
 )
 from lifelore.experiments.bench.rounds import at_least, at_most, row
 from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.experiments.chapter2.relation_learners import (
-    LEARNERS,
-    LOGIC,
-    OURS,
-    SHIPPED,
-    SeenScene,
-    asked,
-    taught,
-)
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference, score, share
 from lifelore.perception.relations.relation_classifier import shipped_model
 

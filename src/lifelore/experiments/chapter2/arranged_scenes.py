@@ -24,15 +24,15 @@ from lifelore.domains.tabletop.tabletop import (
 )
 
 USUAL = TabletopSettings()
-Said = frozenset[tuple[int, int, str]]
+Labels = frozenset[tuple[int, int, str]]
 
 
 @dataclass(frozen=True)
 class Placement:
-    """A way to place things, and what must be true of them when settled: (a, b, relation), objects from 2."""
+    """A way to place objects, and the labels that must hold when they have settled: (a, b, relation) from 2."""
 
     place: Callable[[np.random.Generator], Group]
-    true: Said = frozenset()
+    true: Labels = frozenset()
 
 
 def arranged(name: str, seed: int, number: int, settings: TabletopSettings = USUAL) -> TabletopScene:
@@ -54,7 +54,7 @@ def arranged(name: str, seed: int, number: int, settings: TabletopSettings = USU
 def settled(
     placement: Placement, name: str, seed: int, number: int, settings: TabletopSettings = USUAL
 ) -> TabletopScene:
-    """Scene `number` of a placement: drawn until one settles, can be seen, and is as it must be.
+    """Scene `number` of a placement: drawn until a scene settles, is visible, and has the labels that must hold.
 
     Raises
     ------
@@ -66,12 +66,12 @@ def settled(
     for attempt in range(ATTEMPTS):
         rng = stream(seed, "arranged", name, number, attempt)
         scene = settle_scene(placement.place(rng), rng, settings)
-        if scene is not None and placement.true <= _said(scene.truth):
+        if scene is not None and placement.true <= _labels(scene.truth):
             return replace(scene, name=f"{name}{number:05d}", attempts=attempt + 1)
     raise InputError(f"no '{name}' settles as it must in {ATTEMPTS} draws with {settings}; use other settings")
 
 
-def _said(truth: tuple[PairLabel, ...]) -> set[tuple[int, int, str]]:
+def _labels(truth: tuple[PairLabel, ...]) -> set[tuple[int, int, str]]:
     """Every label, both ways round where it has no direction."""
     turned = {(label.b, label.a, label.relation) for label in truth if label.relation == ADJACENT}
     return turned | {(label.a, label.b, label.relation) for label in truth}

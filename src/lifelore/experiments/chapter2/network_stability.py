@@ -1,4 +1,4 @@
-"""Whether contact point networks stay what they are when points are thrown away."""
+"""Stability of contact point networks when points are discarded."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass

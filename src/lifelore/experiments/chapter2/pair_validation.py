@@ -1,7 +1,7 @@
-"""Rows of pairs held out and told: by the thesis's neighbours with A and B given, and by any model of relations.
+"""Cross-validation of pairs: by the thesis's nearest neighbours with A and B given, and by any relation model.
 
-The thesis gave each picture's two objects an order; who tells relations in the world is not told which is which.
-Both are here. No pair is ever told by a model that saw its scene. Thesis: §2.3.5, §2.4.1.
+The thesis gave each picture's two objects an order; a robot has to infer the order. This module does both. No pair
+is ever classified by a model that saw its scene. Thesis: §2.3.5, §2.4.1.
 """
 
 from collections.abc import Callable, Mapping, Sequence
@@ -23,15 +23,15 @@ from lifelore.perception.relations.relation import Relation
 THRESHOLD = 7
 """Fewest support vectors of a contact, as the thesis used (§2.3.4)."""
 DROPS = ("all but one", "weak")
-"""Which contacts are dropped: those below `THRESHOLD` but never a thing's strongest; or simply those below it."""
-VOTES = ("equal", "inverse distance")
+"""Which contacts are dropped: those below `THRESHOLD` except an object's strongest, or all below it."""
+WEIGHTS = ("equal", "inverse distance")
 BLOCK = 4_000_000
 """Distances held at a time: without the threshold there are tens of thousands of displacements."""
 
 
 @dataclass(frozen=True)
 class Reading:
-    """What the thesis leaves open between a picture and its vote.
+    """The choices that the thesis leaves open between a picture and its vote.
 
     Parameters
     ----------
@@ -40,9 +40,9 @@ class Reading:
     drop : str
         One of `DROPS`.
     votes : str
-        One of `VOTES`; of equal votes the first relation by name wins.
+        One of `WEIGHTS`; of equal votes the first relation by name wins.
     omega : float, optional
-        Longer displacements are not learnt from, metres.
+        Longer displacements do not vote, metres.
     k : int
     """
 
@@ -69,8 +69,8 @@ def _kept(contacts: Sequence[Sequence[float]], drop: str) -> list:
 
 
 @dataclass(frozen=True, eq=False)
-class Told:
-    """What neighbours say of displacements.
+class Votes:
+    """The votes of neighbours on displacements.
 
     Parameters
     ----------
@@ -79,19 +79,19 @@ class Told:
     labels : (m,) str
         The relation that won.
     shares : (m, 4) float64
-        Share of the votes for each of `CORE_RELATIONS`; zeros where there was nobody to ask.
+        Share of the votes for each of `CORE_RELATIONS`; zeros where there is no neighbour.
     """
 
     row: NDArray[np.int64]
     labels: NDArray[np.str_]
     shares: NDArray[np.float64]
 
-    def united(self, n_rows: int) -> list[str]:
-        """The union of what is said of each row's displacements; *none* where nothing is."""
-        said: list[set[str]] = [set() for _ in range(n_rows)]
+    def relations(self, n_rows: int) -> list[str]:
+        """The union of the labels of each row's displacements; *none* where there is none."""
+        found: list[set[str]] = [set() for _ in range(n_rows)]
         for row, label in zip(self.row.tolist(), self.labels.tolist(), strict=True):
-            said[row].add(label)
-        return [united(labels) for labels in said]
+            found[row].add(label)
+        return [united(labels) for labels in found]
 
 
 def united(labels: set[str]) -> str:
@@ -106,29 +106,29 @@ def united(labels: set[str]) -> str:
     return {(True, True): BOTH, (True, False): ON, (False, True): ADJACENT, (False, False): NONE}[on, adjacent]
 
 
-def told_by_neighbours(
+def votes_of_neighbours(
     rows: Sequence[Row], reading: Reading = Reading(), train: NDArray[np.bool_] | None = None
-) -> Told:
+) -> Votes:
     """The k nearest displacements of other scenes vote on each displacement, A and B given.
 
     Parameters
     ----------
     train : (len(rows),) bool, optional
-        Rows that may be asked; the others alone are told. Default: leave one scene out.
+        Rows to learn from; only the others are classified. Default: leave one scene out.
     """
     each = [displacements(row, reading.kernel, reading.drop) for row in rows]
     owner = np.repeat(np.arange(len(rows)), [len(one) for one in each])
-    return vote(np.concatenate(each), owner, rows, reading, train)
+    return votes_on(np.concatenate(each), owner, rows, reading, train)
 
 
-def vote(
+def votes_on(
     moved: NDArray[np.float64],
     owner: NDArray[np.int64],
     rows: Sequence[Row],
     reading: Reading,
     train: NDArray[np.bool_] | None = None,
-) -> Told:
-    """As `told_by_neighbours`, from displacements ``(m, 3)`` and the row of each."""
+) -> Votes:
+    """As `votes_of_neighbours`, from displacements ``(m, 3)`` and the row of each."""
     scene = np.unique([row["scene"] for row in rows], return_inverse=True)[1][owner]
     code = np.array([CORE_RELATIONS.index(row["relation"]) for row in rows])[owner]
     known = np.ones(len(moved), bool) if train is None else train[owner]
@@ -145,7 +145,7 @@ def vote(
     order = np.argsort(CORE_RELATIONS)
     winner = order[shares[:, order].argmax(axis=1)]
     labels = np.where(shares.any(axis=1), np.array(CORE_RELATIONS)[winner], NONE)
-    return Told(owner[asked], labels, shares)
+    return Votes(owner[asked], labels, shares)
 
 
 def _nearest(
@@ -172,11 +172,11 @@ def _nearest(
     return nearest, away
 
 
-def in_given_order(rows: Sequence[Row], said: Sequence[str]) -> list[JudgedPair]:
-    """Relations said of pairs whose order was given, beside what is true."""
+def in_given_order(rows: Sequence[Row], relations: Sequence[str]) -> list[JudgedPair]:
+    """Predicted relations of pairs whose order was given, beside the true ones."""
     return [
         JudgedPair(row["scene"], label_of(row), Relation(row["a"], row["b"], name, 1.0, gap_of(row)), gap_of(row))
-        for row, name in zip(rows, said, strict=True)
+        for row, name in zip(rows, relations, strict=True)
     ]
 
 
@@ -186,7 +186,7 @@ def in_given_order(rows: Sequence[Row], said: Sequence[str]) -> list[JudgedPair]
 def cross_validated(
     rows: Sequence[Row], new_model: Callable[[], Any], look: Callable[[Row], Any], folds: int | None = None
 ) -> list[JudgedPair]:
-    """Every row told by a model that learnt from the scenes of the other folds.
+    """Every row classified by a model that learnt from the scenes of the other folds.
 
     Parameters
     ----------
@@ -202,14 +202,17 @@ def cross_validated(
     near = np.array([row["gap"] is not None for row in rows])
     views = [look(row) if row["gap"] is not None else None for row in rows]
     truths = [[label_of(row)] for row in rows]
-    said: list[Relation | None] = [None] * len(rows)
+    predicted: list[Relation | None] = [None] * len(rows)
     for number in np.unique(fold):
         train, test = np.flatnonzero((fold != number) & near), np.flatnonzero((fold == number) & near)
         if len(train) and len(test):
             model = new_model().fit_pairs([views[i] for i in train], [truths[i] for i in train])
             for i in test:
-                said[i] = next(iter(model.predict_pairs(views[i])), None)
-    return [JudgedPair(row["scene"], label_of(row), one, gap_of(row)) for row, one in zip(rows, said, strict=True)]
+                predicted[i] = next(iter(model.predict_pairs(views[i])), None)
+    return [
+        JudgedPair(row["scene"], label_of(row), relation, gap_of(row))
+        for row, relation in zip(rows, predicted, strict=True)
+    ]
 
 
 def as_scene(row: Row, kernel: str = STANDARD) -> ScenePairs:
@@ -232,7 +235,7 @@ def as_seen(name: str) -> Callable[[Row], tuple[DescribedPair, ...]]:
 
 
 def label_of(row: Mapping) -> PairLabel:
-    """What is true of a row."""
+    """The true label of a row."""
     return PairLabel(row["a"], row["b"], row["relation"], row["confidence"])
 
 

@@ -1,10 +1,11 @@
-"""What goes wrong between the world and a cloud, done on purpose: fewer points, noisier depth, wrong labels.
+"""Faults put into clouds on purpose: fewer points, noisier depth, wrong labels, an object segmented into two.
 
-Each takes a `LabelledCloud` and gives a new one; the camera stays. Thesis: §2.4.1 discards points.
+Each function takes a `LabelledCloud` and returns a new cloud with the same camera. Thesis: §2.4.1 discards points,
+Figs 2.7 and 2.9 show wrong segmentations.
 """
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.errors import InputError
@@ -72,6 +73,27 @@ def grown_masks(cloud: LabelledCloud, rng: np.random.Generator, width: float = B
         near = asking[np.isfinite(distance)]
         labels[near], free[near] = label, False
     return LabelledCloud(cloud.points, labels, cloud.colours, cloud.camera)
+
+
+def cut_object(
+    cloud: LabelledCloud, label: int, normal: ArrayLike, through: ArrayLike
+) -> tuple[LabelledCloud, int]:
+    """The cloud with an object divided by a plane, and the new label: of the part that `normal` points to.
+
+    Raises
+    ------
+    InputError
+        The cloud has no such object, or the plane leaves one side empty.
+    """
+    own = (cloud.labels == label) & (cloud.labels > TABLE)
+    beyond = own & ((cloud.points - np.asarray(through, float)) @ np.asarray(normal, float) > 0)
+    if not beyond.any() or beyond.sum() == own.sum():
+        raise InputError(
+            f"the plane must divide object {label}, which has {own.sum()} points, {beyond.sum()} of them beyond it"
+        )
+    new = int(cloud.labels.max()) + 1
+    labels = np.where(beyond, new, cloud.labels)
+    return LabelledCloud(cloud.points, labels, cloud.colours, cloud.camera), new
 
 
 def _nearest_other(cloud: LabelledCloud, width: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:

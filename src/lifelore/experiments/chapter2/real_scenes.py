@@ -1,4 +1,4 @@
-"""The real scenes that numbers are quoted on: Kinect clouds with hand-made labels, found through LIFELORE_DATA."""
+"""Real scenes for evaluation: Kinect clouds with hand-made labels, in the folder that LIFELORE_DATA names."""
 
 import os
 from dataclasses import dataclass
@@ -17,7 +17,7 @@ VARIABLE = "LIFELORE_DATA"
 
 @dataclass(frozen=True, eq=False)
 class RealScene:
-    """A labelled cloud in the table's frame and what a person said of its pairs."""
+    """A labelled cloud in the table's frame and the hand-made labels of its pairs."""
 
     name: str
     cloud: LabelledCloud
@@ -25,7 +25,7 @@ class RealScene:
 
 
 def real_scenes_folder() -> Path | None:
-    """Where they lie; None where LIFELORE_DATA does not say or holds none."""
+    """The folder of the real scenes; None where LIFELORE_DATA is not set or has no such folder."""
     folder = Path(os.environ.get(VARIABLE, "")) / "osd"
     return folder if VARIABLE in os.environ and (folder / "relations.csv").is_file() else None
 

@@ -1,4 +1,4 @@
-"""How right perceived relations are: exact with direction, by component, by class, each with an interval.
+"""Accuracy of perceived relations: exact with direction, by component and by class, each with an interval.
 
 The thesis's label of a pair is a vector (on, adjacent); *both* has both components, *none* has neither (§2.4.1).
 Here the direction counts as well: ``on(a, b)`` said of ``on(b, a)`` is wrong, exactly and in its `on` component.
@@ -9,16 +9,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.core.streams import stream
+from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.perception.relations.relation import Relation
 
 BORDER = 0.005
-"""Metres. Nobody can say of a gap so near `ADJACENT_GAP` on which side of it a noisy camera will see it."""
+"""Metres. A noisy camera may see a gap so near `ADJACENT_GAP` on either side of it."""
 HIDDEN = 0.03
 """Metres. A contact whose visible gap is larger lies on hidden faces."""
 RESAMPLES = 1000
@@ -27,14 +28,14 @@ CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
 
 @dataclass(frozen=True)
 class JudgedPair:
-    """A labelled pair and what was said of it.
+    """A labelled pair and its predicted relation.
 
     Parameters
     ----------
     scene : str
     truth : PairLabel
     said : Relation, optional
-        None where the pair was not spoken of, which says *none*.
+        The prediction; None where there is none, which counts as the relation *none*.
     gap : float
         Visible gap, metres; infinite where unknown.
     """
@@ -46,12 +47,12 @@ class JudgedPair:
 
     @property
     def relation(self) -> str:
-        """The relation that was said."""
+        """The predicted relation."""
         return self.said.relation if self.said else NONE
 
     @property
     def same_way(self) -> bool:
-        """Whether what was said names the pair in the truth's order, or has no order."""
+        """Whether the prediction names the pair in the truth's order, or has no order."""
         return self.relation in SYMMETRIC or self.said is None or self.said.a == self.truth.a
 
     @property
@@ -82,7 +83,7 @@ class JudgedPair:
 
     @property
     def hidden(self) -> bool:
-        """Whether it is a relation of nearness or contact that the camera sees from afar only."""
+        """Whether the pair is near or in contact although its visible gap is large."""
         return self.truth.relation != NONE and HIDDEN < self.gap < np.inf
 
 
@@ -109,7 +110,7 @@ def judged_scene(
     gaps: Mapping[frozenset[int], float] | None = None,
     least_confidence: int = 2,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside what was said of it.
+    """Each labelled pair of a scene beside its predicted relation.
 
     Parameters
     ----------
@@ -155,10 +156,42 @@ def share(judged: Sequence[JudgedPair], right: Callable[[JudgedPair], bool]) -> 
     for pair in judged:
         by_scene.setdefault(pair.scene, []).append(right(pair))
     counts = np.array([(sum(answers), len(answers)) for answers in by_scene.values()], float)
-    clustered = ratio_estimate(counts[:, 0], counts[:, 1])
-    n_right, n = counts.sum(axis=0)
-    interval = clustered.ci95 if 0 < n_right < n else None
-    return Estimate(clustered.value, clustered.median, interval or wilson(int(n_right), int(n)), int(n))
+    return share_over_scenes(counts[:, 0], counts[:, 1])
+
+
+def share_over_scenes(
+    right: ArrayLike,
+    asked: ArrayLike,
+    interval_where_all_agree: Callable[[int, int], tuple[float, float]] | None = None,
+) -> Estimate:
+    """Share of right answers, scenes resampled (BCa); `UNMEASURED` of none.
+
+    Parameters
+    ----------
+    right, asked : (n,)
+        Of each scene how many answers are right, and how many there are.
+    interval_where_all_agree : callable, optional
+        ``(right, n)`` → (low, high), where no resample differs; default: Wilson's.
+    """
+    right, asked = np.asarray(right, float), np.asarray(asked, float)
+    n_right, n = int(right.sum()), int(asked.sum())
+    if not n:
+        return UNMEASURED
+    found = ratio_estimate(right, asked)
+    interval = found.ci95 if 0 < n_right < n else None
+    return Estimate(found.value, found.median, interval or (interval_where_all_agree or wilson)(n_right, n), n)
+
+
+def less_rate(share: Estimate, rate: float) -> Estimate:
+    """A share less a known rate."""
+    ends = (share.ci95[0] - rate, share.ci95[1] - rate) if share.ci95 else None
+    return Estimate(share.value - rate, share.median - rate, ends, share.n)
+
+
+def score_row(scored: RelationScore, keys: Sequence[str] = ("exact", "on", "adjacent", "macro_f1")) -> dict:
+    """Estimates of a score as plain data, and its recalls."""
+    recall = {name: number.to_dict() for name, number in scored.recall.items()}
+    return {**{key: getattr(scored, key).to_dict() for key in keys}, "recall": recall}
 
 
 def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:

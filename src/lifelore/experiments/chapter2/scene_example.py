@@ -1,8 +1,9 @@
-"""A perceived scene as one row of a result, small enough to be committed, and back again for its figure."""
+"""A perceived scene as a row of a result, small enough to be committed, and the picture of such rows."""
 
 import base64
 import zlib
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,11 +13,16 @@ from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
 
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from lifelore.figures.gallery import PictureOfScene
+
 MOST_POINTS = 5000
 _STEP = 0.0005
-"""Metres: places are kept to half a millimetre."""
+"""Metres: places are stored to half a millimetre."""
 _AROUND = 0.05
-"""Metres of table kept around the things."""
+"""Metres of table stored around the objects."""
 _FIELDS = ("objects", "relations", "holes", "contact_edges")
 
 
@@ -39,20 +45,24 @@ def scene_row(scene: Scene, caption: str) -> dict:
 
 
 def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
-    """(cloud, document, caption), as `figures.scene_gallery` takes them."""
+    """(cloud, document, caption), as `figures.gallery` takes them."""
     table = np.frombuffer(zlib.decompress(base64.b64decode(row["cloud"])), np.int16).reshape(4, -1)
     camera = None if row["camera"] is None else np.array(row["camera"], float)
     cloud = LabelledCloud(np.asarray(table[:3].T * _STEP, np.float64), table[3].astype(np.int64), None, camera)
     return cloud, row["document"], row["example"]
 
 
-def draw_examples(result: Mapping, *, columns: int, captions: Mapping[str, str] | None = None):
-    """The gallery of a result's examples, clouds with networks; `captions` puts words for what they are called."""
-    from lifelore.experiments.chapter2.scene_gallery import draw_gallery
+def examples_of(result: Mapping, captions: Mapping[str, str] | None = None) -> "list[PictureOfScene]":
+    """The examples of a result as a gallery takes them; `captions` replaces the captions that it names."""
+    found = [scene_of_row(row) for row in result["rows"] if "example" in row]
+    return [(cloud, document, (captions or {}).get(caption, caption)) for cloud, document, caption in found]
 
-    examples = [scene_of_row(row) for row in result["rows"] if "example" in row]
-    named = [(cloud, document, (captions or {}).get(kind, kind)) for cloud, document, kind in examples]
-    return draw_gallery(named, columns=columns, layers=("cloud", "networks"))
+
+def draw_examples(result: Mapping, *, columns: int, captions: Mapping[str, str] | None = None) -> "Figure":
+    """The gallery of a result's examples, clouds with networks."""
+    from lifelore.figures.gallery import draw_gallery
+
+    return draw_gallery(examples_of(result, captions), columns=columns, layers=("cloud", "networks"))
 
 
 def _packed(cloud: LabelledCloud) -> str:

@@ -1,9 +1,9 @@
-"""Pairs of things as the thesis photographed them, simulated and real, each as one row of numbers.
+"""Pairs of objects as the thesis photographed them, simulated and real, each as a row of numbers.
 
 A cell draws a lot of settled pairs in the thesis's class mix (or reads some real scenes), finds their contact
-points under a grid of kernels (the thesis states neither length nor cost) and keeps places, support and features:
-all that claims about displacements need. The table's points are left out, as the thesis's background was (§2.3.2).
-Thesis: §2.4.1, whose 128 stereo pictures are not published.
+points under a grid of kernels (the thesis states neither length nor cost) and stores places, support and features:
+all data that claims about displacements need. The table's points are left out, as the thesis's background was
+(§2.3.2). Thesis: §2.4.1, whose 128 stereo pictures are not published.
 """
 
 from collections.abc import Mapping, Sequence
@@ -36,18 +36,18 @@ Row = dict[str, Any]
 
 
 def kernel_name(length: float, cost: float) -> str:
-    """How rows and tables call a kernel: ``60 mm, C 10``."""
+    """Name of a kernel in rows and tables: ``60 mm, C 10``."""
     return f"{1000 * length:g} mm, C {cost:g}"
 
 
 STANDARD = kernel_name(DEFAULT_CONTACT_SETTINGS.length, DEFAULT_CONTACT_SETTINGS.cost)
 """The kernel of `ContactSettings`."""
 BESIDE_US = ("majority", "bounding-box rule", "centroid k-NN", "closest-point k-NN")
-"""The peers that look at each pair too."""
+"""The peers that describe each pair too."""
 
 
 def pair_cells(settings: Mapping) -> list[dict]:
-    """Lots of simulated pairs, data set by data set; then lots of real scenes, where asked for and there.
+    """Lots of simulated pairs, data set by data set; then of real scenes, where asked for and present.
 
     Settings read: ``data_sets``, ``pairs`` (of each), ``real`` (true or false).
     """
@@ -83,7 +83,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _undoubted(rng: np.random.Generator, number: int, drawn: TabletopSettings) -> TabletopScene:
-    """A scene whose pair has a label that nobody would doubt; drawn anew where it has not."""
+    """A scene whose pair has a label beyond doubt; drawn again until it has."""
     while True:
         scene = sample_scene(int(rng.integers(2**31)), number, drawn)
         if all(label.confidence >= LEAST_CONFIDENCE for label in scene.truth if label.a != TABLE != label.b):
@@ -124,8 +124,16 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
     return rows
 
 
+def data_sets(results: Sequence[Mapping]) -> dict[int | str, list[Row]]:
+    """The rows of each data set by its number, and of the real scenes under "real" where there are any."""
+    found: dict[int | str, list[Row]] = {}
+    for result in results:
+        found.setdefault(result["set"], []).extend(result["rows"])
+    return found
+
+
 def without_table(cloud: LabelledCloud) -> LabelledCloud:
-    """The things' points alone."""
+    """The points of the objects alone."""
     kept = cloud.labels > TABLE
     return LabelledCloud(cloud.points[kept], cloud.labels[kept], None, cloud.camera)
 

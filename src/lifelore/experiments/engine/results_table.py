@@ -4,14 +4,19 @@ A record is a plain mapping: some entries are keys (method, run, choices of the 
 (a number, or the list of a learning curve). In long form a row of the table is one record and one measure.
 """
 
-from collections.abc import Hashable, Iterable, Mapping, Sequence
-from typing import Any
+from collections import Counter
+from collections.abc import Callable, Hashable, Iterable, Mapping, Sequence
+from functools import wraps
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
+from lifelore.experiments.engine.cell_store import canonical
+
+T = TypeVar("T")
 
 
 class ResultsTable:
@@ -148,6 +153,38 @@ def curve_of(curves: ArrayLike, digits: int | None = None) -> dict[str, list[flo
     half = t.ppf(0.975, n - 1) * deviation / np.sqrt(n) if n > 1 else deviation
     found = {"mean": mean, "deviation": deviation, "low": mean - half, "high": mean + half}
     return {name: (x if digits is None else np.round(x, digits)).tolist() for name, x in found.items()}
+
+
+def tally(records: Iterable[Mapping[str, Any]], label: str) -> list[dict[str, Any]]:
+    """Each different record once, sorted by its values, with its number under `label`.
+
+    Examples
+    --------
+    >>> tally([{"kind": "row", "holes": 1}, {"kind": "row", "holes": 0}, {"kind": "row", "holes": 1}], "scenes")
+    [{'kind': 'row', 'holes': 0, 'scenes': 1}, {'kind': 'row', 'holes': 1, 'scenes': 2}]
+    """
+    records = list(records)
+    keys = [tuple(map(_hashable, record.values())) for record in records]
+    first, counts = dict(zip(keys, records, strict=True)), Counter(keys)
+    return [{**first[key], label: counts[key]} for key in sorted(counts)]  # type: ignore[type-var]
+
+
+def computed_once(
+    function: Callable[[Mapping[str, Any], Sequence[Mapping[str, Any]]], T],
+) -> Callable[[Mapping[str, Any], Sequence[Mapping[str, Any]]], T]:
+    """`function` of (settings, results) with its latest value cached: measures and rows rest on the same work."""
+    latest: dict[str, T] = {}
+
+    @wraps(function)
+    def cached(settings: Mapping[str, Any], results: Sequence[Mapping[str, Any]]) -> T:
+        key = canonical([settings, results])
+        if key not in latest:
+            value = function(settings, results)
+            latest.clear()
+            latest[key] = value
+        return latest[key]
+
+    return cached
 
 
 def _hashable(value: Any) -> Hashable:

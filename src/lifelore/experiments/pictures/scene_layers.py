@@ -23,7 +23,7 @@ _GUTTER, _HEAD, _MOST = 0.12, 0.3, 14
 
 
 def draw_layers(cloud: LabelledCloud, document: Mapping) -> "Figure":
-    """The figure, the lowest layer first; arguments as of `scene_picture.draw_scene`."""
+    """The figure, the lowest layer first; arguments as of `scene_picture.sample_scene`."""
     bonds = read_document(document).bonds
     text = 0.15 * ((min(len(bonds), 2 * _MOST) + 1) // 2) + 0.15
     width, height = 3 * (_PICTURE[0] + _GUTTER) + _GUTTER, _HEAD + _PICTURE[1] + text + _GUTTER

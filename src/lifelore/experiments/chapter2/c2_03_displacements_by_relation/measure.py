@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.3."""
+"""Measures and rows of claim C2.3: where the displacements of each relation lie."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -7,19 +7,18 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.c2_01_nearest_displacements.measure import data_sets
 from lifelore.experiments.chapter2.pair_validation import DROPS, as_scene, displacements
-from lifelore.experiments.chapter2.relation_scoring import wilson
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
-from lifelore.experiments.engine.estimates import UNMEASURED, mean_or_unmeasured
+from lifelore.experiments.chapter2.relation_scoring import share_over_scenes
+from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
+from lifelore.experiments.engine.estimates import UNMEASURED
 
 EDGE = 0.2
 """The printed band begins at y = -0.1, a fifth of the way to the printed cluster at y = -0.5."""
 CHOICES = ("all", "no longer than omega", "shortest")
-"""Which displacements of a pair are looked at; the thesis plots "the separation displacements"."""
+"""Which displacements of a pair are plotted; the thesis plots "the separation displacements"."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +30,7 @@ class Plot:
     at : (m, 2) float64
         To the right and up, metres.
     row : (m,) int64
-        The row each is of.
+        The row of each.
     relation, scene : (m,) str
         Its pair's label and scene.
     """
@@ -43,7 +42,7 @@ class Plot:
 
     @property
     def middle_of_on(self) -> NDArray[np.float64]:
-        """Median to the right and up of what is *on*, ``(2,)``; NaN without any."""
+        """Median to the right and up of the *on* displacements, ``(2,)``; NaN without any."""
         on = self.at[self.relation == ON]
         return np.median(on, axis=0) if len(on) else np.full(2, np.nan)
 
@@ -55,9 +54,9 @@ class Plot:
 
 
 def plotted(rows: Sequence[Row], kernel: str, drop: str, choice: str, omega: float) -> Plot:
-    """The displacements of `rows` found with a kernel of `KERNELS` and chosen as one of `CHOICES`."""
+    """The displacements of `rows` found with a kernel of `KERNELS` and chosen by a rule of `CHOICES`."""
     each = [_chosen(displacements(row, kernel, drop), choice, omega) for row in rows]
-    owner = np.repeat(np.arange(len(rows)), [len(one) for one in each])
+    owner = np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
     relation, scene = (np.array([row[key] for row in rows], dtype=str)[owner] for key in ("relation", "scene"))
     return Plot(np.concatenate(each)[:, [0, 2]], owner, relation, scene)
 
@@ -69,13 +68,40 @@ def _chosen(moved: NDArray[np.float64], choice: str, omega: float) -> NDArray[np
     return moved[length <= omega] if choice == "no longer than omega" else moved
 
 
-def sideways(row: Row) -> float | None:
-    """How far a's middle is to the right of b's, metres; None where it is further behind or before it."""
-    if row["gap"] is None:
-        return None
-    order = 0 if row["a"] == row["pair"][0] else 1
-    behind, right = as_scene(row).features.columns(("behind", "right"))[order]
-    return float(right) if abs(right) > abs(behind) else None
+def by_kind(results: Sequence[Mapping]) -> dict[str, list[Row]]:
+    """Rows of the simulated data sets together, and of the real scenes where there are any."""
+    found: dict[str, list[Row]] = {"simulated": []}
+    for number, rows in data_sets(results).items():
+        found.setdefault("real" if number == "real" else "simulated", []).extend(rows)
+    return found
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Of all displacements of the simulated pairs at the standard kernel."""
+    pairs = by_kind(results)["simulated"]
+    plot = plotted(pairs, STANDARD, DROPS[0], "all", settings["omega"])
+    on_one_side, *others = (_clustered_share(scene, holds) for scene, holds in answers(pairs, plot).values())
+    if on_one_side.n and on_one_side.value < 0.5:
+        on_one_side = _complement(on_one_side)
+    slope = sideways_of_rise(plot, settings["resamples"])
+    return dict(zip(FRACTIONS, (slope, on_one_side, *others), strict=True))
+
+
+FRACTIONS = (
+    "on_centre_sideways_of_its_rise", "on_on_one_side", "adjacent_in_band", "on_outside_band",
+    "sign_of_x_tells_left_right",
+)  # fmt: skip
+
+
+def answers(rows: Sequence[Row], plot: Plot) -> dict[str, tuple[NDArray[np.str_], NDArray[np.bool_]]]:
+    """Scenes and answers of each share: *on* upwards, *adjacent* in the band, *on* outside, side by sign of x."""
+    on, adjacent = plot.relation == ON, plot.relation == ADJACENT
+    return {
+        "on_upwards": (plot.scene[on], plot.at[on, 1] > 0),
+        "adjacent_in_band": (plot.scene[adjacent], ~plot.outside_band[adjacent]),
+        "on_outside_band": (plot.scene[on], plot.outside_band[on]),
+        "sign_of_x_tells_left_right": sign_answers(rows, plot),
+    }
 
 
 def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
@@ -89,14 +115,23 @@ def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[NDArray[np.str_], NDA
     return np.array([scene for scene, _ in found], dtype=str), np.array([right for _, right in found], dtype=bool)
 
 
-def clustered_share(scene: NDArray[np.str_], answers: NDArray[np.bool_]) -> Estimate:
-    """Share of true answers; scenes resampled (BCa), Wilson's interval where all scenes agree."""
-    if not len(answers):
-        return UNMEASURED
+def sideways(row: Row) -> float | None:
+    """How far a's middle is to the right of b's, metres; None where it is further behind or before it."""
+    if row["gap"] is None:
+        return None
+    order = 0 if row["a"] == row["pair"][0] else 1
+    behind, right = as_scene(row).features.columns(("behind", "right"))[order]
+    return float(right) if abs(right) > abs(behind) else None
+
+
+def _clustered_share(scene: NDArray[np.str_], answers: NDArray[np.bool_]) -> Estimate:
     at = np.unique(scene, return_inverse=True)[1]
-    found = ratio_estimate(np.bincount(at, answers), np.bincount(at))
-    clustered = found.ci95 if 0 < answers.sum() < len(answers) else None
-    return Estimate(found.value, found.median, clustered or wilson(int(answers.sum()), len(answers)), len(answers))
+    return share_over_scenes(np.bincount(at, answers), np.bincount(at))
+
+
+def _complement(share: Estimate) -> Estimate:
+    ends = None if share.ci95 is None else (1 - share.ci95[1], 1 - share.ci95[0])
+    return Estimate(1 - share.value, 1 - share.median, ends, share.n)
 
 
 def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:
@@ -117,83 +152,28 @@ def _slope(middle: NDArray[np.float64]) -> float:
     return float(abs(middle[0]) / max(abs(middle[1]), 1e-9))
 
 
-def _measured(rows: Sequence[Row], plot: Plot, resamples: int) -> dict[str, Estimate]:
-    on, adjacent = plot.relation == ON, plot.relation == ADJACENT
-    up = clustered_share(plot.scene[on], plot.at[on, 1] > 0)
-    return {
-        "on_centre_sideways_of_its_rise": sideways_of_rise(plot, resamples),
-        "on_on_one_side": up if up.value >= 0.5 or not up.n else _other(up),
-        "on_upwards": up,
-        "adjacent_in_band": clustered_share(plot.scene[adjacent], ~plot.outside_band[adjacent]),
-        "on_outside_band": clustered_share(plot.scene[on], plot.outside_band[on]),
-        "sign_of_x_tells_left_right": clustered_share(*sign_answers(rows, plot)),
-        "on_to_the_right_mm": mean_or_unmeasured(1000 * plot.at[on, 0]),
-        "on_up_mm": mean_or_unmeasured(1000 * plot.at[on, 1]),
-    }
-
-
-def _other(share: Estimate) -> Estimate:
-    ends = None if share.ci95 is None else (1 - share.ci95[1], 1 - share.ci95[0])
-    return Estimate(1 - share.value, 1 - share.median, ends, share.n)
-
-
-def by_kind(results: Sequence[Mapping]) -> dict[str, list[Row]]:
-    """Rows of the simulated data sets together, and of the real scenes where there are any."""
-    found: dict[str, list[Row]] = {"simulated": []}
-    for number, rows in data_sets(results).items():
-        found.setdefault("real" if number == "real" else "simulated", []).extend(rows)
-    return found
-
-
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """All displacements at the standard kernel; the simulated pairs decide, the real ones stand beside them."""
-    found = {}
-    for kind, rows in by_kind(results).items():
-        plot = plotted(rows, STANDARD, DROPS[0], "all", settings["omega"])
-        ending = "" if kind == "simulated" else f"_{kind}"
-        found |= {
-            f"{name}{ending}": number for name, number in _measured(rows, plot, settings["resamples"]).items()
-        }
-    return found
-
-
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The points of the plot and where each relation lies; then the shares for every other reading."""
     points, grid = [], []
-    for kind, of_kind in by_kind(results).items():
-        plot = plotted(of_kind, STANDARD, DROPS[0], "all", settings["omega"])
+    for kind, pairs in by_kind(results).items():
+        plot = plotted(pairs, STANDARD, DROPS[0], "all", settings["omega"])
         middle = np.round(1000 * plot.middle_of_on, 1).tolist()
         for name in CORE_RELATIONS:
             own = plot.relation == name
             if own.any():
                 place = {"scenes": kind, "relation": name, "outside_band": float(plot.outside_band[own].mean())}
                 points.append(place | {"middle_of_on": middle, "mm": np.round(1000 * plot.at[own], 1).tolist()})
-        for kernel, drop, choice in product(KERNELS, DROPS, CHOICES):
-            other = plotted(of_kind, kernel_name(*kernel), drop, choice, settings["omega"])
-            reading = {"kernel": kernel_name(*kernel), "drop": drop, "choice": choice}
-            grid.append({"scenes": kind, "reading": reading, **_brief(of_kind, other)})
+        for kernel, drop, choice in product((kernel_name(*one) for one in KERNELS), DROPS, CHOICES):
+            reading = {"kernel": kernel, "drop": drop, "choice": choice}
+            other = plotted(pairs, kernel, drop, choice, settings["omega"])
+            grid.append(
+                {"scenes": kind, "reading": reading, "displacements": len(other.at), **fractions(pairs, other)}
+            )
     return points + grid
 
 
-def _brief(rows: Sequence[Row], plot: Plot) -> dict[str, float | None]:
-    """The fractions that the predicate asks for, without intervals."""
-    measured = _measured_values(rows, plot)
-    return {"displacements": len(plot.at)} | {
-        name: round(value, 4) if np.isfinite(value) else None for name, value in measured.items()
-    }
-
-
-def _measured_values(rows: Sequence[Row], plot: Plot) -> dict[str, float]:
-    on, adjacent = plot.relation == ON, plot.relation == ADJACENT
-    up = _mean(plot.at[on, 1] > 0)
-    return {
-        "on_centre_sideways_of_its_rise": _slope(plot.middle_of_on),
-        "on_on_one_side": max(up, 1 - up),
-        "adjacent_in_band": _mean(~plot.outside_band[adjacent]),
-        "on_outside_band": _mean(plot.outside_band[on]),
-        "sign_of_x_tells_left_right": _mean(sign_answers(rows, plot)[1]),
-    }
-
-
-def _mean(answers: NDArray[np.bool_]) -> float:
-    return float(answers.mean()) if len(answers) else float("nan")
+def fractions(rows: Sequence[Row], plot: Plot) -> dict[str, float | None]:
+    """The `FRACTIONS` that the conditions ask for, without intervals; None where nothing is asked."""
+    up, *others = (float(a.mean()) if len(a) else float("nan") for _, a in answers(rows, plot).values())
+    values = dict(zip(FRACTIONS, (_slope(plot.middle_of_on), max(up, 1 - up), *others), strict=True))
+    return {name: round(value, 4) if np.isfinite(value) else None for name, value in values.items()}

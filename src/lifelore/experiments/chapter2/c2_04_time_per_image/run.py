@@ -1,8 +1,8 @@
-"""How long one picture of two things takes on one core: labelled points in, networks and relations out.
+"""Cells of claim C2.4: seconds of one picture of two objects on one core, from labelled points to relations.
 
-Drawn as the pairs of claims C2.1 to C2.3, but with their table. Everything compiled runs once before anything is
-timed. One picture is timed at a time, whatever the number of threads, and libraries are held to one thread. What a
-picture took is the median of some repeats. Thesis: §2.4.1.
+Pictures are drawn as the pairs of claims C2.1 to C2.3, but with their table. Everything compiled runs once before
+the timing starts. Pictures are timed one after another, whatever the number of threads, and libraries use one
+thread. The seconds of a picture are the median of some repeats. Thesis: §2.4.1.
 """
 
 import platform
@@ -15,7 +15,6 @@ from threading import Lock
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
@@ -26,7 +25,7 @@ from lifelore.perception.segmentation.distance_segmentation import SegmentationS
 
 CAMERAS = ("stereo", "kinect")
 DENSE = "stereo, made dense"
-"""Some of the stereo pictures, their things' points repeated: the thesis's cameras had 26 times our pixels."""
+"""Some stereo pictures with their objects' points repeated: the thesis's cameras had 26 times our pixels."""
 KINDS = (*CAMERAS, DENSE)
 JITTER = 0.0005
 """Metres by which repeated points are moved."""
@@ -35,17 +34,14 @@ _alone = Lock()
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of pictures, camera by camera. Settings read: ``images`` of each camera."""
+    """Lots of pictures, camera by camera."""
     return [
         {"camera": camera, "first": first} for camera in CAMERAS for first in range(0, settings["images"], LOT)
     ]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """``{"processor", "images": […]}``, an image each kind of a picture; see `timed_image`.
-
-    Settings read: ``images``, ``repeats``, ``dense_points``, ``dense_every``.
-    """
+    """``{"processor", "images": […]}``, an image for each kind of a picture; see `timed_image`."""
     camera = cell["camera"]
     drawn = TabletopSettings(arrangement="pair", mix=MIX, camera=camera, shapes="all")
     images = []
@@ -65,7 +61,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def timed_image(cloud: LabelledCloud, model: RelationClassifier, repeats: int) -> dict:
-    """What one picture took, of the repeat that took the median time.
+    """The seconds of a picture, from the repeat with the median time.
 
     Returns
     -------
@@ -89,14 +85,14 @@ def timed_image(cloud: LabelledCloud, model: RelationClassifier, repeats: int) -
 
 
 def seconds_of_segmentation(cloud: LabelledCloud) -> float:
-    """Seconds to cut the cloud into things without its labels, which is no part of the rest (§2.3.3)."""
+    """Seconds to segment the cloud without its labels; no other time includes them (§2.3.3)."""
     began = time.perf_counter()
     segmented(cloud.points, cloud.colours, SegmentationSettings())
     return round(time.perf_counter() - began, 6)
 
 
 def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) -> LabelledCloud:
-    """The cloud with at least `n_points` points of things: each repeated equally often and moved a little."""
+    """The cloud with at least `n_points` points of objects: each repeated equally often and moved a little."""
     things, rest = np.flatnonzero(cloud.labels > TABLE), np.flatnonzero(cloud.labels <= TABLE)
     times = max(1, -(-n_points // max(len(things), 1)))
     rows = np.concatenate([rest, np.repeat(things, times)])
@@ -108,16 +104,10 @@ def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) ->
 
 @cache
 def processor() -> str:
-    """What the processor calls itself, as far as the system tells."""
+    """The processor's name, as far as the system knows it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
         lines = []
     named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
     return next(named, "") or platform.processor() or platform.machine()
-
-
-def check(settings: Mapping) -> None:
-    for key in settings:
-        if settings[key] < 1:
-            raise InputError(f"{key} must be at least 1, got {settings[key]}")

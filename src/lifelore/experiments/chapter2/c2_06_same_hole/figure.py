@@ -1,4 +1,4 @@
-"""Figure of claim C2.6."""
+"""Pictures of claim C2.6: holes found and not found (thesis Fig. 2.6)."""
 
 from collections.abc import Mapping
 

@@ -1,4 +1,4 @@
-"""Passages: where a straight stick can be pushed through a scene, closed in all around. The truth of a hole.
+"""Passages: where a straight stick, closed in all around, passes through the true shapes of a scene.
 
 All sticks run along one axis. Those that clear every true shape are free; free sticks that cannot be moved aside,
 clear all the way, until they are out of the scene, are in a passage.

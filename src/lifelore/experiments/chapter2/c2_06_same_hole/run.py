@@ -1,30 +1,148 @@
-"""C2.6: the hole between two things, found as a cycle of their contact point networks.
+"""Cells of claim C2.6: holes found in scenes that have a hole (thesis Fig. 2.6) and in controls without a hole.
 
-An L-block carries one of two hinged blocks, or a different thing, and in both scenes the loop through both
-networks and the contact edges between them is found. A cycle alone is also what one long contact leaves that came
-out as two contact points, so a loop counts as a hole only if it opens (`perception.holes`); the share of scenes
-with any cycle stands beside it. What is true is told by sticks pushed through the true shapes (`passage`). The
-things' contacts with the ground take no part. Real scenes carry no truth about holes; how many show one is only
-counted. Thesis: §2.4.2, Figure 2.6.
+With a hole: an L-block that carries one of two *hinged* blocks, or an *other* object (an arch, a toy on legs, a
+plank). Without: a *long* contact; the same *split* in two where points are missing in the middle; a block in the
+L-block's *corner*, which touches it below and beside. Contacts with the ground take no part. Thesis: §2.4.2.
 """
 
 from collections.abc import Mapping
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.c2_06_same_hole.hole_scenes import ARRANGEMENTS, LOT, run_cell
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.tabletop import TabletopScene
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.c2_06_same_hole.passage import passages
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.scene import Scene
+from lifelore.perception.topology.holes import Hole, contact_loops, find_holes
 
-__all__ = ["cells", "check", "run_cell"]
-
-
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
+ARRANGEMENTS = {
+    "hinged": "hole-hinged",
+    "other": "hole-other",
+    "long": "no-hole",
+    "split": "no-hole",
+    "corner": "corner",
+}
+LOT = 15
+LOWER, UPPER = 2, 3
+_BAND = (0.03, 0.06)
+"""Metres of a long contact from which points are missing: more than what links support vectors."""
+_CLOSE = 0.025
+CAPTIONS = {
+    "hinged": "hinged blocks",
+    "animal": "a toy on legs",
+    "arch": "an arch",
+    "box": "a plank",
+    "long": "a long contact",
+    "split": "the same, split",
+    "corner": "a block in the corner",
+}
+PICTURES = {"other": 2}
+"""Number of pictures of a kind, where more than one."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Scenes in lots, by kind; then the real scenes, where asked for and there."""
+    """Scenes in lots, by kind; then the real scenes, where the settings ask for them and they are there."""
     lots = [{"kind": kind, "first": k} for kind in ARRANGEMENTS for k in range(0, settings["scenes"], LOT)]
     if not settings["real"] or real_scenes_folder() is None:
         return lots
     return lots + [{"kind": "real", "scene": scene.name} for scene in real_scenes()]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Findings of a lot of scenes of a kind, or of a real scene, and a picture from the first lot."""
+    kind = cell["kind"]
+    if kind == "real":
+        scene = next(scene for scene in real_scenes() if scene.name == cell["scene"])
+        found = find_holes(objects_only(scene.cloud))
+        return {"kind": kind, "scenes": [{"scene": scene.name, "holes": len(found)}], "examples": []}
+    last = min(cell["first"] + LOT, settings["scenes"])
+    rows, pictures = [], {}
+    for number in range(cell["first"], last):
+        world = arranged(ARRANGEMENTS[kind], seed, number)
+        cloud = split_contact(world.cloud, stream(seed, "split", number)) if kind == "split" else world.cloud
+        scene = objects_only(cloud)
+        rows.append({"scene": number, **findings(scene, world)})
+        thing = world.shapes[-1].kind
+        if cell["first"] == 0 and thing not in pictures and len(pictures) < PICTURES.get(kind, 1):
+            pictures[thing] = scene_row(scene, f"{CAPTIONS.get(kind) or CAPTIONS[thing]}: {_outcome(rows[-1])}")
+    return {"kind": kind, "scenes": rows, "examples": list(pictures.values())}
+
+
+def _outcome(row: Mapping) -> str:
+    if row["holes"]:
+        return f"a hole, {row['opening']:.0f} mm wide"
+    return "a cycle, no hole" if row["loops"] else "no cycle"
+
+
+def objects_only(cloud: LabelledCloud) -> Scene:
+    """The scene of the objects alone, without contacts with the table."""
+    return Scene(cloud, tuple(one for one in interfaces(cloud) if TABLE not in (one.a, one.b)))
+
+
+def findings(scene: Scene, world: TabletopScene) -> dict:
+    """Numbers of loops and holes; of the smallest hole its form, size and opening in mm; the true passages.
+
+    `form` is the number of contact points on the lower and the upper object, `passages` the number of ways through
+    the true scene along the L-block's foot, `real` whether a passage lies where a hole was found.
+    """
+    holes = find_holes(scene)
+    ways = passages(world.shapes, world.poses, world.poses[0].rotation[:, 1])
+    row = {
+        "thing": world.shapes[-1].kind,
+        "loops": len(contact_loops(scene)),
+        "holes": len(holes),
+        "passages": len(ways),
+    }
+    if not holes:
+        return row
+    return row | {
+        "form": [sum(label == thing for label, _ in holes[0].nodes) for thing in (LOWER, UPPER)],
+        "size": round(1000 * holes[0].size, 1),
+        "opening": round(1000 * holes[0].opening, 1),
+        "real": any(lies_between(way, hole, scene) for way in ways for hole in holes),
+    }
+
+
+def lies_between(way: NDArray[np.float64], hole: Hole, scene: Scene) -> bool:
+    """Whether most of a passage ``(k, 3)`` lies between the two places where a hole's loop changes objects."""
+    at = np.array([scene.position(*node) for node in hole.nodes])
+    label = np.array([node[0] for node in hole.nodes])
+    changes = np.flatnonzero(label != np.roll(label, -1))
+    first, last = ((at[k] + at[(k + 1) % len(at)]) / 2 for k in (changes[0], changes[-1]))
+    share = (way - first) @ (last - first) / ((last - first) @ (last - first))
+    return bool(((share > 0) & (share < 1)).mean() > 0.5)
+
+
+def split_contact(cloud: LabelledCloud, rng: np.random.Generator) -> LabelledCloud:
+    """The cloud of a long contact less a band across it.
+
+    Half of the time all that lies in the band is missing, as behind a bar in front of the scene; else only what
+    lies close to the other thing, as where a shadow falls on the contact.
+    """
+    one = next(one for one in interfaces(cloud) if (one.a, one.b) == (LOWER, UPPER))
+    near = _close_points(one)
+    middle = near.mean(axis=0)
+    along = np.append(np.linalg.svd(near[:, :2] - middle[:2], full_matrices=False)[2][0], 0.0)
+    width = rng.uniform(*_BAND)
+    at = (near - middle) @ along
+    centre = rng.uniform(*np.quantile(at, [0.4, 0.6]))
+    gone = np.abs((cloud.points - middle) @ along - centre) < width / 2
+    if rng.random() < 0.5:
+        gone &= np.abs(cloud.points[:, 2] - middle[2]) < _CLOSE
+    gone &= cloud.labels > TABLE
+    return LabelledCloud(cloud.points[~gone], cloud.labels[~gone], None, cloud.camera)
+
+
+def _close_points(one) -> np.ndarray:
+    """Points of the upper thing that lie near the lower."""
+    from scipy.spatial import KDTree
+
+    lower, upper = one.pair.first.points, one.pair.second.points
+    distance = KDTree(lower).query(upper, distance_upper_bound=_CLOSE)[0]
+    return upper[np.isfinite(distance)]

@@ -1,16 +1,16 @@
-"""Figure of claim C2.7."""
+"""Pictures of claim C2.7: stacks, cut objects and controls with their networks (thesis Fig. 2.7)."""
 
 from collections.abc import Mapping
 
 from lifelore.experiments.chapter2.scene_example import draw_examples
 
 CAPTIONS = {
-    "stack": "three things",
-    "cut": "two things, segmented into three",
+    "stack": "three objects",
+    "cut": "two objects, segmented into three",
     "row": "three in a row",
     "two-on-one": "two on one",
-    "real stack": "three real things",
-    "real cut": "two real things, segmented into three",
+    "real stack": "three real objects",
+    "real cut": "two real objects, segmented into three",
 }
 
 

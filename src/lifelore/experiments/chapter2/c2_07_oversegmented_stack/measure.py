@@ -1,40 +1,34 @@
-"""Measures and rows of claim C2.7."""
+"""Measures and rows of claim C2.7: contact points of the middle object, skeletons and predicates, by kind."""
 
 from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter2.stack_skeletons import KINDS
-from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
+from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import KINDS
+from lifelore.experiments.engine.estimates import exact_share
+from lifelore.experiments.engine.results_table import ResultsTable, tally
 
 REAL = ("real stack", "real cut")
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares by kind; `structure` is the skeleton with its predicates, `skeleton` the topology alone."""
+    """Shares by kind of two points in the middle, by three ways of counting, and of the stack's structure."""
+    table = ResultsTable.nested(results, "scenes", keys=(), outer=("kind",))
     found = {}
     for kind in (*KINDS, *REAL):
-        rows = [row for result in results if result["kind"] == kind for row in result["scenes"]]
-        name = kind.replace(" ", "_").replace("-", "_")
-        found[f"two_points_{name}"] = exact_share(row["nodes"][1] == 2 for row in rows)
-        found[f"skeleton_{name}"] = exact_share(row["path"] for row in rows)
-        found[f"structure_{name}"] = exact_share(row["path"] and row["stacked"] for row in rows)
+        scenes, name = table.select(kind=kind).records, kind.replace(" ", "_").replace("-", "_")
+        found[f"structure_{name}"] = exact_share(scene["path"] and scene["stacked"] for scene in scenes)
         if kind in ("stack", *REAL):
-            found[f"two_points_with_ground_{name}"] = exact_share(row["grounded"] == 2 for row in rows)
-            found[f"two_points_of_all_near_pairs_{name}"] = exact_share(row["near"][1] == 2 for row in rows)
-            apart = [row["apart"] for row in rows if row["apart"]]
-            found[f"mm_between_the_two_points_{name}"] = mean_or_unmeasured(apart)
+            found[f"two_points_{name}"] = exact_share(scene["nodes"][1] == 2 for scene in scenes)
+            found[f"two_points_with_ground_{name}"] = exact_share(scene["grounded"] == 2 for scene in scenes)
+            found[f"two_points_of_all_near_pairs_{name}"] = exact_share(scene["near"][1] == 2 for scene in scenes)
     return found
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How often each set of networks came, by kind; and a picture of each."""
-    outcomes: dict[tuple, int] = {}
-    for result in results:
-        for row in result["scenes"]:
-            key = (result["kind"], tuple(row["nodes"]), row["path"], row["stacked"])
-            outcomes[key] = outcomes.get(key, 0) + 1
-    counted = [
-        {"kind": kind, "points": list(nodes), "path": path, "stacked": stacked, "scenes": n}
-        for (kind, nodes, path, stacked), n in sorted(outcomes.items())
-    ]
-    return counted + [example for result in results for example in result["examples"]]
+    outcomes = (
+        {"kind": r["kind"], "points": s["nodes"], "path": s["path"], "stacked": s["stacked"]}
+        for r in results
+        for s in r["scenes"]
+    )
+    return tally(outcomes, "scenes") + [example for result in results for example in result["examples"]]

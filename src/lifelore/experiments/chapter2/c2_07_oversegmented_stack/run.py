@@ -1,22 +1,138 @@
-"""C2.7: three things on one another, and two things wrongly segmented into three, have one structure.
+"""Cells of claim C2.7: skeletons of stacks of three, of two objects segmented into three, and of controls.
 
-The middle thing's network merges its contact with the thing below and that with the thing above: two points. A
-thing cut level into two has, with the other thing, the same skeleton: one point, two points, one point. Contacts
-with the ground are not counted (the thesis's background is taken off), nor those of near pairs that perception
-says are not related; both other countings stand beside. Three neighbours in a row have that skeleton too, as have
-two things on one: without its predicates a skeleton knows no up. So a control has the structure only if its
-predicates agree. Thesis: §2.4.3, Figure 2.7.
+Findings are of three objects of each scene: the middle one and its two neighbours. *stack*: three blocks (thesis
+Fig. 2.7, left). *cut*: a block on a slab or a ball on a block, of which one is cut level into two (right).
+Controls: a *row* of three neighbours, and *two on one*. *real stack*, *real cut*: the same of real scenes with
+other objects removed. Thesis: §2.4.3.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.stack_skeletons import run_cell
-from lifelore.experiments.chapter2.stack_skeletons import stack_cells as cells
+import numpy as np
 
-__all__ = ["cells", "check", "run_cell"]
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.relations import ON
+from lifelore.core.streams import stream
+from lifelore.experiments.chapter2.arranged_scenes import arranged
+from lifelore.experiments.chapter2.perturbation import cut_object
+from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.skeletons import (
+    NEAR,
+    RELATED,
+    Three,
+    carried_pairs,
+    only,
+    perceived,
+    predicates,
+    reading,
+    real_stacks,
+    standing,
+)
+from lifelore.perception.scene import Scene
+
+KINDS = ("stack", "cut", "row", "two-on-one")
+LOT = 15
+LOW_CUT, HIGH_CUT = 0.35, 0.65
+"""Where an object is cut, of its visible height."""
+TALL = 0.04
+"""Metres: the lower of two real objects is cut if its visible height reaches this, else the upper."""
 
 
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")
+def cells(settings: Mapping) -> list[dict]:
+    """Scenes in lots, by kind; then the real ones, where the settings ask for them and they are there."""
+    lots = [{"kind": kind, "first": k} for kind in KINDS for k in range(0, settings["scenes"], LOT)]
+    if not settings["real"] or real_scenes_folder() is None:
+        return lots
+    return [*lots, {"kind": "real stack"}, {"kind": "real cut"}]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Findings of a lot, and a picture from the first lot of each kind."""
+    rows, examples = [], []
+    for number, three in enumerate(_threes(settings, cell, seed)):
+        scene = perceived(three.cloud)
+        rows.append(findings(scene, three))
+        if number == 0 and cell.get("first", 0) == 0:
+            examples.append(scene_row(reading(scene), cell["kind"]))
+    return {"kind": cell["kind"], "scenes": rows, "examples": examples}
+
+
+def _threes(settings: Mapping, cell: Mapping, seed: int) -> Iterator[Three]:
+    if cell["kind"] == "real stack":
+        yield from real_stacks()
+    elif cell["kind"] == "real cut":
+        yield from real_cuts(seed)
+    else:
+        for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+            yield simulated(cell["kind"], seed, number)
+
+
+def simulated(kind: str, seed: int, number: int) -> Three:
+    """Scene `number` of one of `KINDS`."""
+    if kind == "stack":
+        return Three(arranged("stack", seed, number).cloud, 2, 3, 4)
+    if kind == "row":
+        return Three(arranged("row", seed, number).cloud, 2, 3, 4)
+    if kind == "two-on-one":
+        return Three(arranged("two-on-one", seed, number).cloud, 3, 2, 4)
+    rng = stream(seed, "cut level", number)
+    if number % 2:
+        cloud, upper = level_cut(arranged("ball-on-block", seed, number).cloud, 2, rng)
+        return Three(cloud, 2, upper, 3)
+    cloud, upper = level_cut(arranged("no-hole", seed, number).cloud, 3, rng)
+    return Three(cloud, 2, 3, upper)
+
+
+def level_cut(cloud: LabelledCloud, label: int, rng: np.random.Generator) -> tuple[LabelledCloud, int]:
+    """An object cut by a level plane near the middle of its visible height, and its upper part's label."""
+    heights = cloud.of(label)[:, 2]
+    low, high = np.quantile(heights, [0.01, 0.99])
+    at = low + rng.uniform(LOW_CUT, HIGH_CUT) * (high - low)
+    return cut_object(cloud, label, (0.0, 0.0, 1.0), (0.0, 0.0, at))
+
+
+def real_cuts(seed: int) -> Iterator[Three]:
+    """Every b on a of the real scenes with a on the table, one of the two cut level."""
+    for scene in real_scenes():
+        on_table = standing(scene.truth)
+        for upper, lower in sorted(pair for pair in carried_pairs(scene.truth) if pair[1] in on_table):
+            rng = stream(seed, "cut level", scene.name, upper, lower)
+            cloud = only(scene.cloud, (lower, upper))
+            tall = bool(np.ptp(np.quantile(cloud.of(lower)[:, 2], [0.01, 0.99])) >= TALL)
+            cloud, part = level_cut(cloud, lower if tall else upper, rng)
+            yield Three(cloud, lower, part, upper) if tall else Three(cloud, lower, upper, part)
+
+
+def findings(scene: Scene, three: Three) -> dict:
+    """The networks of the three.
+
+    `nodes`, `near`: contact points of (below, middle, above) towards objects, of related and of all near pairs;
+    `grounded`: of the middle, the ground's contacts included; `path`: whether the related skeleton is one point,
+    two points, one point, in contact in this order; `stacked`: whether the predicates among the three are *on*
+    twice.
+    """
+    related, near = reading(scene), reading(scene, NEAR)
+    things = (three.below, three.middle, three.above)
+    grounded = reading(scene, RELATED, ground=True)
+    return {
+        "nodes": [len(related.networks[thing].nodes) for thing in things],
+        "near": [len(near.networks[thing].nodes) for thing in things],
+        "grounded": len(grounded.networks[three.middle].nodes),
+        "path": is_path(related, three),
+        "stacked": predicates(related) == {(ON, three.above, three.middle), (ON, three.middle, three.below)},
+    }
+
+
+def is_path(scene: Scene, three: Three) -> bool:
+    """Whether the networks have 1, 2 and 1 points and either point of the middle faces one neighbour."""
+    counts = [len(scene.networks[thing].nodes) for thing in (three.below, three.middle, three.above)]
+    facing = {
+        (edge.node_a, edge.b) if edge.a == three.middle else (edge.node_b, edge.a)
+        for edge in scene.contact_edges
+        if three.middle in (edge.a, edge.b)
+    }
+    ends = dict(facing)
+    return (
+        counts == [1, 2, 1] and len(scene.contact_edges) == 2 and set(ends.values()) == {three.below, three.above}
+    )

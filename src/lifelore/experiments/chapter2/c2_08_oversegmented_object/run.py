@@ -1,8 +1,8 @@
-"""One thing of a scene wrongly segmented into two, and what is said of its parts (thesis Fig. 2.9).
+"""Cells of claim C2.8: one object wrongly segmented into two, and the relation of its parts (thesis Fig. 2.9).
 
-A thing that stands on the table by itself is cut *level* (its upper part is on its lower), *upright* (its parts
-stand side by side) or *oblique*, where what is true is a matter of taste: an upper part on a slope. Parts of an
-upright cut must both reach the table, else one would hang from the other.
+An object that stands on the table by itself is cut *level* (its upper part is on its lower), *upright* (its parts
+stand side by side) or *oblique* (an upper part on a slope: no relation is the true one). Parts of an upright cut
+must both reach the table, else one part would hang from the other.
 """
 
 from collections.abc import Mapping
@@ -17,10 +17,10 @@ from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import TabletopScene, sample_scene
-from lifelore.experiments.chapter2.cut_objects import cut_object
+from lifelore.experiments.chapter2.perturbation import cut_object
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
 from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeleton_reading import perceived, reading
+from lifelore.experiments.chapter2.skeletons import perceived, reading
 from lifelore.perception.peers.bounding_box_rule import BoundingBoxRule
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
@@ -30,7 +30,7 @@ TILTS = {"level": (0.0, 0.0), "oblique": (15.0, 75.0), "upright": (90.0, 90.0)}
 """Degrees between a cut's normal and up."""
 TRUE = {"level": ON, "upright": ADJACENT}
 TALL, BROAD = 0.05, 0.06
-"""Metres that a thing must be seen to be high, and wide across an upright cut."""
+"""Metres: least visible height of an object that is cut, and least width across an upright cut."""
 REACHES = 0.01
 SEEN_TO_REACH = 0.03
 """Metres above the table below which a part's true, or visible, points must come."""
@@ -41,7 +41,7 @@ Row = dict[str, Any]
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of simulated scenes; then of real ones, where asked for and there."""
+    """Lots of simulated scenes; then of real ones, where the settings ask for them and they are there."""
     lots: list[dict] = [{"first": k} for k in range(0, settings["scenes"], LOT)]
     if not settings["real"] or real_scenes_folder() is None:
         return lots
@@ -70,7 +70,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def simulated_cuts(seed: int, number: int) -> list[tuple[Row, Scene]]:
-    """The cuts of one thing of scene `number`: of those that stand by themselves and can be cut, one by chance."""
+    """The cuts of an object of scene `number`, drawn from those that stand by themselves and can be cut."""
     own_seed = int(stream(seed, "over-segmented").integers(2**31))
     scene = sample_scene(own_seed, number, TabletopSettings(n_objects=(2, 4), shapes="all"))
     rng = stream(seed, "cuts", number)
@@ -82,12 +82,12 @@ def simulated_cuts(seed: int, number: int) -> list[tuple[Row, Scene]]:
 
 
 def true_outline(scene: TabletopScene, label: int) -> NDArray[np.float64]:
-    """Points that span a true thing, metres."""
+    """Points that span a true object, metres."""
     return scene.poses[label - 2].apply(scene.shapes[label - 2].outline())
 
 
 def free_standing(truth: tuple[PairLabel, ...]) -> list[int]:
-    """Things on the table beyond doubt that nothing else carries, wholly or in part."""
+    """Objects on the table beyond doubt that no other object carries, wholly or in part."""
     carried = {t.a for t in truth if t.b != TABLE and t.relation in (ON, BOTH)}
     return sorted(
         t.a for t in truth if t.b == TABLE and t.relation == ON and t.confidence == 3 and t.a not in carried
@@ -97,7 +97,7 @@ def free_standing(truth: tuple[PairLabel, ...]) -> list[int]:
 def cuts_of(
     cloud: LabelledCloud, label: int, name: str, rng: np.random.Generator, outline: NDArray | None = None
 ) -> list[tuple[Row, Scene]]:
-    """For each kind of cut that the thing allows a row, and what was perceived; none of a low thing."""
+    """For each kind of cut that the object allows a row and the perceived scene; none of a low object."""
     cuts = []
     if np.ptp(np.quantile(cloud.of(label)[:, 2], [0.01, 0.99])) < TALL:
         return cuts
@@ -115,7 +115,7 @@ def cuts_of(
 def _cut(
     cloud: LabelledCloud, label: int, tilt: float, rng: np.random.Generator, outline: NDArray | None
 ) -> tuple[LabelledCloud, int] | None:
-    """The thing cut near its middle at a tilt (degrees), any way round; None where parts would be bad."""
+    """The object cut near its middle at a tilt (degrees), at any yaw; None where a part would be too small."""
     points = cloud.of(label)
     for _ in range(DRAWS):
         yaw, slope = rng.uniform(0, 2 * np.pi), np.radians(tilt)
@@ -134,28 +134,28 @@ def _cut(
 def _both_reach(
     points: NDArray[np.float64], outline: NDArray | None, normal: NDArray[np.float64], through: NDArray[np.float64]
 ) -> bool:
-    """Whether either part comes down to the table: the true one where it is known, else what is seen of it."""
+    """Whether both parts come down to the table: the true parts where known, else their visible points."""
     body, limit = (points, SEEN_TO_REACH) if outline is None else (outline, REACHES)
     beyond = (body - through) @ normal > 0
     return all(side.any() and body[side, 2].min() < limit for side in (beyond, ~beyond))
 
 
 def judged(scene: Scene, part: int, label: int) -> Row:
-    """What is said of the parts: by perception, and by the rule of bounding boxes; and of each with the table.
+    """The relation of the parts by perception and by the rule of bounding boxes; of each part with the table.
 
-    The direction is part of what is said: *on*, the upper part on the lower; *on, turned*, the reverse.
+    The direction counts: *on* is the upper part on the lower; *on, turned* is the reverse.
     """
     boxes = BoundingBoxRule().predict(scene.cloud)
     tables = [scene.relation_of(thing, TABLE) for thing in (part, label)]
     return {
-        "said": said_of(scene.relations, part, label),
-        "boxes": said_of(boxes, part, label),
+        "said": relation_in_words(scene.relations, part, label),
+        "boxes": relation_in_words(boxes, part, label),
         "table": [relation.relation if relation else NONE for relation in tables],
     }
 
 
-def said_of(relations: tuple[Relation, ...], part: int, label: int) -> str:
-    """The relation of (part, label) as one word: *on*, *adjacent*, *both*, *none*; *on*, *both* may be turned."""
+def relation_in_words(relations: tuple[Relation, ...], part: int, label: int) -> str:
+    """The relation of (part, label): *on*, *adjacent*, *both*, *none*; *on* and *both* may be turned."""
     relation = next((r for r in relations if {r.a, r.b} == {part, label}), None)
     if relation is None:
         return NONE
@@ -163,8 +163,3 @@ def said_of(relations: tuple[Relation, ...], part: int, label: int) -> str:
         raise InputError(f"relations must be of the core vocabulary, got '{relation.relation}'")
     turned = relation.relation in (ON, BOTH) and relation.a != part
     return f"{relation.relation}, turned" if turned else relation.relation
-
-
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")

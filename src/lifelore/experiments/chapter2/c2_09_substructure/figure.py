@@ -1,4 +1,4 @@
-"""Figure of claim C2.9."""
+"""Pictures of claim C2.9: a stack, a stack with two contacts, and a row (thesis Fig. 2.10)."""
 
 from collections.abc import Mapping
 

@@ -1,20 +1,18 @@
-"""Whether the skeleton of a stack of three lies within that of a stack with two contacts, and within others.
+"""Cells of claim C2.9: whether the skeleton of a stack of three lies within the skeletons of other scenes.
 
-Three skeletons of each scene are looked at: of the *things* alone (related pairs), the same with the *ground*,
-and of *support* (pairs of which one carries the other, ground included): a skeleton has no predicates, so a row
-of three neighbours has that of a stack, and only what carries what tells them apart.
+Each scene has three skeletons: of the *things* alone (related pairs), the same with the *ground*, and of *support*
+(pairs in which one object carries the other, ground included). A skeleton has no predicates, so a row of three
+neighbours has the skeleton of a stack; only the skeleton of support differs. Thesis: Figure 2.10.
 """
 
 from collections.abc import Mapping
 from typing import Any
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
 from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeleton_reading import RELATED, SUPPORT, perceived, reading
-from lifelore.experiments.chapter2.stack_skeletons import real_stacks
+from lifelore.experiments.chapter2.skeletons import RELATED, SUPPORT, perceived, reading, real_stacks
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.substructure import find_substructure
 
@@ -25,13 +23,13 @@ ARRANGEMENTS = dict(zip(HOSTS, ("stack-two-contacts", "no-hole", "row", "two-on-
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Scenes in lots; then the real stacks, where asked for and there."""
+    """Scenes in lots; then the real stacks, where the settings ask for them and they are there."""
     lots = [{"first": k} for k in range(0, settings["scenes"], LOT)]
     return [*lots, {"real": True}] if settings["real"] and real_scenes_folder() else lots
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """For each number: in which scenes the stack's skeleton was found, which way round, and with what witness."""
+    """For each number: in which scenes the stack's skeleton was found, and whether the witness is right."""
     if cell.get("real"):
         host = perceived(arranged(ARRANGEMENTS["two contacts"], seed, 0).cloud)
         stacks = [perceived(three.cloud) for three in real_stacks()]
@@ -47,7 +45,6 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         row: dict[str, Any] = {name: found_in(stack, host) for name, host in hosts.items()}
         row["reversed"] = found_in(hosts["two contacts"], stack)
         row["witness"] = witness_is_right(stack, hosts["two contacts"])
-        row["points"] = [sum(len(n.nodes) for n in reading(s).networks.values()) for s in (stack, *hosts.values())]
         rows.append(row)
         if number == 0:
             pictures = {"stack": stack, "two contacts": hosts["two contacts"], "row": hosts["row"]}
@@ -67,13 +64,8 @@ def found_in(part: Scene, whole: Scene) -> dict[str, bool]:
 
 
 def witness_is_right(part: Scene, whole: Scene) -> bool | None:
-    """Whether the witness maps each thing, the ground too, to the one in its place; None where none is found."""
+    """Whether the witness maps each object and the ground to its counterpart; None where none is found."""
     witness = find_substructure(*(reading(scene, ground=True) for scene in (part, whole)))
     if not witness.found:
         return None
     return witness.objects == {label: label for label in (TABLE, *part.objects)}
-
-
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")

@@ -1,4 +1,4 @@
-"""Figure of claim C2.10."""
+"""Pictures of claim C2.10: a ball on a block by each camera (thesis Fig. 2.2)."""
 
 from collections.abc import Mapping
 

@@ -1,6 +1,6 @@
-"""Measures and rows of claim C2.11."""
+"""Measures and rows of claim C2.11: support vectors and contacts by gap and kernel."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -8,131 +8,116 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter2.c2_11_distant_objects.run import FAR, kernels
 from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, kernel_name
 from lifelore.experiments.engine.estimates import exact_share
+from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
-KINDS = ("simulated", "real")
-SV_A, SV_B, CONTACTS_A, CONTACTS_B, STRONG_A, STRONG_B, VIOLATION = range(7)
-Counts = np.ndarray
-"""Of one gap and kernel, a row of seven numbers a pair."""
-
-
-def table_of(settings: Mapping, results: Sequence[Mapping], kind: str) -> dict[tuple[int, int], Counts]:
-    """By number of gap and of kernel, the seven numbers of every pair, ``(n, 7)``."""
-    found: dict[tuple[int, int], list] = {}
-    for pair in (pair for result in results if result["kind"] == kind for pair in result["pairs"]):
-        for gap, kernel, *numbers in pair["found"]:
-            found.setdefault((gap, kernel), []).append(numbers)
-    return {key: np.array(rows, float) for key, rows in found.items()}
-
-
-def nothing(counts: Counts) -> list[bool]:
-    """Pairs without a contact of at least 7 support vectors on either side."""
-    return (counts[:, STRONG_A] + counts[:, STRONG_B] == 0).tolist()
-
-
-def nothing_at_all(counts: Counts) -> list[bool]:
-    """Pairs with no support vector, hence no contact of any size, on some side."""
-    return (np.minimum(counts[:, SV_A], counts[:, SV_B]) == 0).tolist()
-
-
-def something(counts: Counts) -> list[bool]:
-    """Pairs with a contact of at least 7 support vectors on both sides."""
-    return (np.minimum(counts[:, STRONG_A], counts[:, STRONG_B]) > 0).tolist()
-
-
-def support(counts: Counts) -> np.ndarray:
-    """Support vectors a thing, mean of the two."""
-    return (counts[:, SV_A] + counts[:, SV_B]) / 2
-
-
-def gap_number(settings: Mapping, gap: float) -> int:
-    """Number of a gap of the settings; 0 is the pair as it was seen."""
-    return 1 + list(settings["gaps"]).index(gap)
+QUARTILES = ("support", "contacts", "contacts_of_7")
+Findings = dict[str, dict[str, Estimate]]
+"""By kernel, and over all kernels, the estimates as seen and at `FAR`."""
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """As seen and at `FAR`, by kernel; then of the kernel that tells the two apart best."""
-    found: dict[str, Estimate] = {}
-    far = gap_number(settings, FAR)
+    """Simulated pairs as seen and at `FAR`: under the standard kernel, the best kernel, and all kernels."""
+    found = findings(settings, results)["simulated"]
+    measured = {f"{name}_standard_simulated": number for name, number in found.get(STANDARD, {}).items()}
     names = [kernel_name(*kernel) for kernel in kernels(settings)]
-    for kind in KINDS:
-        table = table_of(settings, results, kind)
-        if not table:
-            continue
-        for number, name in enumerate(names):
-            near_by, away = table[0, number], table[far, number]
-            place = f"{name}_{kind}" if name != STANDARD else f"standard_{kind}"
-            found[f"no_contacts_far_{place}"] = exact_share(nothing(away))
-            found[f"contacts_as_seen_{place}"] = exact_share(something(near_by))
-            found[f"support_vectors_far_{place}"] = mean_estimate(support(away))
-            found[f"far_over_seen_{place}"] = mean_estimate(support(away) / support(near_by))
-        found |= _of_all_kernels(table, far, kind)
-        found |= _best_kernel(table, far, len(names), kind)
-        sizes = [pair["size"] for r in results if r["kind"] == kind for pair in r["pairs"]]
-        found[f"far_in_sizes_{kind}"] = mean_estimate([FAR / size for size in sizes])
+    # The best kernel tells the two apart: the smaller of its two shares is the largest.
+    best = max(
+        names, key=lambda name: min(found[name][key].value for key in ("contacts_as_seen", "no_contacts_far"))
+    )
+    for key in ("contacts_as_seen", "no_contacts_far"):
+        measured[f"{key}_best_kernel_simulated"] = found[best][key]
+    key = "no_support_vectors_on_a_side_far"
+    return measured | {f"{key}_simulated": found["all"][key]}
+
+
+@computed_once
+def findings(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Findings]:
+    """By kind of scenes: estimates of each kernel by its name, and of all kernels under "all"."""
+    table, far = pairs_table(settings, results), 1 + list(settings["gaps"]).index(FAR)
+    found: dict[str, Findings] = {}
+    for kind in table.distinct("kind"):
+        by_kernel = found.setdefault(kind, {})
+        for number, kernel in enumerate(kernels(settings)):
+            seen, away = ({"kind": kind, "gap": gap, "kernel": number} for gap in (0, far))
+            support = table.values("support", **away)
+            by_kernel[kernel_name(*kernel)] = {
+                "no_contacts_far": exact_share(table.values("none_of_7", **away)),
+                "contacts_as_seen": exact_share(table.values("both_of_7", **seen)),
+                "support_vectors_far": mean_estimate(support),
+                "far_over_seen": mean_estimate(support / table.values("support", **seen)),
+            }
+        sizes = [pair["size"] for result in results if result["kind"] == kind for pair in result["pairs"]]
+        by_kernel["all"] = {
+            "no_support_vectors_on_a_side_far": exact_share(table.values("no_support", kind=kind, gap=far)),
+            "no_support_vectors_on_a_side": exact_share(table.values("no_support", kind=kind)),
+            "not_optimal": exact_share(table.values("violation", kind=kind) > 1e-3),
+            "far_in_sizes": mean_estimate([FAR / size for size in sizes]),
+        }
     return found
 
 
-def _of_all_kernels(table: Mapping[tuple[int, int], Counts], far: int, kind: str) -> dict[str, Estimate]:
-    """Over all gaps and kernels: sides without any support vector, and separators that are not optimal."""
-    every = np.concatenate(list(table.values()))
-    distant = np.concatenate([counts for (gap, _), counts in table.items() if gap == far])
+@computed_once
+def pairs_table(settings: Mapping, results: Sequence[Mapping]) -> ResultsTable:
+    """A record for each pair, number of gap (0: as seen) and number of kernel."""
+    records = (
+        {"kind": result["kind"], "gap": gap, "kernel": kernel, "metres": pair["gaps"][gap], **pair_counts(counts)}
+        for result in results
+        for pair in result["pairs"]
+        for gap, kernel, *counts in pair["found"]
+    )
+    return ResultsTable(records, ("kind", "gap", "kernel"))
+
+
+def pair_counts(counts: Sequence[float]) -> dict[str, float]:
+    """Means of the two objects, and the answers that shares count.
+
+    Parameters
+    ----------
+    counts : (7,)
+        Support vectors of a and of b, contacts of both, contacts of at least 7 support vectors of both, violation.
+    """
+    support_a, support_b, contacts_a, contacts_b, strong_a, strong_b, violation = counts
     return {
-        f"no_support_vectors_on_a_side_far_{kind}": exact_share(nothing_at_all(distant)),
-        f"no_support_vectors_on_a_side_{kind}": exact_share(nothing_at_all(every)),
-        f"not_optimal_{kind}": exact_share((every[:, VIOLATION] > 1e-3).tolist()),
+        "support": (support_a + support_b) / 2,
+        "contacts": (contacts_a + contacts_b) / 2,
+        "contacts_of_7": (strong_a + strong_b) / 2,
+        "none_of_7": strong_a + strong_b == 0,
+        "both_of_7": min(strong_a, strong_b) > 0,
+        "no_support": min(support_a, support_b) == 0,
+        "violation": violation,
     }
 
 
-def _best_kernel(table: Mapping[tuple[int, int], Counts], far: int, n: int, kind: str) -> dict[str, Estimate]:
-    """The kernel under which most pairs have contacts as seen and none far: best by the worse of two shares."""
-    shares = [(exact_share(something(table[0, k])), exact_share(nothing(table[far, k]))) for k in range(n)]
-    seen, gone = max(shares, key=lambda pair: min(pair[0].value, pair[1].value))
-    return {f"contacts_as_seen_best_kernel_{kind}": seen, f"no_contacts_far_best_kernel_{kind}": gone}
-
-
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Of each kind, kernel and gap: quartiles of support vectors a thing and of contacts, shares without."""
-    found = []
-    for kind in KINDS:
-        table = table_of(settings, results, kind)
-        gaps = [pair["gaps"] for r in results if r["kind"] == kind for pair in r["pairs"]]
-        for number, kernel in enumerate(kernels(settings) if table else ()):
-            for place, unit in enumerate(_units(settings)):
-                counts = table[place, number]
-                line = {"scenes": kind, "kernel": kernel_name(*kernel), "gap": _median(gaps, place), "unit": unit}
-                line |= {"pairs": len(counts), "support": _quartiles(support(counts))}
-                line |= {"contacts": _quartiles(_mean_of(counts, CONTACTS_A, CONTACTS_B))}
-                line |= {"contacts_of_7": _quartiles(_mean_of(counts, STRONG_A, STRONG_B))}
-                line |= {"none_of_7": round(float(np.mean(nothing(counts))), 4)}
-                found.append(line | {"violation": float(counts[:, VIOLATION].max())})
+    """Quartiles by kind of scenes, kernel and gap; then the estimates of each kernel and of all."""
+    table, found = pairs_table(settings, results), []
+    units = [
+        "as seen",
+        *("metres" for _ in settings["gaps"]),
+        *(f"{times:g} sizes" for times in settings["sizes"]),
+    ]
+    for kind in table.distinct("kind"):
+        for number, kernel in enumerate(kernels(settings)):
+            for gap, unit in enumerate(units):
+                own = table.select(kind=kind, gap=gap, kernel=number)
+                metres = round(float(np.median(own.values("metres"))), 4)
+                line = {
+                    "scenes": kind,
+                    "kernel": kernel_name(*kernel),
+                    "gap": metres,
+                    "unit": unit,
+                    "pairs": len(own),
+                }
+                line |= {name: _quartiles(own.values(name)) for name in QUARTILES}
+                line |= {"none_of_7": round(float(own.values("none_of_7").mean()), 4)}
+                found.append(line | {"violation": float(own.values("violation").max())})
+    for kind, by_kernel in findings(settings, results).items():
+        for kernel, numbers in by_kernel.items():
+            plain = {name: number.to_dict() for name, number in numbers.items()}
+            found.append({"scenes": kind, "estimates of kernel": kernel, **plain})
     return found
-
-
-def _units(settings: Mapping) -> list[str]:
-    """Of each gap how it was asked for."""
-    return ["as seen", *("metres" for _ in settings["gaps"]), *(f"{times:g} sizes" for times in settings["sizes"])]
-
-
-def _median(gaps: Sequence[Sequence[float]], place: int) -> float:
-    return round(float(np.median([one[place] for one in gaps])), 4)
-
-
-def _mean_of(counts: Counts, first: int, second: int) -> np.ndarray:
-    return (counts[:, first] + counts[:, second]) / 2
 
 
 def _quartiles(values: np.ndarray) -> list[float]:
     """Median, lower and upper quartile."""
     return np.round(np.quantile(values, [0.5, 0.25, 0.75]), 2).tolist()
-
-
-def curves_of(rows: Sequence[Mapping], kernels_shown: Callable[[str], bool], kind: str = "simulated") -> dict:
-    """Rows of gaps in metres as `figures.separation_curve` takes them."""
-    curves: dict[str, dict] = {}
-    for row in rows:
-        if row["scenes"] == kind and row["unit"] in ("as seen", "metres") and kernels_shown(row["kernel"]):
-            curve = curves.setdefault(row["kernel"], {"gap": [], "support_vectors": [], "nodes": []})
-            curve["gap"].append(row["gap"])
-            curve["support_vectors"].append(row["support"])
-            curve["nodes"].append(row["contacts_of_7"])
-    return curves

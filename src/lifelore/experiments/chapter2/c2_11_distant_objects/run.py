@@ -1,9 +1,9 @@
-"""Pairs of things carried apart, gap by gap, and the separator between them; no gate of distance anywhere.
+"""Cells of claim C2.11: the separator between two objects that are moved apart gap by gap, at any distance.
 
-A pair is photographed together, thinned to 3 mm, and one thing's points are then carried away from the other's, so
-that shape, density and noise stay and only the gap grows: straight up where it rests on the other, along the table
-where it stands beside it. Support vectors are clustered as everywhere here, with and without the thesis's rule
-that a contact has at least 7 of them. Thesis: §2.3.4, §2.4.1.
+A pair is photographed together and thinned to 3 mm. Then the points of one object are moved away from those of the
+other, so that shape, density and noise stay and only the gap grows: straight up where it rests on the other, along
+the table where it stands beside it. Support vectors are clustered as in perception, with and without the thesis's
+rule that a contact has at least 7 of them. Thesis: §2.3.4, §2.4.1.
 """
 
 from collections.abc import Iterator, Mapping, Sequence
@@ -17,7 +17,6 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.pair_validation import THRESHOLD
 from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
@@ -34,7 +33,7 @@ Points = NDArray[np.float64]
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of simulated pairs, then of real scenes where asked for and there; reads ``pairs`` and ``real``."""
+    """Lots of simulated pairs, then of real scenes where the settings ask for them and they are there."""
     lots = [{"first": k} for k in range(0, settings["pairs"], LOT)]
     if not settings["real"] or real_scenes_folder() is None:
         return lots
@@ -56,7 +55,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[tuple[Points, Points, str]]:
-    """Points of a and b, and the relation, of each pair of things that bears one."""
+    """Points of a and b, and the relation, of each pair of objects with a relation."""
     thin = voxelised(without_table(cloud), DEFAULT_CONTACT_SETTINGS.voxel).cloud
     for label in truth:
         if TABLE not in (label.a, label.b) and label.relation != NONE and label.confidence >= LEAST_CONFIDENCE:
@@ -64,12 +63,12 @@ def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[
 
 
 def parted(settings: Mapping, a: Points, b: Points, relation: str) -> dict:
-    """The separator's yield at every gap and kernel.
+    """Support vectors and contacts at every gap and kernel.
 
     Returns
     -------
     dict
-        ``relation``; ``size``, the diagonal of the larger thing's box, metres; ``gaps``, metres, first as seen,
+        ``relation``; ``size``, the diagonal of the larger object's box, metres; ``gaps``, metres, first as seen,
         then those of ``settings["gaps"]``, then ``settings["sizes"]`` times the size; ``found``, ``[gap, kernel,
         support vectors of a, of b, contacts of a, of b, contacts of 7 of a, of b, violation]`` with gap and kernel
         by number.
@@ -94,7 +93,7 @@ def kernels(settings: Mapping) -> list[tuple[float, float]]:
 
 
 def away(a: Points, b: Points, relation: str) -> Points:
-    """The unit vector along which a leaves b: up from what it rests on, else along the table."""
+    """The unit vector along which a leaves b: up from its support, else along the table."""
     if relation == ON:
         return np.array([0.0, 0.0, 1.0])
     apart = np.append((a.mean(axis=0) - b.mean(axis=0))[:2], 0.0)
@@ -103,7 +102,7 @@ def away(a: Points, b: Points, relation: str) -> Points:
 
 
 def shift_to(a: Points, tree: KDTree, way: Points, gap: float) -> float:
-    """How far a must go for `gap` metres between the two, by bisection to `_EXACT`."""
+    """How far a must move for `gap` metres between the two, by bisection to `_EXACT`."""
     low, high = 0.0, 0.05
     while _gap(a + high * way, tree) < gap:
         low, high = high, 2 * high
@@ -128,16 +127,9 @@ def counts(a: Points, b: Points, length: float, cost: float) -> list:
 
 
 FAR = 1.0
-"""Metres: the gap of the predicate; some five to ten sizes."""
+"""Metres: the gap that the conditions ask about; some five to ten sizes."""
 
 
 def check(settings: Mapping) -> None:
-    if settings["pairs"] < 1:
-        raise InputError(f"pairs must be at least 1, got {settings['pairs']}")
-    if settings["camera"] not in CAMERAS:
-        raise InputError(f"camera must be one of {', '.join(CAMERAS)}, got '{settings['camera']}'")
-    for key in ("gaps", "sizes", "lengths", "costs"):
-        if not settings[key] or min(settings[key]) <= 0:
-            raise InputError(f"{key} must be positive numbers, at least one, got {settings[key]}")
     if FAR not in settings["gaps"]:
-        raise InputError(f"gaps must hold {FAR:g} m, which the predicate asks about, got {settings['gaps']}")
+        raise InputError(f"gaps must hold {FAR:g} m, which the conditions ask about, got {settings['gaps']}")

@@ -1,7 +1,7 @@
-"""Relations found without labels in rows of pairs, and how well what was found agrees with the labels.
+"""Clusters of pairs found without labels, and their agreement with the labels.
 
-Three look at each pair once: X-means as the thesis proposes, k-means told the true number of relations, and our
-discovery; *every word* clusters all displacements between contact points, in three dimensions and in the order
+Each pair counts once for X-means as the thesis proposes it, for k-means with the true number of relations, and for
+our discovery; *every word* clusters all displacements between contact points, in three dimensions and in the order
 in which A and B were given. Thesis: §2.3.5.
 """
 
@@ -30,7 +30,7 @@ Names = NDArray[np.str_]
 
 @dataclass(frozen=True, eq=False)
 class Sighted:
-    """The near pairs of a data set, the thing with the higher centre first.
+    """The near pairs of a data set, the object with the higher centre first.
 
     Parameters
     ----------
@@ -48,7 +48,7 @@ class Sighted:
 
     @property
     def sides(self) -> Names:
-        """The relations, with *adjacent* told apart by left and right."""
+        """The relations, with *adjacent* divided into left and right."""
         side = np.where(self.displacements[:, 0] < 0, "left", "right")
         return np.where(self.relations == ADJACENT, side, self.relations)
 
@@ -87,12 +87,9 @@ def clustered(seen: Sighted, method: str, starts: int, name: str) -> list[Labels
     """Clusters of a data set called `name` from several random starts."""
     from threadpoolctl import threadpool_limits
 
-    # Threads that share out matrices of four rows do little but wait for each other.
+    # With matrices of four rows, threads mostly wait for each other.
     with threadpool_limits(1):
         return [METHODS[method](seen, stream(start, "relation clusters", method, name)) for start in range(starts)]
-
-
-# --- agreement --------------------------------------------------------------------------------------------
 
 
 def rand_index(relations: Names, labels: Labels) -> float:
@@ -109,22 +106,12 @@ def cluster_counts(relations: Names, labels: Labels) -> list[list[int]]:
 
 
 def cluster_names(relations: Names, labels: Labels) -> Names:
-    """The commonest relation of each pair's cluster; of equally common ones the first of `CORE_RELATIONS`."""
+    """The most frequent relation of each pair's cluster; among equals the first of `CORE_RELATIONS`."""
     named = np.empty(len(labels), dtype="<U16")
     for k in np.unique(labels):
         own = relations[labels == k]
         named[labels == k] = max(CORE_RELATIONS, key=lambda name: int((own == name).sum()))
     return named
-
-
-def macro_f1(relations: Names, named: Names) -> float:
-    """Mean over the relations that occur of 2 right / (said + true)."""
-    present = [name for name in CORE_RELATIONS if name in relations]
-    each = [
-        2 * ((relations == n) & (named == n)).sum() / ((relations == n).sum() + (named == n).sum())
-        for n in present
-    ]
-    return float(np.mean(each))
 
 
 def rand_index_by_scene(scenes: Names, relations: Names, labels: Labels) -> Estimate:
@@ -140,11 +127,8 @@ def rand_index_by_scene(scenes: Names, relations: Names, labels: Labels) -> Esti
     return Estimate(value, value, (float(low), float(high)), len(relations))
 
 
-# --- every word -------------------------------------------------------------------------------------------
-
-
 def every_word(rows: Sequence[Row], reading: Reading, name: str) -> dict | None:
-    """All displacements in three dimensions, A and B given: how many, and what X-means and k-means make of them.
+    """All displacements in three dimensions, A and B given: their number, and the ARI of X-means and k-means.
 
     ``{"displacements", "clusters", "ari_x_means", "ari_k_means"}``; None where there is no displacement.
     """
@@ -158,10 +142,10 @@ def every_word(rows: Sequence[Row], reading: Reading, name: str) -> dict | None:
     rng = stream(0, "every word", name)
     found = x_means(moved, rng, most=min(MOST, len(moved)))
     with threadpool_limits(1):
-        told = k_means(moved, len(set(relations)), rng)
+        k_clusters = k_means(moved, len(set(relations)), rng)
     return {
         "displacements": len(moved),
         "clusters": len(found.centres),
         "ari_x_means": rand_index(relations, found.labels),
-        "ari_k_means": rand_index(relations, told),
+        "ari_k_means": rand_index(relations, k_clusters),
     }

@@ -1,24 +1,19 @@
-"""Networks with every contact and with strong ones, nodes by kernel, how often *on* is told (thesis Fig 2.1)."""
+"""Networks with every contact and with strong ones, nodes by kernel, share of *on* by method (thesis Fig 2.1)."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import (
-    CENTRES,
-    CONTACTS,
-    OURS,
-)
-from lifelore.experiments.chapter2.method_bars import draw_bars
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import CENTRES, CONTACTS, OURS
+from lifelore.experiments.chapter2.method_panels import draw_method_panels
 from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.scene_example import scene_of_row
+from lifelore.experiments.chapter2.scene_example import examples_of
 from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.figures.gallery import gallery_above
 from lifelore.figures.object_palette import mixed
-from lifelore.figures.scene_picture import draw_scene_on
-from lifelore.figures.style import BLUE, INK, ORANGE, PAPER, house_style, new_figure
+from lifelore.figures.stacked_bars import draw_stacked_bars
+from lifelore.figures.style import BLUE, INK, ORANGE, PAPER, house_style
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
 
 SHOWN = {
@@ -30,87 +25,40 @@ SHOWN = {
 }
 """Names in the figure."""
 TITLES = {"every contact": "every contact", "strong": f"contacts of at least {THRESHOLD} support vectors"}
+NODES: dict[str, str] = {
+    "0": INK,
+    "1": ORANGE,
+    "2": mixed(BLUE, PAPER, 0.6),
+    "3": BLUE,
+    "4 or more": mixed(BLUE, INK, 0.6),
+}
+"""Colour by number of nodes."""
 
 
-def draw(result: Mapping):
-    rows, measured = result["rows"], result["measured"]
-    cameras = result["settings"]["cameras"]
-    counts: dict[str, dict[str, list[int]]] = {}
-    for row in rows:
-        if "kernel" in row and row["camera"] == cameras[0]:
-            for words, title in TITLES.items():
-                counts.setdefault(f"{cameras[0]}, {title}", {})[row["kernel"]] = row["scenes by nodes"][words]
+def draw(result: Mapping) -> "Figure":
+    measured, cameras = result["measured"], result["settings"]["cameras"]
+    counts = [row for row in result["rows"] if "kernel" in row and row["camera"] == cameras[0]]
     panels = {
         camera: {shown: measured[f"on_by_{name}{f'_{camera}' if number else ''}"] for name, shown in SHOWN.items()}
         for number, camera in enumerate(cameras)
     }
-    examples = [scene_of_row(row) for row in rows if "example" in row]
-    return draw_contacts_and_centres(examples, counts, panels, marked=STANDARD)
-
-
-_WIDTH, _PICTURES, _BARS = 9.4, 4, 2.1
-_TONES = (INK, ORANGE, mixed(BLUE, PAPER, 0.6), BLUE, mixed(BLUE, INK, 0.6))
-"""Of none, one, two, three and more nodes."""
-
-
-def draw_contacts_and_centres(
-    scenes: Sequence[tuple[LabelledCloud, Mapping, str]],
-    counts: Mapping[str, Mapping[str, Sequence[int]]],
-    panels: Mapping[str, Mapping[str, Mapping]],
-    *,
-    marked: str,
-) -> "Figure":
-    """The figure.
-
-    Parameters
-    ----------
-    scenes : sequence of (cloud, document, caption)
-        Pictures side by side, as of `scene_picture.draw_scene`; four fill a row.
-    counts : mapping of title to mapping of kernel to numbers
-        Scenes with 0, 1, 2, … nodes; the last of them, and more.
-    panels : mapping of title to mapping of method to measurement
-        As of `method_bars.draw_method_bars`.
-    marked : str
-        The kernel whose name is bold.
-    """
-    wide = _WIDTH / _PICTURES
-    heights = [0.75 * wide + 0.35, 0.75 + 0.24 * len(next(iter(counts.values()))), _BARS]
+    figure, below = gallery_above(examples_of(result), 4.3, columns=4, layers=("cloud", "networks"))
     with house_style():
-        figure = new_figure(_WIDTH, sum(heights))
-        top, middle, bottom = figure.subfigures(3, 1, squeeze=False, height_ratios=heights)[:, 0]
-        for axes, (cloud, document, caption) in zip(
-            top.subplots(1, max(_PICTURES, len(scenes)), squeeze=False)[0], scenes, strict=False
-        ):
-            draw_scene_on(axes, cloud, document, (wide, 0.75 * wide), ("cloud", "networks"))
-            axes.set_title(caption, fontsize=8.5, pad=4)
-        for axes in top.axes[len(scenes) :]:
-            axes.set_axis_off()
-        _draw_counts(middle, counts, marked)
-        draw_bars(bottom, panels, xlabel="told to be on(ball, block) (%)")
+        middle, bottom = below.subfigures(2, 1, squeeze=False, height_ratios=[2.2, 2.1])[:, 0]
+        draw_nodes(middle, counts, cameras[0])
+        draw_method_panels(bottom, panels, "predicted on(ball, block) (%)")
     return figure
 
 
-def _draw_counts(figure: "SubFigure", counts: Mapping[str, Mapping[str, Sequence[int]]], marked: str) -> None:
-    every = figure.subplots(1, len(counts), squeeze=False, sharey=True)[0]
-    for axes, (title, by_kernel) in zip(every, counts.items(), strict=True):
-        for place, numbers in enumerate(by_kernel.values()):
-            _stack(axes, place, numbers)
-        axes.set(xlim=(0, 100), title=title, xlabel="scenes by nodes of the block (%)")
-        axes.tick_params(axis="y", length=0)
-        axes.spines["left"].set_visible(False)
-    names = list(next(iter(counts.values())))
-    every[0].set_yticks(range(len(names)), names)
-    every[0].set_ylim(len(names) - 0.5, -0.5)
+def draw_nodes(figure: "SubFigure", rows: Sequence[Mapping], camera: str) -> None:
+    """Scenes by number of nodes of the block and kernel, of all contacts and of strong ones; ours in bold."""
+    kernels = [row["kernel"] for row in rows]
+    every = figure.subplots(1, len(TITLES), squeeze=False, sharey=True)[0]
+    for axes, (key, title) in zip(every, TITLES.items(), strict=True):
+        by_nodes = zip(*(row["scenes by nodes"][key] for row in rows), strict=True)
+        parts = dict(zip(NODES, by_nodes, strict=True))
+        label = "scenes by nodes of the block (%)"
+        draw_stacked_bars(axes, kernels, parts, NODES, shares=True, title=f"{camera}, {title}", label=label)
     for label in every[0].get_yticklabels():
-        label.set_fontweight("bold" if label.get_text() == marked else "normal")
-    last = len(_TONES) - 1
-    for n, tone in enumerate(_TONES):
-        every[-1].barh([0], [0], color=tone, label=f"{n}" if n < last else f"{n} or more")
+        label.set_fontweight("bold" if label.get_text() == STANDARD else "normal")
     every[-1].legend(loc="upper left", bbox_to_anchor=(1.0, 1.0), title="nodes", title_fontsize=8)
-
-
-def _stack(axes: "Axes", place: int, numbers: Sequence[int]) -> None:
-    whole, left = max(1, sum(numbers)), 0.0
-    for n, tone in zip(numbers, _TONES, strict=True):
-        axes.barh([place], [100 * n / whole], left=left, height=0.74, color=tone)
-        left += 100 * n / whole

@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.13."""
+"""Measures and rows of claim C2.13: nodes of the L-block, and how often each method predicts *on*."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -16,8 +16,8 @@ from lifelore.experiments.chapter2.pair_validation import (
     as_seen,
     gap_of,
     label_of,
-    told_by_neighbours,
-    vote,
+    votes_of_neighbours,
+    votes_on,
 )
 from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference
 from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
@@ -27,13 +27,12 @@ from lifelore.perception.relations.relation_classifier import RelationClassifier
 
 CONTACTS, CENTRES, OURS = "contacts", "centres", "lifelore"
 OTHERS = {"closest_points": "closest-point k-NN", "bounding_boxes": "bounding-box rule"}
-Lot = tuple[list[Row], list[Row]]
-"""Lessons and scenes."""
 
 
-def _lot(results: Sequence[Mapping], camera: str) -> Lot:
+def lessons_and_scenes(results: Sequence[Mapping], camera: str) -> tuple[list[Row], list[Row]]:
+    """The rows of lessons, and of scenes, of a camera."""
     lessons, scenes = (
-        [row for one in results if (one["kind"], one["camera"]) == (kind, camera) for row in one["rows"]]
+        [row for r in results if (r["kind"], r["camera"]) == (kind, camera) for row in r["rows"]]
         for kind in (LESSON, SCENE)
     )
     return lessons, scenes
@@ -45,7 +44,7 @@ def nodes(row: Row, kernel: str = STANDARD) -> np.ndarray:
 
 
 def strong(found: np.ndarray) -> np.ndarray:
-    """Those of at least `THRESHOLD` support vectors."""
+    """The nodes of at least `THRESHOLD` support vectors."""
     return found[found[:, 1] >= THRESHOLD]
 
 
@@ -58,15 +57,12 @@ def topmost_alone_remains(found: np.ndarray) -> bool:
 def node_measures(scenes: Sequence[Row]) -> dict[str, Estimate]:
     """Shares of scenes by the block's nodes, with the threshold and without."""
     found = [nodes(row) for row in scenes]
-    n, left = [len(one) for one in found], [len(strong(one)) for one in found]
+    n, left = [len(all_nodes) for all_nodes in found], [len(strong(all_nodes)) for all_nodes in found]
     return {
         "rank_of_three_nodes": mean_or_unmeasured((k < NODES) + 0.5 * (k == NODES) for k in n),
-        "three_nodes_without_threshold": exact_share(k == NODES for k in n),
         "several_nodes_without_threshold": exact_share(k > 1 for k in n),
         "one_node_with_threshold": exact_share(k == 1 for k in left),
-        "one_node_with_threshold_strongest_kept": exact_share(k <= 1 for k in left),
         "kept_node_is_topmost": exact_share(topmost_alone_remains(one) for one in found),
-        "one_node_of_the_ball": exact_share(len(row["contacts"][STANDARD]["b"]) == 1 for row in scenes),
     }
 
 
@@ -81,7 +77,7 @@ def node_counts(scenes: Sequence[Row], kernel: str) -> dict[str, list[int]]:
 
 
 def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[JudgedPair]]:
-    """By method, what is said of each scene, its direction included."""
+    """By method the judged pairs of scenes, the direction inferred."""
     displacement = RelationClassifier("displacement", symmetric=SYMMETRIC)
     models: dict[str, tuple[Any, Any]] = {
         CONTACTS: (displacement, as_scene),
@@ -94,26 +90,26 @@ def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[Ju
     found = {}
     for name, (model, look) in models.items():
         model.fit_pairs([look(row) for row in near], truths)
-        said = [
+        predicted = [
             next(iter(model.predict_pairs(look(row))), None) if row["gap"] is not None else None for row in scenes
         ]
         found[name] = [
-            JudgedPair(row["scene"], label_of(row), one, gap_of(row))
-            for row, one in zip(scenes, said, strict=True)
+            JudgedPair(row["scene"], label_of(row), relation, gap_of(row))
+            for row, relation in zip(scenes, predicted, strict=True)
         ]
     return found
 
 
 def given(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[str]]:
-    """The relation told of each scene with A and B given, by displacements of contact points and of centres."""
+    """The relation of each scene with A and B given, by displacements of contact points and of centres."""
     rows = [row for row in [*lessons, *scenes] if row["gap"] is not None]
     train = np.arange(len(rows)) < len(rows) - sum(row["gap"] is not None for row in scenes)
     owner = np.arange(len(rows))
-    by_contacts = told_by_neighbours(rows, Reading(), train)
-    by_centres = vote(np.array([centres_apart(row) for row in rows]), owner, rows, Reading(), train)
+    by_contacts = votes_of_neighbours(rows, Reading(), train)
+    by_centres = votes_on(np.array([centres_apart(row) for row in rows]), owner, rows, Reading(), train)
     return {
-        name: [one for one, known in zip(told.united(len(rows)), train, strict=True) if not known]
-        for name, told in ((CONTACTS, by_contacts), (CENTRES, by_centres))
+        name: [relation for relation, known in zip(votes.relations(len(rows)), train, strict=True) if not known]
+        for name, votes in ((CONTACTS, by_contacts), (CENTRES, by_centres))
     }
 
 
@@ -124,12 +120,12 @@ def centres_apart(row: Row) -> np.ndarray:
 
 
 def on_measures(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, Estimate]:
-    """Shares of scenes told to be on(ball, block), by method."""
+    """Shares of scenes predicted to be on(ball, block), by method; distances of the centres."""
     judged = inferred(lessons, scenes)
     found = {f"on_by_{name}": exact_share(pair.exact for pair in pairs) for name, pairs in judged.items()}
     found["on_by_contacts_less_by_centres"] = difference(judged[CONTACTS], judged[CENTRES])
-    for name, said in given(lessons, scenes).items():
-        found[f"on_by_{name}_in_given_order"] = exact_share(one == ON for one in said)
+    for name, relations in given(lessons, scenes).items():
+        found[f"on_by_{name}_in_given_order"] = exact_share(relation == ON for relation in relations)
     away = 1000 * np.array([centres_apart(row) for row in scenes if row["gap"] is not None]).reshape(-1, 3)
     found["mm_of_centres_apart_sideways"] = mean_or_unmeasured(np.hypot(away[:, 0], away[:, 1]))
     found["mm_of_centres_apart_upwards"] = mean_or_unmeasured(away[:, 2])
@@ -137,33 +133,28 @@ def on_measures(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, Esti
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Nodes and *on* by the first camera; by any other with its name behind."""
+    """Nodes and *on* by the first camera; by another camera with its name at the end."""
     found = {}
     for number, camera in enumerate(settings["cameras"]):
-        lessons, scenes = _lot(results, camera)
-        ends = f"_{camera}" if number else ""
+        lessons, scenes = lessons_and_scenes(results, camera)
+        ending = f"_{camera}" if number else ""
         measured = node_measures(scenes) | on_measures(lessons, scenes)
-        found |= {f"{name}{ends}": one for name, one in measured.items()}
+        found |= {f"{name}{ending}": estimate for name, estimate in measured.items()}
     return found
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Scenes by number of nodes, by kernel and camera; what each method says how often; pictures."""
+    """Scenes by number of nodes, by kernel and camera; how often each method predicts a relation; pictures."""
     found: list[dict] = []
     for camera in settings["cameras"]:
-        lessons, scenes = _lot(results, camera)
+        lessons, scenes = lessons_and_scenes(results, camera)
         for kernel in KERNELS:
             name = kernel_name(*kernel)
             found.append({"camera": camera, "kernel": name, "scenes by nodes": node_counts(scenes, name)})
         for method, pairs in inferred(lessons, scenes).items():
-            said = Counter(_words(pair) for pair in pairs)
-            found.append({"camera": camera, "method": method, "said": dict(sorted(said.items()))})
-        for one in results:
-            if one["camera"] == camera:
-                found += [row | {"example": f"{camera}, {row['example']}"} for row in one["examples"]]
+            words = Counter(f"{pair.relation}{'' if pair.same_way else ', turned'}" for pair in pairs)
+            found.append({"camera": camera, "method": method, "said": dict(sorted(words.items()))})
+        for result in results:
+            if result["camera"] == camera:
+                found += [row | {"example": f"{camera}, {row['example']}"} for row in result["examples"]]
     return found
-
-
-def _words(pair: JudgedPair) -> str:
-    turned = "" if pair.same_way else ", turned"
-    return f"{pair.relation}{turned}"

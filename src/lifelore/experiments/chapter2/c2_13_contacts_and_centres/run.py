@@ -1,14 +1,12 @@
-"""A ball on top of an L-block's upright (thesis Fig. 2.1) as rows of numbers, and pairs from which to learn.
+"""Cells of claim C2.13: a ball on top of an L-block's upright (thesis Fig. 2.1), and pairs to learn from.
 
-Scenes and lessons are rows of `tabletop_pairs`: contacts under a grid of kernels, none dropped, features, and what
-peers see. Block and ball have the labels 2 and 3; the table's points are left out.
+Scenes and lessons are rows of `tabletop_pairs`: contacts under a grid of kernels, none dropped, features, and the
+descriptors of peers. Block and ball have the labels 2 and 3; the table's points are left out.
 """
 
 from collections.abc import Mapping
 from dataclasses import replace
 
-from lifelore.core.errors import InputError
-from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings
 from lifelore.experiments.chapter2 import tabletop_pairs
 from lifelore.experiments.chapter2.arranged_scenes import arranged
@@ -33,10 +31,7 @@ NODES = 3
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of lessons, then of scenes, camera by camera.
-
-    Settings read: ``cameras``, ``lessons`` and ``scenes`` (of each).
-    """
+    """Lots of lessons, then of scenes, camera by camera."""
     lots = ((LESSON, settings["lessons"], tabletop_pairs.LOT), (SCENE, settings["scenes"], LOT))
     return [
         {"kind": kind, "camera": camera, "first": first}
@@ -77,12 +72,3 @@ def pictures(worlds: list[TabletopScene], rows: list[Row]) -> list[dict]:
         caption = f"{words}: {n} node{'s' * (n != 1)}"
         found.append(scene_row(Scene(world.cloud, between), caption))
     return found
-
-
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1 or settings["lessons"] < 4:
-        raise InputError(
-            f"scenes must be at least 1 and lessons at least 4, got {settings['scenes']} and {settings['lessons']}"
-        )
-    if not settings["cameras"] or set(settings["cameras"]) - set(CAMERAS):
-        raise InputError(f"cameras must be some of {', '.join(CAMERAS)}, got {settings['cameras']}")

@@ -1,4 +1,4 @@
-"""Measures and rows of claim C5.2."""
+"""Measures and rows of claim C5.2: objects in the same role, ranked by the likeness of their use."""
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
@@ -21,21 +21,17 @@ METHODS = {
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Mean average precision by method, differences to peers on the same queries, and by role."""
+    """Mean average precision by method, and differences to the other methods on the same queries."""
     queries = judged_queries(results)
     scenes = [query["scene"] for query in queries]
     found = {f"map_{name}": mean_by_cluster([q[name] for q in queries], scenes) for name in METHODS}
-    for peer in ("shape", "chance", "predicates", "near"):
-        found[f"topology_less_{peer}"] = mean_by_cluster([q["topology"] - q[peer] for q in queries], scenes)
-    for role in ROLES:
-        own = [query for query in queries if query["role"] == role]
-        values, clusters = [q["topology"] for q in own], [q["scene"] for q in own]
-        found[f"map_topology_{role.replace(' ', '_')}"] = mean_by_cluster(values, clusters)
+    for name in ("shape", "chance", "predicates", "near"):
+        found[f"topology_less_{name}"] = mean_by_cluster([q["topology"] - q[name] for q in queries], scenes)
     return found
 
 
 def judged_queries(results: Sequence[Mapping]) -> list[dict]:
-    """For each thing its scene, its role, and by method the average precision among the other pool's things."""
+    """For each object its scene, its role, and by method the average precision among the other pool's objects."""
     things = {pool: [t for r in results if r["pool"] == pool for t in r["things"]] for pool in ("first", "second")}
     queries = []
     for pool, others in (("first", things["second"]), ("second", things["first"])):
@@ -55,7 +51,7 @@ def _overlaps(bag: Mapping[str, int], others: Sequence[Mapping[str, int]]) -> np
 
 
 def _likeness(histogram: Sequence[float], others: Sequence[Sequence[float]]) -> np.ndarray:
-    """As `functional_similarity.shape_similarity`, from histograms known already."""
+    """As `functional_similarity.shape_similarity`, from two histograms."""
     return 1 - np.abs(np.asarray(others) - np.asarray(histogram)).sum(axis=1) / 2
 
 
@@ -65,7 +61,6 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     table = []
     for role in ROLES:
         own = [query for query in queries if query["role"] == role]
-        table.append(
-            {"role": role, "queries": len(own), **{m: float(np.mean([q[m] for q in own])) for m in METHODS}}
-        )
+        precision = {method: float(np.mean([query[method] for query in own])) for method in METHODS}
+        table.append({"role": role, "queries": len(own), **precision})
     return table + [example for result in results for example in result["examples"]]

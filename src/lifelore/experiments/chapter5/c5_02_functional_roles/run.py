@@ -1,6 +1,6 @@
-"""Things in known roles: what each does in its scene, by how it was put and what physics made of it.
+"""Cells of claim C5.2: objects in known roles; a role follows from the placement and from the settled physics.
 
-All things are flat pieces of one range of sizes, whatever their role, so that shape tells nothing of it; two
+All objects are flat pieces of the same range of sizes, whatever their role, so shape does not reveal the role; two
 pools have no kind of shape in common. Ten roles: *alone*; *base*, *middle* and *top* of a stack; *span* and
 *pillar* of a bridge; *leaner* and *leant on*; *neighbour*; *between* two neighbours.
 """
@@ -11,7 +11,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
 from lifelore.core.streams import stream
@@ -20,7 +19,7 @@ from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import Shape, box, cross, cylinder, paddle, prism
 from lifelore.experiments.chapter2.arranged_scenes import Placement, settled, turned
 from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeleton_reading import NEAR, perceived, reading
+from lifelore.experiments.chapter2.skeletons import NEAR, perceived, reading
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.functional_similarity import role, shape_distribution
 
@@ -54,7 +53,7 @@ POOLS: dict[str, tuple[Draw, ...]] = {"first": (_bar, _cross), "second": (_paddl
 
 @dataclass(frozen=True)
 class Part:
-    """A kind of scene: roles of its things in the order of their labels, from 2; how to place; what must be."""
+    """A kind of scene: roles of its objects in the order of labels, from 2; placement; labels that must hold."""
 
     roles: tuple[str, ...]
     place: Callable[[np.random.Generator, Draw], Group]
@@ -146,7 +145,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The things of a lot of scenes, each with its role and all descriptors; a picture from the first lot."""
+    """The objects of a lot of scenes, each with its role and all descriptors; a picture from the first lot."""
     part, draws = PARTS[cell["part"]], POOLS[cell["pool"]]
     things, examples = [], []
     for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
@@ -154,20 +153,20 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         world = settled(Placement(lambda rng: part.place(rng, _any(draws)), part.true), name, seed, number)
         scene = perceived(world.cloud)
         rng = stream(seed, "pairs of points", name, number)
-        for label, what in enumerate(part.roles, start=2):
-            things.append({"scene": f"{name} {number}", "role": what, **descriptors(scene, label, rng)})
+        for label, own_role in enumerate(part.roles, start=2):
+            things.append({"scene": f"{name} {number}", "role": own_role, **descriptors(scene, label, rng)})
         if number == 0 and cell["pool"] == "second" and cell["part"] in ("tower", "bridge", "lean"):
             examples.append(scene_row(reading(scene), ", ".join(part.roles)))
     return {"pool": cell["pool"], "things": things, "examples": examples}
 
 
 def _any(draws: tuple[Draw, ...]) -> Draw:
-    """A draw of any of the kinds, afresh for each thing."""
+    """A draw of any of the kinds, afresh for each object."""
     return lambda rng: draws[int(rng.integers(len(draws)))](rng)
 
 
 def descriptors(scene: Scene, label: int, rng: np.random.Generator) -> dict:
-    """How a thing is used: by its network among related pairs (`topology`), among all near ones (`near`), by its
+    """The use of an object: its network among related pairs (`topology`) and among all near pairs (`near`), its
     predicates alone (`predicates`), each a bag of tokens; and its `shape`, a histogram.
     """
     return {
@@ -179,20 +178,15 @@ def descriptors(scene: Scene, label: int, rng: np.random.Generator) -> dict:
 
 
 def predicate_bag(scene: Scene, label: int) -> Counter:
-    """What a thing is said to be: how often each predicate holds of it, first or second, and with what kind."""
+    """How often each predicate holds of an object, as first or second, with the table or another object."""
     bag: Counter = Counter()
-    for said in scene.relations:
-        if label in (said.a, said.b) and said.relation != NONE:
-            other = said.b if said.a == label else said.a
-            place = "either" if said.relation == ADJACENT else "first" if said.a == label else "second"
-            bag[said.relation, place, "table" if other == TABLE else "thing"] += 1
+    for found in scene.relations:
+        if label in (found.a, found.b) and found.relation != NONE:
+            other = found.b if found.a == label else found.a
+            place = "either" if found.relation == ADJACENT else "first" if found.a == label else "second"
+            bag[found.relation, place, "table" if other == TABLE else "thing"] += 1
     return bag
 
 
 def _bag(tokens: Counter) -> dict[str, int]:
     return {" ".join(map(str, token)): n for token, n in sorted(tokens.items(), key=str)}
-
-
-def check(settings: Mapping) -> None:
-    if settings["scenes"] < 1:
-        raise InputError(f"scenes must be at least 1, got {settings['scenes']}")

@@ -18,15 +18,14 @@ def test_one_scene_is_told_as_in_the_figure():
 
 
 def test_measures_by_hand():
-    good = {"said": "", "right": True, "points": [1, 1], "upper_points": 1, "near_points": 2, "apart": 80.0}
+    good = {"said": "", "right": True, "points": [1, 1], "upper_points": 1, "near_points": 2}
     results = [
         {"camera": "kinect", "scenes": [good, {**good, "points": [2, 1]}], "examples": []},
-        {"camera": "stereo", "scenes": [{**good, "right": False, "apart": None}], "examples": []},
+        {"camera": "stereo", "scenes": [{**good, "right": False}], "examples": []},
     ]
     found = measure({}, results)
     assert found["predicates_right_kinect"].value == 1.0
     assert found["two_points_of_the_lower_kinect"].value == 0.5
     assert found["predicates_right_stereo"].value == 0.0
     assert found["one_point_of_the_upper_of_all_near_pairs_kinect"].value == 0.0
-    assert found["mm_between_the_two_points_kinect"].value == 80.0
     assert found["predicates_right_real"].n == 0

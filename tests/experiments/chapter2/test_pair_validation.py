@@ -7,7 +7,7 @@ from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, SY
 from lifelore.experiments.chapter2 import pair_validation
 from lifelore.experiments.chapter2.pair_validation import (
     Reading,
-    Told,
+    Votes,
     as_scene,
     as_seen,
     cross_validated,
@@ -15,9 +15,9 @@ from lifelore.experiments.chapter2.pair_validation import (
     gap_of,
     in_given_order,
     label_of,
-    told_by_neighbours,
     united,
-    vote,
+    votes_of_neighbours,
+    votes_on,
 )
 from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
 from lifelore.perception.pairs.pair_features import column_names
@@ -96,7 +96,7 @@ LINE = one_by_one((ON, 0), (ON, 1), (ADJACENT, 2), (ADJACENT, 3), (BOTH, 10))
 
 
 def test_votes_by_hand():
-    told = told_by_neighbours(LINE)
+    told = votes_of_neighbours(LINE)
     assert told.row.tolist() == [0, 1, 2, 3, 4]
     # At 10 two say on and two adjacent: of equal votes the first by name wins.
     assert told.labels.tolist() == [ADJACENT, ADJACENT, ON, ON, ADJACENT]
@@ -105,7 +105,7 @@ def test_votes_by_hand():
 
 
 def test_near_votes_weigh_more_by_inverse_distance():
-    told = told_by_neighbours(LINE, Reading(votes="inverse distance"))
+    told = votes_of_neighbours(LINE, Reading(votes="inverse distance"))
     # At 0: on at 1; adjacent at 2 and 3; both at 10. At 10: on at 10 and 9, adjacent at 8 and 7.
     first = np.array([1, 1 / 2 + 1 / 3, 1 / 10, 0])
     last = np.array([1 / 10 + 1 / 9, 1 / 8 + 1 / 7, 0, 0])
@@ -116,12 +116,12 @@ def test_near_votes_weigh_more_by_inverse_distance():
 
 def test_ties_go_to_the_first_by_name():
     rows = one_by_one((ADJACENT, 0), (ON, 1), (NONE, 2), (BOTH, 3))
-    assert told_by_neighbours(rows, Reading(k=1)).labels[0] == ON
-    assert told_by_neighbours(rows, Reading(k=2)).labels[0] == NONE
-    assert told_by_neighbours(rows, Reading(k=3)).labels[0] == BOTH
+    assert votes_of_neighbours(rows, Reading(k=1)).labels[0] == ON
+    assert votes_of_neighbours(rows, Reading(k=2)).labels[0] == NONE
+    assert votes_of_neighbours(rows, Reading(k=3)).labels[0] == BOTH
     # Two at one distance, all of whom are asked, weigh the same.
     rows = one_by_one((ON, 0), (NONE, 1), (ADJACENT, -1))
-    told = told_by_neighbours(rows, Reading(votes="inverse distance"))
+    told = votes_of_neighbours(rows, Reading(votes="inverse distance"))
     assert told.shares[0].tolist() == [0, 0.5, 0, 0.5]
     assert told.labels[0] == ADJACENT
 
@@ -131,48 +131,48 @@ def test_the_thesis_asks_four():
     rows = one_by_one(
         (ON, 0), (ON, 1), (ON, -1.5), (ON, 2), (ADJACENT, -2.5), *[(ADJACENT, 3 + n) for n in range(5)]
     )
-    told = told_by_neighbours(rows)
+    told = votes_of_neighbours(rows)
     assert told.shares[0].tolist() == [0.75, 0.25, 0, 0]
     # A fifth and sixth would have changed it.
-    assert told_by_neighbours(rows, Reading(k=7)).labels[0] == ADJACENT
+    assert votes_of_neighbours(rows, Reading(k=7)).labels[0] == ADJACENT
 
 
 def test_nobody_of_the_own_scene_is_asked():
     rows = [at("s", ON, 0), at("s", ON, 0), at("s", ON, 0.1), at("t", ADJACENT, 50), at("u", NONE, 100)]
-    told = told_by_neighbours(rows, Reading(k=1))
+    told = votes_of_neighbours(rows, Reading(k=1))
     assert told.labels.tolist() == [ADJACENT, ADJACENT, ADJACENT, ON, ADJACENT]
 
 
 def test_fewer_than_four_and_nobody_to_ask():
-    told = told_by_neighbours([at("s", ON, 0), at("t", ADJACENT, 1)])
+    told = votes_of_neighbours([at("s", ON, 0), at("t", ADJACENT, 1)])
     assert told.shares.tolist() == [[0, 1, 0, 0], [1, 0, 0, 0]]
-    alone = told_by_neighbours([at("s", ON, 0, 1)])
+    alone = votes_of_neighbours([at("s", ON, 0, 1)])
     assert alone.labels.tolist() == [NONE, NONE]
     assert not alone.shares.any()
-    far = told_by_neighbours([pair("s", NONE, gap=None), pair("t", ON, gap=None)])
-    assert (len(far.row), far.united(2)) == (0, [NONE, NONE])
+    far = votes_of_neighbours([pair("s", NONE, gap=None), pair("t", ON, gap=None)])
+    assert (len(far.row), far.relations(2)) == (0, [NONE, NONE])
 
 
 def test_long_displacements_are_told_but_not_learnt_from():
     rows = one_by_one((ON, 1), (ON, 2), (ADJACENT, -5), (ADJACENT, -6), (ADJACENT, -7))
-    assert told_by_neighbours(rows).labels[2] == ADJACENT
-    told = told_by_neighbours(rows, Reading(omega=2))
+    assert votes_of_neighbours(rows).labels[2] == ADJACENT
+    told = votes_of_neighbours(rows, Reading(omega=2))
     assert told.row.tolist() == [0, 1, 2, 3, 4]
     assert told.labels.tolist() == [ON] * 5
     # The limit is the whole length, and its own end belongs to it.
-    assert told_by_neighbours(rows, Reading(omega=1.9)).labels.tolist() == [NONE, ON, ON, ON, ON]
+    assert votes_of_neighbours(rows, Reading(omega=1.9)).labels.tolist() == [NONE, ON, ON, ON, ON]
 
 
 def test_only_training_rows_are_asked_and_only_others_told():
     train = np.array([True, False, False, True, False])
-    told = told_by_neighbours(LINE, train=train)
+    told = votes_of_neighbours(LINE, train=train)
     assert told.row.tolist() == [1, 2, 4]
     assert told.shares.tolist() == [[0.5, 0.5, 0, 0]] * 3
 
 
 def test_a_scene_on_both_sides_is_still_not_asked():
     rows = [at("s", ON, 0), at("s", ON, 1), at("t", ADJACENT, 9)]
-    told = told_by_neighbours(rows, train=np.array([True, False, True]))
+    told = votes_of_neighbours(rows, train=np.array([True, False, True]))
     assert told.labels.tolist() == [ADJACENT]
 
 
@@ -233,7 +233,7 @@ def test_block_by_block_is_what_sorting_all_distances_gives(reading, block, monk
     monkeypatch.setattr(pair_validation, "BLOCK", block)
     for seed, train in ((0, None), (1, np.random.default_rng(1).random(30) < 0.6)):
         rows = some_rows(seed)
-        told, expected = told_by_neighbours(rows, reading, train), naive(rows, reading, train)
+        told, expected = votes_of_neighbours(rows, reading, train), naive(rows, reading, train)
         assert told.row.tolist() == [i for i, _ in expected]
         for label, shares, (_, votes) in zip(told.labels, told.shares, expected, strict=True):
             np.testing.assert_allclose(shares, [votes.get(name, 0) for name in CORE_RELATIONS], atol=1e-12)
@@ -245,7 +245,7 @@ def test_votes_on_displacements_that_are_known_already_are_the_same():
     rows = some_rows(2)
     each = [displacements(row) for row in rows]
     owner = np.repeat(np.arange(30), [len(one) for one in each])
-    told, again = told_by_neighbours(rows), vote(np.concatenate(each), owner, rows, Reading())
+    told, again = votes_of_neighbours(rows), votes_on(np.concatenate(each), owner, rows, Reading())
     assert np.array_equal(told.shares, again.shares)
     assert np.array_equal(told.row, again.row)
 
@@ -271,19 +271,19 @@ def test_the_union_has_a_component_if_any_has(said, whole):
 
 
 def test_each_rows_displacements_are_united():
-    told = Told(np.array([0, 2, 0, 2, 3]), np.array([ON, ON, ADJACENT, NONE, NONE]), np.zeros((5, 4)))
-    assert told.united(4) == [BOTH, NONE, ON, NONE]
+    told = Votes(np.array([0, 2, 0, 2, 3]), np.array([ON, ON, ADJACENT, NONE, NONE]), np.zeros((5, 4)))
+    assert told.relations(4) == [BOTH, NONE, ON, NONE]
 
 
 def test_a_pair_with_two_contacts_is_both():
     rows = [at(f"on {n}", ON, 0.01 * n) for n in range(4)]
     rows += [at(f"beside {n}", ADJACENT, 9 + 0.01 * n) for n in range(4)]
     rows += [at("two", ON, 0.1, 9.1)]
-    told = told_by_neighbours(rows)
+    told = votes_of_neighbours(rows)
     assert told.row.tolist() == [0, 1, 2, 3, 4, 5, 6, 7, 8, 8]
-    assert told.united(9)[8] == BOTH
+    assert told.relations(9)[8] == BOTH
     # Of the others each has three or more of its own kind beside it.
-    assert told.united(9)[:8] == [ON] * 4 + [ADJACENT] * 4
+    assert told.relations(9)[:8] == [ON] * 4 + [ADJACENT] * 4
 
 
 def test_what_is_said_stands_beside_what_is_true():

@@ -5,15 +5,11 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.experiments.chapter2.c2_11_distant_objects.measure import (
-    curves_of,
-    gap_number,
+    findings,
     measure,
-    nothing,
-    nothing_at_all,
+    pair_counts,
+    pairs_table,
     rows,
-    something,
-    support,
-    table_of,
 )
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.contacts.contact_points import linked
@@ -34,11 +30,12 @@ COUNTS = np.array(
 SETTINGS = {"gaps": [0.1, 1.0], "sizes": [], "lengths": [0.06, 0.25], "costs": [10.0]}
 
 
-def test_pairs_are_told_apart_by_hand():
-    assert nothing(COUNTS) == [True, False, False, True]
-    assert something(COUNTS) == [False, False, True, False]
-    assert nothing_at_all(COUNTS) == [False, False, False, True]
-    assert support(COUNTS).tolist() == [8, 15, 11, 1.5]
+def test_answers_of_pairs_by_hand():
+    found = [pair_counts(counts) for counts in COUNTS]
+    assert [one["none_of_7"] for one in found] == [True, False, False, True]
+    assert [one["both_of_7"] for one in found] == [False, False, True, False]
+    assert [one["no_support"] for one in found] == [False, False, False, True]
+    assert [one["support"] for one in found] == [8, 15, 11, 1.5]
 
 
 def pair(*found: tuple, size: float = 0.1) -> dict:
@@ -67,10 +64,10 @@ def results() -> list[dict]:
 
 
 def test_a_table_holds_every_pair_of_its_kind(results):
-    table = table_of(SETTINGS, [*results, {"kind": "real", "pairs": [pair(*[WEAK] * 6)]}], "simulated")
-    assert set(table) == {(gap, kernel) for gap in range(3) for kernel in range(2)}
-    assert table[0, 0].tolist() == [list(map(float, one)) for one in (BOTH_SIDES,) * 3 + (ONE_SIDE,)]
-    assert table_of(SETTINGS, results, "real") == {}
+    table = pairs_table(SETTINGS, [*results, {"kind": "real", "pairs": [pair(*[WEAK] * 6)]}])
+    assert table.values("support", kind="simulated", gap=0, kernel=0).tolist() == [20, 20, 20, 8]
+    assert table.values("support", kind="real", gap=2, kernel=1).tolist() == [5]
+    assert len(table) == 4 * 3 * 2 + 6
 
 
 def test_measures_by_hand(results):
@@ -78,59 +75,41 @@ def test_measures_by_hand(results):
     values = {name: one.value for name, one in found.items()}
     assert values["no_contacts_far_standard_simulated"] == 3 / 4
     assert values["contacts_as_seen_standard_simulated"] == 3 / 4
-    assert values["no_contacts_far_250 mm, C 10_simulated"] == 1 / 4
-    assert values["contacts_as_seen_250 mm, C 10_simulated"] == 1.0
-    # Means of a thing: weak 5 (three pairs), both sides 20; as seen 20 (three pairs), one side 8.
+    # Means of an object: weak 5 (three pairs), both sides 20; as seen 20 (three pairs), one side 8.
     assert values["support_vectors_far_standard_simulated"] == pytest.approx((5 + 5 + 5 + 20) / 4)
     assert values["far_over_seen_standard_simulated"] == pytest.approx((0.25 * 3 + 20 / 8) / 4)
     # The best kernel is the one whose worse share is the better: 3/4 and 3/4 against 1 and 1/4.
     assert values["contacts_as_seen_best_kernel_simulated"] == 3 / 4
     assert values["no_contacts_far_best_kernel_simulated"] == 3 / 4
     assert values["no_support_vectors_on_a_side_far_simulated"] == 0
-    # 4 pairs, 3 gaps, 2 kernels; one of the 24 separators is not optimal.
-    assert found["not_optimal_simulated"].value == 1 / 24
-    assert found["not_optimal_simulated"].n == 24
     assert found["no_support_vectors_on_a_side_far_simulated"].n == 8
-    # 1 m is 10 sizes of two pairs and 5 of the others.
-    assert values["far_in_sizes_simulated"] == pytest.approx(7.5)
-    assert not any(name.endswith("real") for name in found)
     interval = found["no_contacts_far_standard_simulated"].ci95
     # Clopper and Pearson of 3 in 4, from tables.
     assert interval == pytest.approx((0.1941, 0.9937), abs=1e-4)
+    by_kernel = findings(SETTINGS, results)["simulated"]
+    assert by_kernel["250 mm, C 10"]["no_contacts_far"].value == 1 / 4
+    assert by_kernel["250 mm, C 10"]["contacts_as_seen"].value == 1.0
+    # 4 pairs, 3 gaps, 2 kernels; one of the 24 separators is not optimal.
+    assert (by_kernel["all"]["not_optimal"].value, by_kernel["all"]["not_optimal"].n) == (1 / 24, 24)
+    # 1 m is 10 sizes of two pairs and 5 of the others.
+    assert by_kernel["all"]["far_in_sizes"].value == pytest.approx(7.5)
 
 
-def test_gap_numbers_count_the_pair_as_seen_first():
-    assert [gap_number(SETTINGS, gap) for gap in (0.1, 1.0)] == [1, 2]
-
-
-def test_rows_and_curves_by_hand(results):
+def test_rows_by_hand(results):
     made = rows(SETTINGS, results)
-    assert len(made) == 6
+    assert len(made) == 6 + 3
     first = made[0]
     assert (first["kernel"], first["gap"], first["unit"], first["pairs"]) == ("60 mm, C 10", 0.005, "as seen", 4)
     # Support as seen: 20, 20, 20, 8; its median 20, its lower quartile 8 + 3/4 of the way to 20.
     assert first["support"] == [20, 17, 20]
     assert first["none_of_7"] == 0
     assert made[2]["none_of_7"] == 0.75
-    curves = curves_of(made, lambda kernel: kernel.startswith("60"))
-    assert list(curves) == ["60 mm, C 10"]
-    assert curves["60 mm, C 10"]["gap"] == [0.005, 0.1, 1.0]
-    assert curves["60 mm, C 10"]["support_vectors"][0] == [20, 17, 20]
+    assert [row["estimates of kernel"] for row in made[6:]] == ["60 mm, C 10", "250 mm, C 10", "all"]
 
 
-@pytest.mark.parametrize(
-    ("settings", "rule"),
-    [
-        ({"pairs": 0}, "pairs must be at least 1"),
-        ({"gaps": [0.1]}, "gaps must hold 1 m"),
-        ({"gaps": [1.0, -1.0]}, "gaps must be positive"),
-        ({"lengths": []}, "lengths must be positive"),
-        ({"camera": "none"}, "camera must be one of"),
-    ],
-)
-def test_settings_that_cannot_be_run(settings, rule):
-    with pytest.raises(InputError, match=rule):
-        C2_11.settings("quick", settings)
+def test_gaps_must_hold_a_metre():
+    with pytest.raises(InputError, match="gaps must hold 1 m"):
+        C2_11.settings("quick", {"gaps": [0.1]})
 
 
 # --- far apart there are support vectors all the same (errata) ---------------------------------------------

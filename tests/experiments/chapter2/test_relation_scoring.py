@@ -4,13 +4,16 @@ import numpy as np
 import pytest
 from scipy.stats import binomtest
 
+from lifelore.core.metrics import Estimate
 from lifelore.core.relations import PairLabel
 from lifelore.experiments.chapter2.relation_scoring import (
     JudgedPair,
     difference,
     judged_scene,
+    less_rate,
     score,
     share,
+    share_over_scenes,
     wilson,
 )
 from lifelore.perception.relations.relation import Relation
@@ -136,3 +139,15 @@ def test_difference_by_hand():
     assert lost.ci95[0] <= 0.25 <= lost.ci95[1]
     assert difference(first, first).value == 0
     assert difference(first, first).ci95 == (0.0, 0.0)
+
+
+def test_a_share_without_spread_has_wilsons_interval_and_of_nothing_none():
+    assert share_over_scenes([1, 1, 1], [1, 1, 1]).ci95 == (pytest.approx(0.4385, abs=1e-4), 1.0)
+    assert share_over_scenes([1, 1], [1, 1], lambda right, n: (right / 4, n / 2)).ci95 == (0.5, 1.0)
+    assert share_over_scenes([], []).n == 0
+
+
+def test_a_share_less_a_rate_moves_its_interval():
+    less = less_rate(Estimate(0.9, 0.8, (0.7, 1.0), 5), 0.5)
+    assert (less.value, less.median, less.n) == (pytest.approx(0.4), pytest.approx(0.3), 5)
+    assert less.ci95 == pytest.approx((0.2, 0.5))

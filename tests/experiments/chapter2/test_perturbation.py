@@ -4,8 +4,14 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.experiments.chapter2.perturbation import (
+    cut_object,
+    fewer_points,
+    grown_masks,
+    noisier_depth,
+    swapped_border,
+)
 
 CAMERA = np.array([0.0, 0.0, 1.0])
 
@@ -84,3 +90,23 @@ def test_the_same_generator_spoils_alike(cloud, spoil):
     one, other = (spoil(cloud, np.random.default_rng(5)) for _ in range(2))
     assert (one.points == other.points).all()
     assert (one.labels == other.labels).all()
+
+
+# --- an object cut into two ---------------------------------------------------------------------------------
+
+STACKED = LabelledCloud(
+    np.array([[0, 0, 0], [0, 0, 0.1], [0, 0, 0.2], [0, 0, 0.3], [1, 0, 0.3]], float), np.array([TABLE, 2, 2, 2, 5])
+)
+
+
+def test_the_part_beyond_gets_a_new_label():
+    cloud, part = cut_object(STACKED, 2, (0, 0, 1), (0, 0, 0.15))
+    assert part == 6
+    assert cloud.labels.tolist() == [TABLE, 2, 6, 6, 5]
+    assert (cloud.points == STACKED.points).all()
+
+
+@pytest.mark.parametrize(("label", "height"), [(2, 0.5), (2, -0.5), (3, 0.1), (TABLE, 0.1)])
+def test_planes_that_divide_nothing_are_refused(label, height):
+    with pytest.raises(InputError, match="must divide"):
+        cut_object(STACKED, label, (0, 0, 1), (0, 0, height))

@@ -7,7 +7,6 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ON, PairLabel
 from lifelore.experiments.chapter2.c2_03_displacements_by_relation.measure import (
     CHOICES,
-    clustered_share,
     measure,
     plotted,
     rows,
@@ -60,8 +59,7 @@ def test_measures_by_hand():
     found = measure(SETTINGS, RESULTS)
     # On: (0, 10), (1, 10), (1, 60), (-1, 8) mm; medians 0.5 and 10, so that the band ends at 2 mm.
     assert found["on_centre_sideways_of_its_rise"].value == pytest.approx(0.05)
-    assert found["on_up_mm"].value == pytest.approx(22)
-    assert found["on_on_one_side"].value == found["on_upwards"].value == found["on_outside_band"].value == 1
+    assert found["on_on_one_side"].value == found["on_outside_band"].value == 1
     # Adjacent: heights 1, 5, 1 and 0 mm.
     assert found["adjacent_in_band"].value == 0.75
     # To the left at -9 mm; to the left at 4 mm; turned round, to the left at -6 mm; behind: not asked.
@@ -74,17 +72,20 @@ def test_the_other_side_counts_as_one_side_too():
     below = [row("0-0", ON, [[0, 0, -10]], [[0, 0, 0]]), row("0-1", ON, [[0, 0, -8]], [[0, 0, 0]])]
     beside = row("0-2", ADJACENT, [[9, 0, -1]], [[0, 0, 0]], right=0.05)
     found = measure(SETTINGS, [{"set": 0, "rows": [*below, beside]}])
-    assert (found["on_upwards"].value, found["on_on_one_side"].value) == (0, 1)
+    assert found["on_on_one_side"].value == 1
     assert found["on_outside_band"].value == found["adjacent_in_band"].value == 1
     assert found["on_on_one_side"].ci95 == (pytest.approx(0.3424, abs=1e-4), 1)
 
 
 def test_real_pairs_stand_beside_and_do_not_decide():
     real = {"set": "real", "rows": [row("test1", ON, [[0, 0, -5]], [[0, 0, 0]])]}
-    both = measure(SETTINGS, [*RESULTS, real])
-    assert both["on_upwards_real"].value == 0
-    alone = measure(SETTINGS, RESULTS)
-    assert {name: both[name] for name in alone} == alone
+    assert measure(SETTINGS, [*RESULTS, real]) == measure(SETTINGS, RESULTS)
+    (middle,) = {
+        tuple(line["middle_of_on"])
+        for line in rows(SETTINGS, [*RESULTS, real])
+        if line["scenes"] == "real" and "mm" in line
+    }
+    assert middle == (0, -5)
 
 
 def test_left_and_right_are_in_the_order_of_the_truth():
@@ -108,12 +109,6 @@ def test_rows_hold_every_point_and_every_reading():
     readings = [line for line in found if "reading" in line]
     assert len(readings) == len(KERNELS) * 2 * len(CHOICES)
     assert all(line["adjacent_in_band"] == 0.75 for line in readings)
-
-
-def test_a_share_without_spread_has_wilsons_interval_and_of_nothing_none():
-    scenes = np.array(["a", "b", "c"])
-    assert clustered_share(scenes, np.array([True] * 3)).ci95 == (pytest.approx(0.4385, abs=1e-4), 1.0)
-    assert clustered_share(scenes[:0], np.array([], bool)).n == 0
 
 
 def test_nothing_on_anything_cannot_be_tested():

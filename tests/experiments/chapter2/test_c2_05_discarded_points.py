@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.c2_05_discarded_points.figure import panels_of
 from lifelore.experiments.chapter2.c2_05_discarded_points.measure import (
     judged_views,
     less_majority,
@@ -184,57 +183,41 @@ def results() -> list[dict]:
 def test_measures_by_hand(results):
     found = measure(SETTINGS, results)
     values = {name: one.value for name, one in found.items()}
-    # Four pairs: the one on the border is not among them. The last is told the wrong way round when spoilt.
-    assert found["exact_lifelore_simulated"].n == found["exact_thesis_simulated"].n == 4
-    assert (values["exact_lifelore_simulated"], values["lost_discarded_0.7_lifelore_simulated"]) == (1.0, 0.25)
-    # The thesis's displacements tell all whole scenes and have none of the spoilt ones, which says none.
+    # The last of four is classified the wrong way round when perturbed.
+    assert values["lost_discarded_0.7_lifelore_simulated"] == 0.25
+    assert found["lost_discarded_0.7_lifelore_simulated"].n == 4
+    # The thesis's displacements classify all whole scenes and have none of the perturbed ones, which means none.
     for method in ("thesis", "literal"):
-        assert (values[f"exact_{method}_simulated"], values[f"lost_discarded_0.7_{method}_simulated"]) == (
-            1.0,
-            1.0,
-        )
-        # Always saying "on" is right of all.
-        assert values[f"less_majority_{method}_simulated"] == -1.0
-    assert values["less_majority_lifelore_simulated"] == -0.25
-    # Networks: three of six have as many nodes, in three scenes; the middle of 1, 2 and 3 mm.
-    assert values["same_nodes_discarded_0.7_simulated"] == pytest.approx(3 / 6)
-    assert found["same_nodes_discarded_0.7_simulated"].n == 6
-    assert values["median_shift_discarded_0.7_simulated"] == 0.002
-    # What a run without the real scenes says of them.
+        assert values[f"lost_discarded_0.7_{method}_simulated"] == 1.0
+    # Always saying "on" is right of all.
+    assert values["less_majority_thesis_simulated"] == -1.0
+    # Measures of real scenes in a run without them.
     assert np.isnan(values["lost_discarded_0.7_thesis_real"])
-    assert found["exact_lifelore_real"].n == 0
 
 
-def test_rows_and_panels_by_hand(results):
+def test_rows_and_figure_by_hand(results):
     made = rows(SETTINGS, results)
-    # Three methods, whole and spoilt, of simulated scenes.
-    assert [(row["method"], row["way"], row["level"]) for row in made] == [
+    # Three methods, whole and perturbed, of simulated scenes; then the networks.
+    *lines, networks = made
+    assert [(row["method"], row["way"], row["level"]) for row in lines] == [
         (method, *view)
         for method in ("lifelore", "thesis", "literal")
         for view in (("whole", 0.0), ("discarded", 0.7))
     ]
-    assert [row["exact"]["value"] for row in made] == [1.0, 0.75, 1.0, 0.0, 1.0, 0.0]
-    assert {row["pairs"] for row in made} == {4}
-    (panel,) = panels_of(made)
-    assert panel["mark"] == 70
-    assert panel["methods"]["lifelore"]["x"] == [0, 70]
-    assert panel["methods"]["lifelore"]["mean"] == [1.0, 0.75]
-    assert "4 pairs" in panel["title"]
-    noisy = [{**row, "way": "noise", "level": 0.002} if row["way"] == "discarded" else row for row in made]
-    (panel,) = panels_of(noisy)
-    assert "mark" not in panel
-    assert panel["methods"]["thesis"]["x"] == [0, 2]
+    assert [row["exact"]["value"] for row in lines] == [1.0, 0.75, 1.0, 0.0, 1.0, 0.0]
+    assert [row["lost"]["value"] for row in lines[1::2]] == [0.25, 1.0, 1.0]
+    # The pair on the border is not among the four.
+    assert {row["pairs"] for row in lines} == {4}
+    # Three of six networks have as many nodes, in three scenes; the middle of 1, 2 and 3 mm.
+    assert (networks["same_nodes"]["value"], networks["same_nodes"]["n"]) == (pytest.approx(3 / 6), 6)
+    assert networks["median_shift"] == 0.002
+    (panel,) = CLAIM.draw({"rows": made}).axes
+    assert panel.get_title("left") == "points discarded\nsimulated, 4 pairs"
+    shown = {line.get_label(): line.get_xydata().tolist() for line in panel.lines}
+    assert shown["lifelore"] == [[0, 100], [70, 75]]
 
 
-@pytest.mark.parametrize(
-    ("settings", "rule"),
-    [
-        ({"scenes": 0}, "scenes and lessons"),
-        ({"camera": "eye"}, "camera must be one of"),
-        ({"levels": {}}, "levels must name"),
-        ({"levels": {"fog": [1.0]}}, "levels must name"),
-    ],
-)
-def test_settings_that_cannot_be_run(settings, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", settings)
+@pytest.mark.parametrize("levels", [{}, {"fog": [1.0]}])
+def test_levels_that_cannot_be_run(levels):
+    with pytest.raises(InputError, match="levels must name"):
+        CLAIM.settings("quick", {"levels": levels})

@@ -1,4 +1,4 @@
-"""Who takes part in `bench relations`, and scenes as all of them see them, so that each is looked at once."""
+"""The methods of `bench relations`, and scenes with the descriptors of all of them, each computed once."""
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass

@@ -7,20 +7,20 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2 import spoilt_scenes
-from lifelore.experiments.chapter2.spoilt_scenes import (
+from lifelore.experiments.chapter2.c2_05_discarded_points import run as spoilt_scenes
+from lifelore.experiments.chapter2.c2_05_discarded_points.run import (
     BORDER,
     DISCARDED,
     MASKS,
     NOISE,
     WAYS,
+    cells,
     key_of,
     literal_rows,
     run_cell,
-    scene_cells,
-    shipped_model_digest,
     strong_places,
 )
+from lifelore.experiments.chapter2.skeletons import shipped_model_digest
 
 
 def row_of_points() -> LabelledCloud:
@@ -69,12 +69,12 @@ def test_cells_are_lots_of_lessons_scenes_and_real_scenes(monkeypatch):
     model = shipped_model_digest()
     assert len(model) == 16
     wanted = [{"lessons": k} for k in (0, 10, 20)] + [{"first": k, "model": model} for k in (0, 4, 8)]
-    assert scene_cells(settings) == wanted
+    assert cells(settings) == wanted
     monkeypatch.setattr(spoilt_scenes, "real_scenes_folder", lambda: None)
-    assert scene_cells({**settings, "real": True}) == wanted
+    assert cells({**settings, "real": True}) == wanted
     monkeypatch.setattr(spoilt_scenes, "real_scenes_folder", lambda: "somewhere")
     monkeypatch.setattr(spoilt_scenes, "real_scenes", lambda: [SimpleNamespace(name=name) for name in "abc"])
-    assert scene_cells({**settings, "real": True})[6:] == [
+    assert cells({**settings, "real": True})[6:] == [
         {"real": ["a", "b"], "model": model},
         {"real": ["c"], "model": model},
     ]

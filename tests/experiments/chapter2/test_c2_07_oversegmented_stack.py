@@ -6,8 +6,8 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ON
 from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.c2_07_oversegmented_stack.measure import measure
-from lifelore.experiments.chapter2.stack_skeletons import KINDS, simulated
+from lifelore.experiments.chapter2.c2_07_oversegmented_stack.measure import measure, rows
+from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import KINDS, simulated
 
 pytest.importorskip("mujoco")
 
@@ -28,15 +28,15 @@ def test_a_row_stands_side_by_side_and_two_lie_on_one():
 
 
 def test_measures_by_hand():
-    good = {"nodes": [1, 2, 1], "near": [2, 2, 2], "grounded": 2, "near_grounded": 3, "apart": 60.0}
+    good = {"nodes": [1, 2, 1], "near": [2, 2, 2], "grounded": 2}
     good |= {"path": True, "stacked": True}
-    bad = {**good, "nodes": [2, 3, 1], "path": False, "grounded": 3, "apart": None}
+    bad = {**good, "nodes": [2, 3, 1], "path": False, "grounded": 3}
     results = [{"kind": kind, "scenes": [good, bad], "examples": []} for kind in KINDS]
     results[2]["scenes"] = [{**good, "stacked": False}] * 2
     found = measure({}, results)
     assert found["two_points_stack"].value == 0.5
     assert found["structure_cut"].value == 0.5
-    assert (found["skeleton_row"].value, found["structure_row"].value) == (1.0, 0.0)
+    assert found["structure_row"].value == 0.0
+    assert {"kind": "row", "points": [1, 2, 1], "path": True, "stacked": False, "scenes": 2} in rows({}, results)
     assert found["two_points_with_ground_stack"].value == 0.5
-    assert found["mm_between_the_two_points_stack"].value == 60.0
     assert found["two_points_real_stack"].n == 0

@@ -1,0 +1,72 @@
+"""Scatter plots: points of several groups, faded where they are many, with the axes through zero."""
+
+from collections.abc import Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from lifelore.core.errors import InputError
+from lifelore.figures.object_palette import mixed
+from lifelore.figures.style import GREY, INK, LIGHT
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+
+def draw_scatter(
+    axes: "Axes",
+    groups: Mapping[str, ArrayLike],
+    *,
+    colours: Mapping[str, str] | None = None,
+    markers: Mapping[str, str | Sequence[str]] | None = None,
+    size: float = 18,
+    through_zero: bool = True,
+    legend: Mapping[str, Any] | None = None,
+    title: str = "",
+    xlabel: str = "",
+    ylabel: str = "",
+) -> None:
+    """Draw the points of each group; many points fade, so that dense places stay visible.
+
+    Parameters
+    ----------
+    axes : matplotlib axes
+    groups : mapping
+        Label → (n, 2) places, drawn in the order given.
+    colours : mapping, optional
+        Label → colour.
+    markers : mapping, optional
+        Label → matplotlib's marker of the group, or a marker for each of its points.
+    size : float
+        Of a marker, points squared.
+    through_zero : bool
+        Draw light lines through zero.
+    legend : mapping, optional
+        Arguments of the legend; None draws no legend.
+    title, xlabel, ylabel : str
+
+    Raises
+    ------
+    InputError
+        A group's places are not (n, 2), or its markers are not n.
+    """
+    if through_zero:
+        axes.axhline(0, color=LIGHT, lw=1, zorder=0)
+        axes.axvline(0, color=LIGHT, lw=1, zorder=0)
+    for label, places in groups.items():
+        at, colour = np.asarray(places, float).reshape(-1, 2), (colours or {}).get(label, GREY)
+        own = (markers or {}).get(label, "o")
+        each = np.full(len(at), own) if isinstance(own, str) else np.array(own)
+        if np.shape(places) != at.shape or each.shape != at.shape[:1]:
+            raise InputError(f"places of '{label}' must be (n, 2) and its markers n, got {np.shape(places)}")
+        alpha = float(np.clip(12 / np.sqrt(max(1, len(at))), 0.25, 0.85))
+        for marker in dict.fromkeys(each.tolist()):
+            edge = {} if marker == "x" else {"edgecolors": mixed(colour, INK, 0.3)}
+            found = at[each == marker]
+            axes.scatter(*found.T, s=size, marker=marker, color=colour, alpha=alpha, linewidths=0.5, **edge)
+        sign = own if isinstance(own, str) else each[0] if len(set(each.tolist())) == 1 else "o"
+        axes.scatter([], [], s=22, marker=sign, color=colour, label=label)
+    axes.set(title=title, xlabel=xlabel, ylabel=ylabel)
+    if legend is not None:
+        axes.legend(**{"handletextpad": 0.2, **legend})
