@@ -1,4 +1,4 @@
-"""What observation models of three signals take to store, once learnt: what C4.9 is made of.
+"""Sizes of observation models of three signals, learnt in random applications and in the thesis's own.
 
 An *application* is a problem with states, actions, rewards, types and policies, whose episodes are run offline as
 §4.4.1 says. From the same episodes three models are learnt: of the return (a histogram with as many bins as there

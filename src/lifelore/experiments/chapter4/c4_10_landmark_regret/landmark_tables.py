@@ -1,4 +1,4 @@
-"""Tables of what policies achieve on tasks, parted into types by landmarks: what C4.10 is made of.
+"""Tables of utilities of policies on tasks, parted into types by landmarks, and the regret of the landmarks.
 
 Families: ``uniform``, every utility drawn alone; ``smooth``, tasks on a line and each policy a sum of waves over
 it, as in Figure 4.1; ``clustered``, tasks drawn around the centres of types. ``surveillance`` is the reserve's own
@@ -69,16 +69,9 @@ def run_tables(settings: Mapping, cell: Mapping, seed: int) -> list[dict]:
     if cell["family"] == SURVEILLANCE:
         tables = [surveillance_table(cell["layout"], cell["metric"], cell["tasks"])]
     else:
-        numbers = range(cell["first"], cell["last"])
-        tables = [
-            random_table(
-                stream(seed, "C4.10", cell["family"], cell["policies"], number),
-                cell["family"],
-                settings["tasks"],
-                cell["policies"],
-            )
-            for number in numbers
-        ]
+        family, n = cell["family"], cell["policies"]
+        streams = (stream(seed, "C4.10", family, n, number) for number in range(cell["first"], cell["last"]))
+        tables = [random_table(generator, family, settings["tasks"], n) for generator in streams]
     return [
         parted(table, share, form) | {"table": place}
         for place, table in enumerate(tables)
