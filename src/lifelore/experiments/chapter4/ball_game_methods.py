@@ -49,7 +49,7 @@ METHODS = (STATIC, HINDSIGHT, ORACLE, *BEATS, PRINTED_EXP3, TUNED_EXP3)
 
 
 class Known(NamedTuple):
-    """What training gives the learners of one game.
+    """Knowledge from training that the learners of one game use.
 
     worst : float
         Largest loss seen, which pays EXP-3 nothing.

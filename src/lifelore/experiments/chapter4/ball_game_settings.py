@@ -4,11 +4,11 @@ A game is ``[layout, radius_share, care, normalisation, blocked]``. The thesis d
 are, whether b is the ball's radius or its diameter, what "cost" its player minds, what losses are divided by, nor
 what becomes of a ball whose move would touch an obstacle.
 
-The default was chosen by what it shows. Its corridors are as wide as lets the room beside the largest balls cross
-the range of speeds, as a phase transition needs, and its player is careful. A ball that is blocked slides up to
-the obstacle; that was chosen after a game in which it stays had shown less: a transition at b = 60 alone, and a
-BEAT that lost as much as EXP-3. So where C4.11 and C4.12 hold at the default, they hold there by choice; the grid,
-which has games with a ball that stays, says how far that goes.
+The default was chosen because it shows the claimed effects. In its corridors the room beside the largest balls
+crosses the range of speeds, as a phase transition needs, and its player is careful. A blocked ball slides up to
+the obstacle; this was chosen after a game in which it stays had shown less: a transition at b = 60 alone, and a
+BEAT that lost as much as EXP-3. So C4.11 and C4.12 hold at the default by choice; the grid, which has games with
+a ball that stays, shows how far they hold elsewhere.
 """
 
 from collections.abc import Mapping
@@ -38,7 +38,7 @@ class Setting(NamedTuple):
 
     @property
     def words(self) -> str:
-        """Such as ``s-maze 160, r = b``; what is as in the default is left out, but for the layout and radius."""
+        """Such as ``s-maze 160, r = b``: layout, radius, and the other settings that differ from the default."""
         radius = {0.5: "r = b/2", 1.0: "r = b"}.get(self.radius_share, f"r = {self.radius_share:g} b")
         care = "" if self.care else ", careless"
         stays = "" if self.blocked == "slides" else ", stays"

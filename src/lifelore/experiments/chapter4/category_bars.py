@@ -1,4 +1,4 @@
-"""How likely each coarse category of a shot is, by club and hole (the thesis's Figure 4.3)."""
+"""Bars of the probability of each category of a shot, by club and hole (Figure 4.3)."""
 
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
 _REACH = 80.0
-"""How far the two outer categories are drawn, in yards; they have no end."""
+"""Yards to which the two outer categories are drawn; they have no end."""
 
 
 def draw_category_bars(

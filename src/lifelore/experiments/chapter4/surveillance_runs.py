@@ -1,4 +1,4 @@
-"""Policy reuse and its peers in the surveillance reserve: what C4.5 to C4.8 share.
+"""Policy reuse and its peers in the surveillance reserve, for C4.5 to C4.8.
 
 Tasks come in groups of the thesis's number, ten. A group has tasks and noise of its own and, where models are
 learnt, a library of its own; whoever is compared meets the same groups. Regret is expected library regret;
@@ -223,7 +223,7 @@ def summary(result: Mapping) -> dict[str, Estimate]:
 
 
 def find(results: Sequence[Mapping], method: str, case: str, **world: str) -> Mapping:
-    """The result of one method in one case and reserve, the default one unless told otherwise."""
+    """The result of one method in one case and reserve, by default the default reserve."""
     wanted = {"method": method, "case": case, **DEFAULT_WORLD, **world}
     return next(r for r in results if wanted.items() <= r.items())
 

@@ -64,7 +64,7 @@ def follow_printed(library: PolicyLibrary) -> dict:
 
 
 def greedy_shares(library: PolicyLibrary, belief: np.ndarray | None = None) -> list[float]:
-    """How likely greedy selection takes each club."""
+    """Probability that greedy selection takes each club."""
     belief = library.prior if belief is None else belief
     return tied_shares(Greedy().scores(library, belief)).tolist()
 

@@ -1,4 +1,4 @@
-"""C4.2: errors of greedy selection by shot, what it gains over one club, and the fall of the belief's entropy."""
+"""C4.2: errors of greedy selection by shot, its gain over a single club, and the fall of the belief's entropy."""
 
 from collections.abc import Mapping, Sequence
 

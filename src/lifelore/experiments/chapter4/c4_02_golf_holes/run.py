@@ -59,7 +59,7 @@ def _rule_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
 
 
 def _clubs_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
-    """What single clubs miss by at the second shot's luck, and the best club for the hole in retrospect."""
+    """Mean misses of single clubs, and of the best club for each hole, with the second shot's luck."""
     distance, luck = draw_group(settings, seed, group)
     golf = Golf()
     missed = [np.abs(errors_of(np.full(len(luck), j), distance, luck[:, 1])) for j in range(golf.n_clubs)]

@@ -26,7 +26,7 @@ READINGS = {
     "paid less than the best mean": ("against_mean", False),
     "expected": ("at", False),
 }
-"""Which regret of `surveillance_runs`, and whether its sign is dropped."""
+"""Regret of `surveillance_runs` by reading, and whether its sign is dropped."""
 DEFAULT_READING = "size of the difference of two pays"
 CASES_SHOWN = ("exact", "headline")
 

@@ -1,4 +1,4 @@
-"""Policy reuse and its peers: regret by episode, summed regret, and what each method was given (Figure 4.11)."""
+"""Policy reuse and its peers: regret by episode, summed regret, and the knowledge of each method (Figure 4.11)."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING

@@ -1,4 +1,4 @@
-"""C4.8: what a larger library and more episodes save, and in how many single steps the mean regret falls."""
+"""C4.8: regret saved by a larger library and by more episodes, and the share of single steps that save regret."""
 
 from collections.abc import Mapping, Sequence
 
@@ -12,7 +12,7 @@ from lifelore.experiments.engine.results_table import ResultsTable
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What size and episodes save, corner against corner, and in how many single steps the mean falls."""
+    """Regret saved by size and by episodes, corner against corner, and in how many single steps the mean falls."""
     table = ResultsTable(results, ("rule", "model", "share"))
     measured: dict[str, Estimate] = {}
     for rule in settings["rules"]:

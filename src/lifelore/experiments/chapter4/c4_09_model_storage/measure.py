@@ -1,4 +1,4 @@
-"""C4.9: in what share of applications one model's table is smaller than another's, and how the formulas do."""
+"""C4.9: shares of applications in which one model's table is smaller than another's, and checks of formulas."""
 
 from collections.abc import Mapping, Sequence
 

@@ -39,7 +39,7 @@ MOST_ENTRIES = 4_000_000
 """Tables of more entries are not built; their number follows from the sizes, as for those that are built."""
 BRANCHES = 3
 PACMAN_MOVES = 0.5
-"""How often each of Pacman's four policies here moves its own way; otherwise anywhere."""
+"""Share of moves that each of Pacman's four policies makes its own way; the others are random."""
 
 
 @dataclass(frozen=True)
@@ -240,7 +240,7 @@ def _transitions_learnt(found: Application) -> TransitionSignal:
 
 
 def _filled(found: Application, returns: Array) -> dict[str, int]:
-    """How many cells of each table the episodes filled; of the performance, different returns."""
+    """Number of cells of each table that the episodes filled; of the performance, different returns."""
     rewards: set[tuple] = set()
     states: set[tuple] = set()
     for type_, policy, (rows, pay) in found.sequences():

@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 RANDOM = ("uniform", "smooth", "clustered")
 SURVEILLANCE = "surveillance"
 BINS = 20
-"""Bins of regret / ε from 0 to 2; what is exactly 0 is counted apart."""
+"""Bins of regret / ε from 0 to 2; exact zeros are counted apart."""
 TOLERANCE = 1e-9
 """Regrets are differences of floats: past ε means past (1 + this) ε."""
 WAVES = 4
@@ -49,7 +49,7 @@ def surveillance_table(layout: str, metric: str, tasks: str) -> Array:
 
 
 def parted(table: Array, share: float, form: str) -> dict:
-    """A table parted into types of size ε = `share` of its range, and what landmarks cost its tasks, in ε.
+    """A table parted into types of size ε = `share` of its range, and the regret of landmarks on its tasks, in ε.
 
     ``landmark``: the member in the middle stands for the type; ``member``: the one that costs each task most.
     """

@@ -1,4 +1,4 @@
-"""C4.10: what it costs to let one task, the landmark, stand for all tasks of its type.
+"""C4.10: the regret of letting one task, the landmark, stand for all tasks of its type.
 
 Definition 4.3.3 calls tasks a type when no policy's utility differs by more than ε between any two of them; it
 bounds the landmark's regret by ε, but only 2 ε can be proved. Thesis: §4.3.3, Def. 4.3.3, Figure 4.2(b).
