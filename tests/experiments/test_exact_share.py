@@ -5,7 +5,7 @@ import math
 import pytest
 from scipy.stats import binomtest
 
-from lifelore.experiments.engine.estimates import UNMEASURED, exact_share, mean_or_unmeasured
+from lifelore.experiments.engine.estimates import UNMEASURED, exact_share, exact_value, mean_or_unmeasured
 
 
 def test_all_and_none_have_closed_forms():
@@ -32,3 +32,8 @@ def test_nothing_measured_says_so():
     assert math.isnan(UNMEASURED.value)
     assert UNMEASURED.n == 0
     assert mean_or_unmeasured([1.0, 2.0, 6.0]).value == 3.0
+
+
+def test_an_exact_value_has_no_interval():
+    found = exact_value(3, 5)
+    assert found.to_dict() == {"value": 3.0, "median": 3.0, "ci95": None, "n": 5}

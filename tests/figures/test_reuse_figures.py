@@ -8,15 +8,16 @@ from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.surveillance.surveillance import BASE, SIDE, Surveillance
 from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
 from lifelore.experiments.chapter4.c4_03_telephone_signals.figure import EDGES as CALL_EDGES
-from lifelore.experiments.chapter4.c4_03_telephone_signals.figure_call_graph import PLACES, draw_call_graph
+from lifelore.experiments.chapter4.c4_03_telephone_signals.figure import PLACES, draw_call_graph
 from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import SIGNAL_OF_PATH
 from lifelore.experiments.chapter4.category_bars import draw_category_bars
-from lifelore.experiments.chapter4.reuse_palette import LOOKS, look_of
+from lifelore.experiments.chapter4.reuse_figures import LOOKS, look_of
 from lifelore.experiments.chapter4.reuse_rules import NEAR_GREEDY, RULES_SHOWN
 from lifelore.experiments.chapter4.surveillance_peers import PEERS
 from lifelore.experiments.pictures.figure_performance_curves import draw_performance_curves
 from lifelore.experiments.pictures.figure_reserve_map import draw_reserve_maps
 from lifelore.experiments.pictures.figure_type_model import draw_type_model
+from lifelore.figures.style import new_figure
 
 
 def test_category_bars_show_the_tables():
@@ -35,7 +36,9 @@ def test_call_graph_is_the_worlds():
         assert paid == reward(STATES.index(before), STATES.index(after))
     there = {(STATES[s], STATES[s2]) for s in OPEN for s2 in (s + 1, SUCCESS, HUNG_UP)}
     assert set(CALL_EDGES) == there
-    circles = {text.get_text() for text in draw_call_graph(CALL_EDGES).axes[0].texts}
+    axes = new_figure(7, 4).subplots()
+    draw_call_graph(axes, CALL_EDGES)
+    circles = {text.get_text() for text in axes.texts}
     assert {STATES[ANGRY], "[10]", "[3]", "(1−η)ρ"} <= circles
 
 

@@ -17,7 +17,7 @@ def draw_interval_bars(
     names: Sequence[str],
     groups: Mapping[str, Sequence[Number | None]],
     *,
-    colours: Mapping[str, str] | Sequence[str] = (),
+    colours: Mapping[str, Any] | Sequence[str] = (),
     horizontal: bool = True,
     words: Callable[[float], str] | None = "{:.3g}".format,
     level: float | None = None,
@@ -35,7 +35,7 @@ def draw_interval_bars(
     groups : mapping
         Label of the group → a number for each name; None leaves its place empty.
     colours : mapping or sequence of str
-        Colour by group; with one group, a colour for each name.
+        Colour by group, or a list of colours, one for each name; with one group, a colour for each name.
     horizontal : bool
     words : callable, optional
         Text of a value, written at the end of its bar; None writes none.
@@ -78,7 +78,8 @@ def draw_interval_bars(
 
 def _colour(colours, group: str, g: int, place: int, n_groups: int) -> str:
     if isinstance(colours, Mapping):
-        return colours.get(group, BLUE)
+        colour = colours.get(group, BLUE)
+        return colour[place] if isinstance(colour, list) else colour
     if not colours:
         return BLUE
     return colours[place if n_groups == 1 and len(colours) > 1 else g]

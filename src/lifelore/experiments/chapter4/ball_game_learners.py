@@ -23,7 +23,7 @@ class BeatLearner:
     prior : (n_types,) or (n_players, n_types) float, optional
     epsilon : see `beat.Exploration`
     command_table : (n_speeds, n_commands, n_types) float, optional
-        The second factor of the likelihood: what is commanded where.
+        The second factor of the likelihood: probabilities of commands by place.
     seed : numpy generator
     """
 
@@ -86,8 +86,7 @@ def exp3_by_episode(
 ) -> NDArray[np.float64]:
     """EXP-3 whose pulls are whole episodes.
 
-    A speed that is kept for an episode loses what it loses when it is kept throughout, so nothing needs to be
-    played again.
+    A speed held for one episode has the same loss as when it is held throughout, so nothing is played again.
 
     Parameters
     ----------

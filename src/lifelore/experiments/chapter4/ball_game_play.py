@@ -1,7 +1,7 @@
 """Many players of the ball game and a learner that sets their speeds: training, then episodes to be judged.
 
-Everybody plays step by step together. Methods that are compared get the same players: types, noises and the random
-numbers of every episode. Thesis: §4.8.5.1.
+All players move step by step together. Methods that are compared get the same players: types, noises and the
+random numbers of every episode. Thesis: §4.8.5.1.
 """
 
 from collections.abc import Callable
@@ -26,7 +26,7 @@ Floats = NDArray[np.float64]
 
 
 class Trained(NamedTuple):
-    """What training episodes with known types leave.
+    """Counts from training episodes with known types.
 
     steps, hits : (n_types, n_speeds, episodes) int64
     signals : (n_speeds, N_SIGNALS, n_types) float64, counts of moves
@@ -63,7 +63,7 @@ def log_shares(counts: Floats, group: int, pseudo_count: float) -> Floats:
 
 
 class Moves(NamedTuple):
-    """What everybody did in one step; -1 in `signal` and `command` of those who do not play."""
+    """Moves of all players in one step; -1 in `signal` and `command` of players who do not play."""
 
     rows: Ints
     signal: Ints
@@ -116,7 +116,7 @@ class Played(NamedTuple):
 
 
 def train(game: BallGame, episodes: int, seed: int) -> Trained:
-    """Play `episodes` of every type at every speed and count what happens."""
+    """Play `episodes` of every type at every speed and count the moves."""
     generator = stream(seed, "ball game", "training", game.layout.name)
     pairs = np.mgrid[: game.n_types, : game.n_speeds].reshape(2, -1).repeat(episodes, axis=1)
     players = Players.drawn(pairs[0], 1, generator)
@@ -183,7 +183,7 @@ class FixedSpeeds:
 
 
 def losses_by_speed(game: BallGame, players: Players, scale: LossScale) -> Floats:
-    """What everybody's episodes lose at each constant speed, (n, episodes, n_speeds)."""
+    """Losses of all players' episodes at each constant speed, (n, episodes, n_speeds)."""
     n = len(players.kinds)
     every = (play_all(game, players, FixedSpeeds(np.full(n, z)), scale) for z in range(game.n_speeds))
     return np.stack([scale.loss(*played) for played in every], axis=-1)

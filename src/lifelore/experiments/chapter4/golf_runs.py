@@ -1,7 +1,7 @@
-"""Golf played by rules that know four training holes: what C4.1 and C4.2 share.
+"""Golf played by rules that know four training holes, for C4.1 and C4.2.
 
-What is known: of each club on each training hole the performance and the categories, exactly or as `samples` shots
-a pair told. Never known: how far the hole is, the clubs' yardage, or an error in yards.
+Rules know the performance and the categories of each club on each training hole, exactly or learnt from `samples`
+shots a pair. They never know the distance of the hole, the clubs' yardage, or an error in yards.
 
 Holes come in groups of the thesis's size. A group has holes and luck of its own, and where models are learnt a
 library of its own; all rules and models play the same holes with the same luck.

@@ -1,7 +1,7 @@
-"""Policy reuse and its peers on many tasks side by side, and what is counted from their choices.
+"""Policy reuse and its peers on many tasks side by side, and statistics of their regret.
 
-All methods of a comparison meet the same tasks and the same noise: what a policy signals in an episode is fixed
-before anybody chooses. Regret is expected library regret (Definition 4.3.1): how much less the chosen policy
+All methods of a comparison meet the same tasks and the same noise: the signals of an episode are fixed
+before any method chooses. Regret is expected library regret (Definition 4.3.1): how much less the chosen policy
 pays on average than the best of the library.
 """
 
@@ -21,18 +21,18 @@ from lifelore.interaction.selection import SelectionRule
 
 Array = NDArray[np.float64]
 Signals = Callable[[int, NDArray[np.int64]], NDArray]
-"""``signals(episode, policies)``: what the policies (n_tasks,) signal in that episode, (n_tasks,)."""
+"""``signals(episode, policies)``: the signals of the policies (n_tasks,) in that episode, (n_tasks,)."""
 
 SETTLED = 1e-9
 """Regret below this is none."""
 STUCK = 5.0
 """Mean regret over the last episodes above which a task counts as stuck."""
 LAST = 10
-"""How many episodes are the last."""
+"""Number of episodes that count as the last."""
 
 
 class Played(NamedTuple):
-    """What was chosen in which episode.
+    """Policies chosen in each episode.
 
     policies : (n_tasks, n_episodes) int64
     entropy : (n_tasks, n_episodes + 1) float64, of the belief before each episode and after the last, nats
@@ -105,25 +105,25 @@ def grouped_mean(values: ArrayLike) -> Estimate:
 def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
     """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
     values = np.asarray(values, float)
-    n = len(values)
-    whole = float(np.quantile(values, q))
-    if n < 3:
-        return Estimate(whole, float(np.median(values)), None, values.size)
-    draws = stream(n, "bootstrap of a quantile").integers(0, n, size=(RESAMPLES, n))
-    found = np.quantile(values[draws].reshape(RESAMPLES, -1), q, axis=1)
-    low, high = np.quantile(found, [0.025, 0.975])
-    return Estimate(whole, float(np.median(values)), (float(low), float(high)), values.size)
+    interval = _group_interval(values, lambda some: np.quantile(some, q, axis=1), "bootstrap of a quantile")
+    return Estimate(float(np.quantile(values, q)), float(np.median(values)), interval, values.size)
 
 
 def grouped_deviation(values: ArrayLike) -> Estimate:
     """Standard deviation of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
     values = np.asarray(values, float)
-    n, whole = len(values), float(values.std())
+    interval = _group_interval(values, lambda some: some.std(axis=1), "bootstrap of a deviation")
+    return Estimate(float(values.std()), float(values.std()), interval, values.size)
+
+
+def _group_interval(values: Array, statistic: Callable, name: str) -> tuple[float, float] | None:
+    """95 % bootstrap interval of a statistic over groups; None below three groups."""
+    n = len(values)
     if n < 3:
-        return Estimate(whole, whole, None, values.size)
-    draws = stream(n, "bootstrap of a deviation").integers(0, n, size=(RESAMPLES, n))
-    low, high = np.quantile(values[draws].reshape(RESAMPLES, -1).std(axis=1), [0.025, 0.975])
-    return Estimate(whole, whole, (float(low), float(high)), values.size)
+        return None
+    draws = stream(n, name).integers(0, n, size=(RESAMPLES, n))
+    low, high = np.quantile(statistic(values[draws].reshape(RESAMPLES, -1)), [0.025, 0.975])
+    return float(low), float(high)
 
 
 def curve(values: Array, digits: int = 3) -> dict[str, list[float]]:

@@ -1,4 +1,4 @@
-"""Bandits and Bayesian optimisation in the surveillance reserve, each with what it was given."""
+"""Bandits and Bayesian optimisation in the surveillance reserve, and the knowledge of each method."""
 
 from collections.abc import Callable
 

@@ -1,19 +1,20 @@
-"""Policy reuse and its peers in the surveillance reserve: what C4.5 to C4.8 share.
+"""Policy reuse and its peers in the surveillance reserve, for C4.5 to C4.8.
 
 Tasks come in groups of the thesis's number, ten. A group has tasks and noise of its own and, where models are
 learnt, a library of its own; whoever is compared meets the same groups. Regret is expected library regret;
 `realised` is the regret of one draw of the chosen policy's pay against another draw of the best policy's.
 
-What each is given: the rules exact models, or models learnt from `samples` deployments a pair, and the pay of each
-deployment; peers what `surveillance_peers.GIVEN` says. Nobody is told where the poachers are.
+Rules know exact models, or models learnt from `samples` deployments a pair, and observe the pay of each
+deployment; `surveillance_peers.GIVEN` states what peers know. No method knows where the poachers are.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import NOISES, Surveillance
@@ -42,7 +43,7 @@ CASES = {
     "exact": {"model": EXACT, "tasks": SEEN},
     "exact, with unseen": {"model": EXACT, "tasks": MIXED},
 }
-"""What is known and what is met: `MIXED` puts every second task's poachers at a cell that is no target."""
+"""The models and the tasks of a case: `MIXED` puts every second task's poachers at a cell that is no target."""
 DEFAULT_WORLD = {"layout": "X", "metric": "chebyshev", "noise": "deviation 20"}
 
 
@@ -62,6 +63,41 @@ class Tasks(NamedTuple):
     noise: Array
     other_noise: Array
     seen: NDArray[np.bool_]
+
+
+def check_reserves(settings: Mapping) -> None:
+    """Refuse settings whose grid of reserves lacks the default."""
+    for key, default in DEFAULT_WORLD.items():
+        if default not in settings[f"{key}s"]:
+            raise InputError(f"{key}s must include the default, {default}")
+
+
+def worlds(settings: Mapping) -> list[dict[str, str]]:
+    """Every reserve of the grid."""
+    return [
+        {"layout": layout, "metric": metric, "noise": noise}
+        for layout in settings["layouts"]
+        for metric in settings["metrics"]
+        for noise in settings["noises"]
+    ]
+
+
+def reserve_cells(
+    settings: Mapping, cases: Iterable[str], methods: Iterable[str], in_grid: Iterable[str]
+) -> list[dict]:
+    """`methods` in all `cases` of the default reserve; `in_grid`, with exact models on targets, in every other."""
+    default = [
+        {"method": name, "case": case, **DEFAULT_WORLD, "groups": settings["groups"]}
+        for case in cases
+        for name in methods
+    ]
+    grid = [
+        {"method": name, "case": "exact", **world, "groups": settings["grid_groups"]}
+        for world in worlds(settings)
+        if world != DEFAULT_WORLD
+        for name in in_grid
+    ]
+    return default + grid
 
 
 def world_of(cell: Mapping) -> Surveillance:
@@ -187,7 +223,7 @@ def summary(result: Mapping) -> dict[str, Estimate]:
 
 
 def find(results: Sequence[Mapping], method: str, case: str, **world: str) -> Mapping:
-    """The result of one method in one case and reserve, the default one unless told otherwise."""
+    """The result of one method in one case and reserve, by default the default reserve."""
     wanted = {"method": method, "case": case, **DEFAULT_WORLD, **world}
     return next(r for r in results if wanted.items() <= r.items())
 

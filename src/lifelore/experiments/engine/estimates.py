@@ -52,3 +52,8 @@ def share_of(cells: ArrayLike) -> Estimate:
     """The share of true `cells` (n,); a count of all there are, so without an interval."""
     cells = np.asarray(cells, float)
     return Estimate(float(cells.mean()), float(np.median(cells)), None, len(cells))
+
+
+def exact_value(value: float, n: int = 1) -> Estimate:
+    """A number without sampling error, computed from `n` values; no interval."""
+    return Estimate(float(value), float(value), None, n)

@@ -1,21 +1,12 @@
-"""C4.1: the worked example of golf, a hole at 179 yards, by clubs, categories and the belief's entropy.
-
-What was known beforehand: the categories' probabilities for four clubs on four training holes, exactly or as 10 or
-100 shots a pair tell; not the hole's distance. The printed belief after the first shot is computed for the printed
-club and category, whatever club greedy selection would have taken.
-
-Thesis: §4.6.1, Tables 4.1 and 4.2, Figure 4.3.
-"""
+"""C4.1: golf's printed shots under exact and learnt models, and rounds played. Thesis: §4.6.1, Tables 4.1, 4.2."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CLUBS
 from lifelore.experiments.chapter4.golf_runs import IRON, WOOD, exact_library, learnt_library, play_holes
-from lifelore.experiments.engine.learning_settings import check_counts
 from lifelore.interaction.beliefs.belief import entropy, log_prior, update
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import Greedy, tied_shares
@@ -23,14 +14,6 @@ from lifelore.interaction.selection import Greedy, tied_shares
 PRINTED_CLUBS = (0, 1, 1, 1, 1, 1, 1, 1)
 PRINTED_CATEGORIES = (5, 4, 3, 4, 3, 4, 4, 3)
 """20–50, 5–20, −5–5, … beyond the hole."""
-
-
-def check(settings: Mapping) -> None:
-    check_counts(settings, ("shots", "rounds", "libraries", "samples"))
-    if settings["shots"] < 2:
-        raise InputError(f"shots must be at least 2, got {settings['shots']}")
-    if not settings["pseudo_counts"] or min(settings["pseudo_counts"]) < 0:
-        raise InputError(f"pseudo_counts must be at least 0, got {settings['pseudo_counts']}")
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -81,7 +64,7 @@ def follow_printed(library: PolicyLibrary) -> dict:
 
 
 def greedy_shares(library: PolicyLibrary, belief: np.ndarray | None = None) -> list[float]:
-    """How likely greedy selection takes each club."""
+    """Probability that greedy selection takes each club."""
     belief = library.prior if belief is None else belief
     return tied_shares(Greedy().scores(library, belief)).tolist()
 

@@ -1,95 +1,74 @@
-"""Golf by shot: mean error and entropy of the belief, beside single clubs and the optimum (C4.2; Figure 4.4)."""
+"""Golf by shot: mean error and entropy of the belief, beside single clubs and the optimum (Figure 4.4)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lifelore.domains.golf.golf import CLUBS
 from lifelore.experiments.chapter4.category_bars import CLUB_COLOURS
-from lifelore.experiments.chapter4.reuse_palette import look_of
+from lifelore.experiments.chapter4.golf_runs import WOOD
+from lifelore.experiments.chapter4.reuse_figures import look_of
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.curves import draw_curves
+from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_golf_curves(result)
+MODELS = {"exact": ORANGE, "learnt": BLUE}
 
 
-_CLUBS = ("3-wood", "3-iron", "6-iron", "9-iron")
-
-
-def draw_golf_curves(result: Mapping) -> "Figure":
-    """From C4.2's result: error by shot, entropy by shot, and each rule's gap to the dynamic program."""
-    rows, settings = result["rows"], result["settings"]
+def draw(result: Mapping) -> "Figure":
+    """Error by shot, entropy by shot, and each rule's gap to the dynamic program."""
+    settings = result["settings"]
+    table = ResultsTable(result["rows"], ("part", "model", "rule", "first", "way"))
     with house_style():
         figure = new_figure(11.2, 4.2)
         error, belief, gaps = figure.subplots(1, 3, width_ratios=[1.25, 0.9, 1])
-        _draw_errors(error, rows, settings)
-        _draw_entropies(belief, rows)
-        _draw_gaps(gaps, [row for row in rows if row["part"] == "program"], settings)
-        figure.suptitle(
-            f"{settings['groups']:,} × {settings['holes']} unknown holes of {settings['yards'][0]:g} to "
-            f"{settings['yards'][1]:g} yards",
-            x=0.01, ha="left",
-        )  # fmt: skip
+        _draw_errors(error, table, settings["shots"])
+        entropy = {m: {"mean": table.values("entropy", model=m, rule="greedy", first=None)[0]} for m in MODELS}
+        looks = {model: {"color": colour, "marker": "o", "ms": 3.5} for model, colour in MODELS.items()}
+        places = np.arange(settings["shots"] + 1)
+        draw_curves(belief, places, entropy, looks=looks, title="Entropy of the belief, nats", xlabel="after shot")
+        belief.set_ylim(0, None)
+        belief.legend(title="models")
+        _draw_gaps(gaps, table, settings["horizon"])
+        low, high = settings["yards"]
+        words = f"{settings['groups']:,} × {settings['holes']} unknown holes of {low:g} to {high:g} yards"
+        figure.suptitle(words, x=0.01, ha="left")
     return figure
 
 
-def _row(rows: list[Mapping], **wanted: Any) -> Mapping:
-    return next(row for row in rows if all(row.get(k) == v for k, v in wanted.items()))
-
-
-def _draw_errors(axes: "Axes", rows: list[Mapping], settings: Mapping) -> None:
-    clubs = _row(rows, part="clubs")
-    shots = np.arange(1, settings["shots"] + 1)
+def _draw_errors(axes: "Axes", table: ResultsTable, shots: int) -> None:
+    clubs, right = table.record(part="clubs"), shots + 0.3
     axes.axhspan(10, 15, color=LIGHT, alpha=0.7, lw=0)
-    axes.text(settings["shots"] + 0.3, 15.4, "10–15 yards", ha="right", va="bottom", fontsize=8, color=GREY)
-    for name, colour, missed in zip(_CLUBS, CLUB_COLOURS, clubs["club"], strict=True):
-        axes.axhline(missed, color=colour, lw=1, ls=(0, (1, 1.5)))
-        axes.text(settings["shots"] + 0.4, missed, name, va="center", fontsize=8, color=colour)
-    axes.axhline(clubs["best"], color=INK, lw=1, ls=(0, (4, 2)))
-    axes.text(settings["shots"] + 0.4, clubs["best"], "best club", va="center", fontsize=8, color=INK)
-    for model, colour in (("exact", ORANGE), ("learnt", BLUE)):
-        for first, style in ((None, "-"), (0, (0, (3, 1.5)))):
-            row = _row(rows, part="rule", model=model, rule="greedy", first=first)
-            label = f"greedy, {model}" + (", 3-wood first" if first == 0 else "")
-            axes.plot(shots, row["error"], color=colour, ls=style, marker="o", ms=3.5, label=label)
-    axes.set(
-        title="Mean error, yards", xlabel="shot", xticks=shots, ylim=(0, None), xlim=(0.7, settings["shots"] + 0.3)
-    )
-    axes.legend(
-        loc="upper right", bbox_to_anchor=(1.0, 0.97), fontsize=7, frameon=True, edgecolor="none", framealpha=1
-    )
+    axes.text(right, 15.4, "10–15 yards", ha="right", va="bottom", fontsize=8, color=GREY)
+    levels = [*zip(CLUBS, CLUB_COLOURS, clubs["club"], strict=True), ("best club", INK, clubs["best"])]
+    for name, colour, missed in levels:
+        axes.axhline(missed, color=colour, lw=1, ls=(0, (4, 2)) if name == "best club" else (0, (1, 1.5)))
+        axes.text(right + 0.1, missed, name, va="center", fontsize=8, color=colour)
+    series, looks = {}, {}
+    for model, colour in MODELS.items():
+        for first, words, style in ((None, "", "-"), (WOOD, ", 3-wood first", (0, (3, 1.5)))):
+            label = f"greedy, {model}{words}"
+            series[label] = {"mean": table.values("error", model=model, rule="greedy", first=first)[0]}
+            looks[label] = {"color": colour, "ls": style, "marker": "o", "ms": 3.5}
+    draw_curves(axes, None, series, looks=looks, title="Mean error, yards", xlabel="shot", legend=False)
+    axes.set(xticks=range(1, shots + 1), ylim=(0, None), xlim=(0.7, right))
+    axes.legend(loc="upper right", bbox_to_anchor=(1, 0.97), fontsize=7, frameon=True, edgecolor="w", framealpha=1)
 
 
-def _draw_entropies(axes: "Axes", rows: list[Mapping]) -> None:
-    for model, colour in (("exact", ORANGE), ("learnt", BLUE)):
-        row = _row(rows, part="rule", model=model, rule="greedy", first=None)
-        axes.plot(np.arange(len(row["entropy"])), row["entropy"], color=colour, marker="o", ms=3.5, label=model)
-    axes.set(title="Entropy of the belief, nats", xlabel="after shot", ylim=(0, None))
-    axes.legend(title="models", loc="upper right")
-
-
-def _draw_gaps(axes: "Axes", found: list[Mapping], settings: Mapping) -> None:
+def _draw_gaps(axes: "Axes", table: ResultsTable, horizon: int) -> None:
+    found = table.select(part="program").records
     shown = [row for row in found if not row["way"].startswith(("only", "hole", "dynamic"))]
-    shown = sorted(shown, key=lambda row: -row["gap"])
-    known = -_of(found, "hole known")["gap"]
-    for k, row in enumerate(shown):
-        colour, _ = look_of(row["way"])
-        axes.barh(k, row["gap"], color=colour, height=0.7)
-        axes.text(row["gap"], k, f" {row['gap']:.2f}", va="center", fontsize=8)
-    axes.set_yticks(range(len(shown)), [row["way"] for row in shown])
-    best = _of(found, "dynamic program")["yards"]
-    axes.set(
-        title="Yards above the optimum",
-        xlabel=f"summed over {settings['horizon']} shots at training holes;\noptimum {best:.1f}, "
-        f"hole known {best - known:.1f}",
-        xlim=(0, 1.2 * max(row["gap"] for row in shown) + 0.01),
+    shown = sorted(shown, key=lambda row: row["gap"])
+    best, known = (table.record(way=way)["yards"] for way in ("dynamic program", "hole known"))
+    draw_interval_bars(
+        axes, [row["way"] for row in shown], {"gap": [{"value": row["gap"]} for row in shown]},
+        colours=[look_of(row["way"])[0] for row in shown], words="{:.2f}".format, title="Yards above the optimum",
+        label=f"summed over {horizon} shots at training holes;\noptimum {best:.1f}, hole known {known:.1f}",
     )  # fmt: skip
-
-
-def _of(found: list[Mapping], way: str) -> Mapping:
-    return next(row for row in found if row["way"] == way)
+    axes.set_xlim(0, 1.2 * shown[-1]["gap"] + 0.01)

@@ -1,44 +1,30 @@
-"""C4.2: a hundred unknown holes of 120 to 220 yards: error and belief by shot, beside single clubs.
-
-What each was given: the rules four clubs on four training holes, exactly or from `samples` shots a pair, and
-after each shot its category; a single club nothing; the best club the hole's distance. The dynamic program (Eq.
-4.3, three shots) knows the models and that the hole is one of the four, and is the best that can be done then.
-
-Headline: greedy selection with models learnt from samples; no hole played is a training hole.
-
-Thesis: §4.6.1, Figure 4.4.
-"""
+"""C4.2: golf by shot on unknown holes: rules, single clubs and the dynamic program. Thesis: §4.6.1, Figure 4.4."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.domains.golf.golf import Golf
-from lifelore.experiments.chapter4.c4_02_golf_holes.golf_programs import program_gaps
+from lifelore.domains.golf.golf import CLUBS, Golf
 from lifelore.experiments.chapter4.golf_runs import (
     EXACT,
     LEARNT,
     WOOD,
     draw_group,
     errors_of,
+    exact_library,
     library_of,
     play_holes,
 )
 from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
-from lifelore.experiments.engine.learning_settings import check_counts
+from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
 
 GREEDY = "greedy"
 
 
 def check(settings: Mapping) -> None:
-    check_counts(settings, ("groups", "holes", "samples", "horizon"))
-    check_counts(settings, ("shots",), 2)
-    yards = settings["yards"]
-    if np.shape(yards) != (2,) or not 0 < yards[0] <= yards[1]:
-        raise InputError(f"yards must be two distances, rising, above 0, got {yards}")
-    if settings["pseudo_count"] < 0:
-        raise InputError(f"pseudo_count must be at least 0, got {settings['pseudo_count']}")
+    if settings["yards"][0] > settings["yards"][1]:
+        raise InputError(f"yards must rise, got {settings['yards']}")
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -73,7 +59,7 @@ def _rule_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
 
 
 def _clubs_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
-    """What single clubs miss by at the second shot's luck, and the best club for the hole in retrospect."""
+    """Mean misses of single clubs, and of the best club for each hole, with the second shot's luck."""
     distance, luck = draw_group(settings, seed, group)
     golf = Golf()
     missed = [np.abs(errors_of(np.full(len(luck), j), distance, luck[:, 1])) for j in range(golf.n_clubs)]
@@ -82,3 +68,18 @@ def _clubs_of(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
         "club": [round(float(m.mean()), 5) for m in missed],
         "best": round(float(np.abs(errors_of(best, distance, luck[:, 1])).mean()), 5),
     }
+
+
+def program_gaps(horizon: int) -> dict[str, dict]:
+    """By rule: yards missed a round in expectation, and how many more than under the dynamic program (Eq. 4.3).
+
+    "dynamic program" is the optimum itself; "hole known" plays the best club for the hole from the first shot.
+    """
+    library, mean = exact_library(), Golf().mean
+    plan = best_plan(library, horizon)
+    values = {"hole known": horizon * float(mean.max(axis=1).mean())}
+    values |= {name: value_of_rule(library, rule, horizon) for name, rule in RULES_SHOWN.items()}
+    values |= {f"only the {club}": horizon * float(mean[:, j].mean()) for j, club in enumerate(CLUBS)}
+    best = {"yards": round(-plan.value, 6), "gap": 0.0, "first_club": CLUBS[plan.first]}
+    others = {name: {"yards": round(-v, 6), "gap": round(plan.value - v, 6)} for name, v in values.items()}
+    return {"dynamic program": best, **others}

@@ -1,7 +1,7 @@
-"""Callers served by sampling the belief, with three kinds of signal: what C4.3 is made of.
+"""Callers served by sampling the belief, with three kinds of signal.
 
-What is known: of each caller's type and language model the distribution of the signal and of the utility,
-exactly or as `samples` calls a pair told. A caller's uniform numbers are the same whatever is signalled, so
+The service knows for each caller's type and language model the distribution of the signal and of the utility,
+exactly or learnt from `samples` calls a pair. A caller's uniform numbers are the same whatever is signalled, so
 that the signals are compared on the same luck. Callers come in groups; where models are learnt each group has a
 library of its own.
 """
@@ -32,7 +32,7 @@ SIGNAL_OF_PATH: dict[str, tuple[int, ...]] = {
     "(s, a, r)": REWARDS_OF_PATH,
     "U": UTILITY_OF_PATH,
 }
-"""What each call signals, by kind of signal: the whole path, its rewards, or their sum."""
+"""The signal of each call, by kind of signal: the whole path, its rewards, or their sum."""
 N_SIGNALS = {"(s, a, s′)": len(PATHS), "(s, a, r)": len(REWARD_SEQUENCES), "U": len(UTILITIES)}
 EXACT, LEARNT = "exact", "learnt"
 

@@ -1,6 +1,6 @@
-"""Measures and rows of claim C4.4."""
+"""C4.4: powers of ten between the episodes that policy reuse and the learners need."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,38 +19,43 @@ from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import (
     Q,
 )
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.estimates import exact_value
 
 REUSERS = (BPR, BPR_EI, BPR_MORE, BPR_EXACT)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Episodes that each method needs, powers of ten between them, what was spent beforehand, and moved foods."""
-    found = {}
-    for name in (*REUSERS, *LEARNERS):
-        found |= _needed(settings, results, "needed", name, name)
-    for name in LEARNERS:
-        found |= _needed(settings, results, "greedy", name, f"greedy_{name}")
-    for kind, prefix in (("needed", ""), ("greedy", "greedy_")):
-        for extra in ("", DISCOUNTED):
-            for title, names in (("q", (Q,)), ("prq", (PRQ, PRQ_SCALED))):
-                one_of = [name + extra for name in names]
-                found[f"orders_{prefix}{title}{extra}"] = _orders(settings, results, kind, one_of)
-    found["orders_prq_as_returned"] = _orders(settings, results, "needed", [PRQ])
-    for title, names in (("q", [Q]), ("prq", [PRQ, PRQ_SCALED])):
-        found[f"orders_{title}_more_samples"] = _orders(settings, results, "needed", names, BPR_MORE)
-    found["library_return"] = mean_estimate(
-        [np.mean([task["best"] for task in cell["tasks"]]) for cell in results]
-    )
-    spent = len(STRATEGIES) * settings["training_episodes"]
-    found["training_episodes"] = _plain(spent + len(STRATEGIES) ** 2 * settings["samples"], len(results))
-    return found | _moved(results)
+    """Share of tasks on which each method gets there, powers of ten between them, training, and moved foods."""
 
+    def orders(kind: str, names: Sequence[str], reuser: str = BPR) -> Estimate:
+        """Mean power of ten between the fastest of some learners on each task and a form of BPR; over layouts."""
+        powers = []
+        for cell in results:
+            slow = np.min([_episodes(settings, cell, kind, name) for name in names], axis=0)
+            powers.append(np.log10(slow / _episodes(settings, cell, "needed", reuser)).mean())
+        return mean_estimate(powers)
 
-def _needed(settings: Mapping, results: Sequence[Mapping], kind: str, name: str, key: str) -> dict[str, Estimate]:
-    """The share of tasks in which a method comes there at all, and the median episode, never being the last."""
-    reached = [np.mean([task[kind][name] is not None for task in cell["tasks"]]) for cell in results]
-    episodes = np.concatenate([_episodes(settings, cell, kind, name) for cell in results])
-    return {f"reached_{key}": mean_estimate(reached), f"median_{key}": _plain(np.median(episodes), len(episodes))}
+    found = {
+        f"reached_{name}": _layout_means(
+            results, "tasks", lambda task, name=name: task["needed"][name] is not None
+        )
+        for name in (*REUSERS, *LEARNERS)
+    }
+    learners = {"q": (Q,), "prq": (PRQ, PRQ_SCALED)}
+    for extra in ("", DISCOUNTED):
+        for title, names in learners.items():
+            variants = [name + extra for name in names]
+            found[f"orders_{title}{extra}"] = orders("needed", variants)
+            found[f"orders_greedy_{title}{extra}"] = orders("greedy", variants)
+    found["orders_prq_as_returned"] = orders("needed", [PRQ])
+    for title, names in learners.items():
+        found[f"orders_{title}_more_samples"] = orders("needed", names, BPR_MORE)
+    found["library_return"] = _layout_means(results, "tasks", lambda task: task["best"])
+    spent = len(STRATEGIES) * settings["training_episodes"] + len(STRATEGIES) ** 2 * settings["samples"]
+    found["training_episodes"] = exact_value(spent, len(results))
+    for name in ("best", BPR, *LEARNERS):
+        found[f"moved_{name}"] = _layout_means(results, "moved", lambda task, name=name: task[name])
+    return found
 
 
 def _episodes(settings: Mapping, cell: Mapping, kind: str, name: str) -> NDArray[np.float64]:
@@ -58,27 +63,9 @@ def _episodes(settings: Mapping, cell: Mapping, kind: str, name: str) -> NDArray
     return np.array([task[kind][name] or settings["episodes"] for task in cell["tasks"]], float)
 
 
-def _orders(
-    settings: Mapping, results: Sequence[Mapping], kind: str, names: Sequence[str], reuser: str = BPR
-) -> Estimate:
-    """Mean power of ten between the fastest of some learners on each task and a form of BPR; over layouts."""
-    powers = []
-    for cell in results:
-        slow = np.min([_episodes(settings, cell, kind, name) for name in names], axis=0)
-        powers.append(np.log10(slow / _episodes(settings, cell, "needed", reuser)).mean())
-    return mean_estimate(powers)
-
-
-def _moved(results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Returns where foods lie elsewhere than in training: best of the library, BPR, learners at the end."""
-    return {
-        f"moved_{name}": mean_estimate([np.mean([task[name] for task in cell["moved"]]) for cell in results])
-        for name in ("best", BPR, *LEARNERS)
-    }
-
-
-def _plain(value: float, n: int) -> Estimate:
-    return Estimate(float(value), float(value), None, n)
+def _layout_means(results: Sequence[Mapping], key: str, number: Callable[[Mapping], float]) -> Estimate:
+    """Mean over layouts of the mean over a layout's tasks."""
+    return mean_estimate([np.mean([number(task) for task in cell[key]]) for cell in results])
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

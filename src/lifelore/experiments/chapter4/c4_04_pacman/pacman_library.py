@@ -1,8 +1,7 @@
-"""What Pacman knows before it meets a task: a policy for each ghost by Q-learning, and how each does against each.
+"""Pacman's library: a policy for each ghost by Q-learning, and the returns of each policy against each ghost.
 
-Trained without a discount, a policy need never hurry: waiting is worth as much as winning, and the greedy policy
-of what was learnt dithers until the episode is cut. So training discounts, though the claim's learners do not
-(errata).
+Without a discount, waiting has the same value as winning, and the learnt greedy policy dithers until the episode
+is cut. So training discounts, although the claim's learners do not (errata).
 """
 
 from collections.abc import Mapping, Sequence

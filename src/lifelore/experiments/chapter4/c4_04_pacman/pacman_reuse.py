@@ -1,7 +1,7 @@
 """One layout of Pacman's foods: a library trained beforehand, then policy reuse and learners on the same tasks.
 
-A task is a layout and a ghost's strategy, which none of the methods is told. What is counted is not quite the same
-for all: reuse must last (`first_lasting`), a learner need only touch (`first_stretch`). Thesis: §4.6.3, Fig. 4.8.
+A task is a layout and a ghost's strategy, which no method knows. The counts differ a little: reuse must last
+(`first_lasting`), a learner must reach the target once (`first_stretch`). Thesis: §4.6.3, Fig. 4.8.
 """
 
 from collections.abc import Mapping
@@ -38,7 +38,7 @@ DISCOUNTED = "_discounted"
 """Added to a learner's name where it discounts as the library's training does."""
 LEARNERS = tuple(name + extra for extra in ("", DISCOUNTED) for name in (PRQ, PRQ_SCALED, Q))
 LEAST_DEVIATION = 1e-3 * 240
-"""What never varies may still vary a little: a thousandth of the range of returns, as with learnt models."""
+"""Least deviation of exact models: a thousandth of the range of returns, as with learnt models."""
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -100,7 +100,7 @@ def _task(settings: Mapping, arena: Arena, policies, mean, known: Mapping, strea
 
 
 def reused(library: PolicyLibrary, rule, returns: NDArray[np.float64], stream_of: tuple) -> NDArray[np.int64]:
-    """The policies that BPR selects, given what each would return in each episode, (n_policies, n_episodes)."""
+    """The policies that BPR selects, given the return of each in each episode, (n_policies, n_episodes)."""
     agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of))
     chosen = np.empty(returns.shape[1], np.int64)
     for episode in range(returns.shape[1]):
@@ -126,11 +126,11 @@ def first_stretch(returns: NDArray[np.float64], target: float, window: int) -> i
 
 
 def _learn(settings: Mapping, name: str, arena: Arena, policies, target: float | None, stream_of: tuple):
-    """A learner's rewards by episode, and how soon its greedy policy is as good as the target and stays so.
+    """A learner's rewards by episode, and the episode from which its greedy policy stays as good as the target.
 
-    The greedy policy's exact value is looked at where `checkpoints` say and at the end; what is returned is the
-    checkpoint *before* the first from which all are good enough, so that no episode too many is counted; None
-    where the last is not, or without a target.
+    The greedy policy's exact value is computed at the `checkpoints` and at the end. The episode is the checkpoint
+    *before* the first from which all values are good enough, so that no episode too many is counted; None where
+    the last value is not, or without a target.
     """
     n = settings["episodes"]
     discount = settings["training_discount"] if name.endswith(DISCOUNTED) else 1.0
@@ -159,7 +159,7 @@ def _learner(name: str, arena: Arena, policies, stream_of: tuple):
 
 
 def _moved(settings: Mapping, arena: Arena, policies, known: Mapping, stream_of: tuple) -> dict:
-    """A task whose foods lie elsewhere than in training: what reuse comes to, and what learners come to."""
+    """Final returns of reuse and of learners on a task whose foods lie elsewhere than in training."""
     mean = np.array([arena.moments(policy)[0] for policy in policies])
     n = settings["peer_episodes"]
     drawn = np.array([arena.returns(p, n, (*stream_of, "reuse", number)) for number, p in enumerate(policies)])

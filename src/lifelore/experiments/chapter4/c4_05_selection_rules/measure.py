@@ -1,21 +1,29 @@
-"""Measures and rows of claim C4.5."""
+"""C4.5: when the regret of each rule ends, and in how many reserves the statements of the thesis hold."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter4.c4_01_golf_example.measure import known
-from lifelore.experiments.chapter4.c4_05_selection_rules.run import worlds
 from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
 from lifelore.experiments.chapter4.reuse_runs import STUCK, plain
-from lifelore.experiments.chapter4.surveillance_runs import CASES, DEFAULT_WORLD, RULES, find, name_of, summary
-from lifelore.experiments.engine.estimates import exact_share, share_of
+from lifelore.experiments.chapter4.surveillance_runs import (
+    CASES,
+    DEFAULT_WORLD,
+    RULES,
+    find,
+    name_of,
+    summary,
+    worlds,
+)
+from lifelore.experiments.engine.estimates import exact_share, exact_value, share_of
 
 ALL = 68
 """Episodes that trying every policy takes."""
 WITHIN = 15
-CONVERGE = ("BE", "KG", "sampling")
+CONVERGE, FAIL = ("BE", "KG", "sampling"), ("PI", "eps-greedy")
+READ = dict.fromkeys(CONVERGE, "ended_median") | dict.fromkeys(FAIL, "late_median")
+"""The number that conditions read, by rule in its standard or printed form."""
 
 
 def verdicts(found: Mapping[str, Mapping[str, Estimate]], printed: bool = False) -> dict[str, bool]:
@@ -27,67 +35,60 @@ def verdicts(found: Mapping[str, Mapping[str, Estimate]], printed: bool = False)
     return {
         **{f"{name} converges": ended[name] <= WITHIN for name in CONVERGE},
         "EI fastest": ended["EI"] <= min(ended.values()),
-        **{f"{name} fails": of[name]["late_median"].value > STUCK for name in ("PI", "eps-greedy")},
+        **{f"{name} fails": of[name]["late_median"].value > STUCK for name in FAIL},
     }
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Of each case and rule when regret ended and how much there was; and in how much of the grid this is so."""
+    """When regret ended and how much was left, by case; the share of reserves and of small runs that agree."""
     measured: dict[str, Estimate] = {}
     for case in CASES:
         found = {name: summary(find(results, name, case)) for name in RULES}
         for name, numbers in found.items():
-            measured |= {f"{key}_{name_of(name, case)}": number for key, number in numbers.items()}
-        measured |= _of_case(case, found)
-    grid = {"": [], "_printed": []}
-    for world in worlds(settings):
-        found = {name: summary(find(results, name, "exact", **world)) for name in RULES}
-        grid[""].append(verdicts(found))
-        grid["_printed"].append(verdicts(found, printed=True))
-    measured |= _of_thesis_size(settings, results)
-    for form, answers in grid.items():
-        for statement in answers[0]:
-            name = statement.replace(" ", "_").replace("-", "_")
-            measured[f"grid_{name}{form}"] = share_of([one[statement] for one in answers])
-        measured[f"grid_all{form}"] = share_of([all(one.values()) for one in answers])
-    return measured
-
-
-def _of_thesis_size(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """In what share of experiments with one group of tasks each, as in the thesis, the statements are true."""
-    measured: dict[str, Estimate] = {}
+            if key := READ.get(name.partition(",")[0]):
+                measured[f"{key}_{name_of(name, case)}"] = numbers[key]
+        measured["stuck_" + name_of("EI, printed", case)] = found["EI, printed"]["stuck"]
+        measured |= _comparisons(name_of("", case).strip("_"), found)
+    grid = [{name: summary(find(results, name, "exact", **world)) for name in RULES} for world in worlds(settings)]
+    small = [_summaries_of_group(settings, results, group) for group in range(settings["groups"])]
     for form, printed in (("", False), ("_printed", True)):
-        answers = []
-        for group in range(settings["groups"]):
-            own = slice(group * settings["tasks"], (group + 1) * settings["tasks"])
-            found = {}
-            for name in RULES:
-                result = find(results, name, "exact")
-                kept = {key: result[key][own] for key in ("sums", "ended", "late")}
-                found[name] = summary({**result, **kept, "groups": 1})
-            answers.append(verdicts(found, printed))
+        answers = [verdicts(found, printed) for found in grid]
+        measured[f"grid_all{form}"] = share_of([all(one.values()) for one in answers])
+        of_groups = [verdicts(found, printed) for found in small]
         for statement in answers[0]:
-            name = statement.replace(" ", "_").replace("-", "_")
-            measured[f"thesis_size_{name}{form}"] = exact_share([one[statement] for one in answers])
+            name = statement.replace(" ", "_").replace("-", "_") + form
+            measured[f"grid_{name}"] = share_of([one[statement] for one in answers])
+            measured[f"thesis_size_{name}"] = exact_share(one[statement] for one in of_groups)
     return measured
 
 
-def _of_case(case: str, found: Mapping[str, Mapping[str, Estimate]]) -> dict[str, Estimate]:
-    """What compares rules with one another: numbers of one case, or differences of its medians."""
+def _summaries_of_group(settings: Mapping, results: Sequence[Mapping], group: int) -> dict[str, dict]:
+    """Summaries of one group of tasks, an experiment of the thesis's size; exact models."""
+    own = slice(group * settings["tasks"], (group + 1) * settings["tasks"])
+    found = {}
+    for name in RULES:
+        result = find(results, name, "exact")
+        found[name] = summary(
+            {**result, **{key: result[key][own] for key in ("sums", "ended", "late")}, "groups": 1}
+        )
+    return found
+
+
+def _comparisons(case: str, found: Mapping[str, Mapping[str, Estimate]]) -> dict[str, Estimate]:
+    """Differences between the medians of rules, and the slowest of three as a share of trying every policy."""
     ended = {name: numbers["ended_median"].value for name, numbers in found.items()}
     others = min(ended[name] for name in OF_THESIS if name != "EI")
-    short = name_of("", case).strip("_")
     return {
-        f"EI_minus_fastest_other_{short}": known(ended["EI"] - others),
-        f"EI_printed_minus_fastest_other_{short}": known(ended["EI, printed"] - others),
-        f"slowest_of_three_share_of_all_{short}": known(max(ended[name] for name in CONVERGE) / ALL),
+        f"EI_minus_fastest_other_{case}": exact_value(ended["EI"] - others),
+        f"EI_printed_minus_fastest_other_{case}": exact_value(ended["EI, printed"] - others),
+        f"slowest_of_three_share_of_all_{case}": exact_value(max(ended[name] for name in CONVERGE) / ALL),
     }
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row a cell: its summary, over the grid its values; in the default reserve also its curves and late regret
     on unseen tasks."""
-    kept = []
+    found = []
     for result in results:
         world = {key: result[key] for key in DEFAULT_WORLD}
         numbers = plain(summary(result))
@@ -97,8 +98,8 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         if world == DEFAULT_WORLD:
             row |= {"curve": result["curve"], "entropy": result.get("entropy")}
             row["late_by_seen"] = late_by_seen(result)
-        kept.append(row)
-    return kept
+        found.append(row)
+    return found
 
 
 def late_by_seen(result: Mapping) -> dict[str, float]:

@@ -1,4 +1,4 @@
-"""Measures and rows of claim C4.6."""
+"""C4.6: how many of the printed standard deviations agree with those of many groups of ten tasks."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,7 +8,7 @@ from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter4.c4_06_regret_deviation.run import AFTER, METHODS
 from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
 from lifelore.experiments.chapter4.reuse_runs import grouped_deviation
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD, NOISES, by_group, find, name_of
+from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD, NOISES, find, name_of
 from lifelore.experiments.engine.estimates import share_of
 
 PRINTED = {
@@ -26,19 +26,24 @@ READINGS = {
     "paid less than the best mean": ("against_mean", False),
     "expected": ("at", False),
 }
-"""Which regret of `surveillance_runs`, and whether its sign is dropped."""
+"""Regret of `surveillance_runs` by reading, and whether its sign is dropped."""
 DEFAULT_READING = "size of the difference of two pays"
 CASES_SHOWN = ("exact", "headline")
 
 
+def regrets(result: Mapping, reading: str, episode: int) -> np.ndarray:
+    """Regret of every task in one reading, (n_groups, n_tasks)."""
+    key, size = READINGS[reading]
+    values = np.array(result[key][str(episode)], float).reshape(result["groups"], -1)
+    return np.abs(values) if size else values
+
+
 def deviations(result: Mapping, reading: str, episode: int) -> np.ndarray:
     """Standard deviation over the tasks of each group, (n_groups,); with n − 1, as of a sample."""
-    key, size = READINGS[reading]
-    values = by_group({"groups": result["groups"], key: result[key][str(episode)]}, key)
-    return (np.abs(values) if size else values).std(axis=1, ddof=1)
+    return regrets(result, reading, episode).std(axis=1, ddof=1)
 
 
-def agreement(result: Mapping, printed: Sequence[float], reading: str) -> list[bool]:
+def agreement(result: Mapping, printed: Sequence[float], reading: str = DEFAULT_READING) -> list[bool]:
     """Whether each printed number lies within the middle 95 % of the groups' deviations."""
     inside = []
     for episode, number in zip(AFTER, printed, strict=True):
@@ -48,42 +53,43 @@ def agreement(result: Mapping, printed: Sequence[float], reading: str) -> list[b
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How many printed numbers agree, by rule and form; deviations over all tasks after 20 and 50 episodes."""
+    """How many printed numbers agree, by rule, form and reading; deviations over all tasks after 50 episodes."""
+
+    def whole_table(
+        case: str, form: str = "", reading: str = DEFAULT_READING, **world: str
+    ) -> dict[str, list[bool]]:
+        """By method the four answers; rules without a printed form count in their standard form."""
+        methods = {name: name + form if name + form in METHODS else name for name in OF_THESIS}
+        return {
+            method: agreement(find(results, method, case, **world), PRINTED[name], reading)
+            for name, method in methods.items()
+        }
+
     measured: dict[str, Estimate] = {}
     for case in CASES_SHOWN:
         for form in ("", ", printed"):
-            every = []
-            for name in OF_THESIS:
-                method = name + form if name + form in METHODS else name
-                inside = agreement(find(results, method, case), PRINTED[name], DEFAULT_READING)
-                every += inside
-                measured[f"agree_{name_of(method, case)}"] = share_of(inside)
-            measured[f"agree_all{form.replace(', ', '_')}_{case}"] = share_of(every)
+            answers = whole_table(case, form)
+            measured |= {f"agree_{name_of(method, case)}": share_of(inside) for method, inside in answers.items()}
+            measured[f"agree_all{form.replace(', ', '_')}_{case}"] = share_of(np.ravel(list(answers.values())))
         for name in METHODS:
-            for episode in AFTER:
-                result = find(results, name, case)
-                key, _ = READINGS[DEFAULT_READING]
-                values = np.abs(by_group({"groups": result["groups"], key: result[key][str(episode)]}, key))
-                measured[f"deviation_{episode}_{name_of(name, case)}"] = grouped_deviation(values)
-    near = agreement(find(results, "BE, κ 30", "exact"), PRINTED["BE"], DEFAULT_READING)
+            last = regrets(find(results, name, case), DEFAULT_READING, AFTER[-1])
+            measured[f"deviation_{AFTER[-1]}_{name_of(name, case)}"] = grouped_deviation(last)
+    near = agreement(find(results, "BE, κ 30", "exact"), PRINTED["BE"])
     measured["agree_BE_near_greedy_exact"] = share_of(near)
     for reading in READINGS:
-        inside = [agreement(find(results, name, "exact"), PRINTED[name], reading) for name in OF_THESIS]
-        measured[f"agree_all_{reading.replace(' ', '_')}"] = share_of(np.ravel(inside))
+        inside = np.ravel(list(whole_table("exact", reading=reading).values()))
+        measured[f"agree_all_{reading.replace(' ', '_')}"] = share_of(inside)
     other = next(noise for noise in NOISES if noise != DEFAULT_WORLD["noise"])
-    inside = [
-        agreement(find(results, name, "exact", noise=other), PRINTED[name], DEFAULT_READING) for name in OF_THESIS
-    ]
-    measured["agree_all_other_noise"] = share_of(np.ravel(inside))
+    measured["agree_all_other_noise"] = share_of(np.ravel(list(whole_table("exact", noise=other).values())))
     return measured
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row a cell and reading: quantiles of the groups' deviations after each printed episode."""
-    kept = []
+    found = []
     for result in results:
         for reading in READINGS:
             row = {key: result[key] for key in ("method", "case", "noise")}
-            found = [np.quantile(deviations(result, reading, k), [0.025, 0.5, 0.975]) for k in AFTER]
-            kept.append({**row, "reading": reading, "quantiles": np.round(found, 2).tolist()})
-    return kept
+            quantiles = [np.quantile(deviations(result, reading, k), [0.025, 0.5, 0.975]) for k in AFTER]
+            found.append({**row, "reading": reading, "quantiles": np.round(quantiles, 2).tolist()})
+    return found

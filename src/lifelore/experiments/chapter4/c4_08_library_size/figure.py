@@ -1,22 +1,18 @@
-"""Mean regret by size of the library and number of episodes (C4.8; Figure 4.12)."""
+"""Mean regret by size of the library and number of episodes (Figure 4.12)."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, LIGHT, SKY, house_style, new_figure
 
 if TYPE_CHECKING:
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_library_size(result)
-
-
-_PANELS = (
+PANELS = (
     ("EI", "learnt", "all", "Learnt models; against the best of all"),
     ("EI", "exact", "all", "Exact models; against the best of all"),
     ("EI, printed", "exact", "all", "EI as printed, exact; against the best of all"),
@@ -24,37 +20,34 @@ _PANELS = (
 )
 
 
-def draw_library_size(result: Mapping) -> "Figure":
-    """From C4.8's result: a line for each number of episodes over the size of the library."""
-    rows, settings = result["rows"], result["settings"]
-    panels = [panel for panel in _PANELS if panel[0] in settings["rules"]]
+def draw(result: Mapping) -> "Figure":
+    """A line for each number of episodes over the size of the library."""
+    from matplotlib.colors import LinearSegmentedColormap
+
+    settings = result["settings"]
+    table = ResultsTable(result["rows"], ("rule", "model"))
+    panels = [panel for panel in PANELS if panel[0] in settings["rules"]]
+    episodes = [str(n) for n in settings["episodes"]]
+    shades = LinearSegmentedColormap.from_list("episodes", [SKY, BLUE, "#0b2a4a"])(
+        np.linspace(0, 1, len(episodes))
+    )
+    looks = {n: {"color": shade, "marker": "o", "ms": 4} for n, shade in zip(episodes, shades, strict=True)}
+    shares = [100 * share for share in settings["shares"]]
     with house_style():
         figure = new_figure(10.4, 3.7 * (1 + (len(panels) > 2)))
         every = figure.subplots(1 + (len(panels) > 2), 2, sharey=True, squeeze=False).ravel()
         for axes in every[len(panels) :]:
             axes.axis("off")
         for axes, (rule, model, against, words) in zip(every, panels, strict=False):
-            shown = [row for row in rows if (row["rule"], row["model"]) == (rule, model)]
-            _draw_lines(axes, shown, against, settings["episodes"])
-            axes.set_title(words)
-            axes.set_xlabel("size of the library, % of 68")
+            own = table.select(rule=rule, model=model)
+            mean, error = own.values(against), 1.96 * own.values(f"{against}_error")
+            series = {n: {"mean": mean[:, k], "error": error[:, k]} for k, n in enumerate(episodes)}
+            xlabel = "size of the library, % of 68"
+            draw_curves(axes, shares, series, looks=looks, title=words, xlabel=xlabel, legend=False)
+            axes.set_xticks(shares, [f"{share:g}" for share in shares])
+            axes.set_ylim(0, None)
+            axes.grid(axis="y", color=LIGHT)
         every[0].set_ylabel("mean regret of an episode")
         every[0].legend(title="episodes", ncols=2, loc="upper right")
         figure.suptitle(f"BPR-EI in the reserve, {settings['trials']} trials a point", x=0.01, ha="left")
     return figure
-
-
-def _draw_lines(axes: "Axes", rows: Sequence[Mapping], against: str, episodes: Sequence[int]) -> None:
-    from matplotlib.colors import LinearSegmentedColormap
-
-    shades = LinearSegmentedColormap.from_list("episodes", [SKY, BLUE, "#0b2a4a"])
-    shares = [100 * row["share"] for row in rows]
-    for k, n in enumerate(episodes):
-        mean = np.array([row[against][k] for row in rows])
-        half = 1.96 * np.array([row[f"{against}_error"][k] for row in rows])
-        colour = shades(k / max(1, len(episodes) - 1))
-        axes.fill_between(shares, mean - half, mean + half, color=colour, alpha=0.15, lw=0)
-        axes.plot(shares, mean, "o-", color=colour, ms=4, label=str(n))
-    axes.set_xticks(shares, [f"{share:g}" for share in shares])
-    axes.set_ylim(0, None)
-    axes.grid(axis="y", color=LIGHT)

@@ -1,58 +1,46 @@
-"""Measures and rows of claim C4.8."""
+"""C4.8: regret saved by a larger library and by more episodes, and the share of single steps that save regret."""
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 
 import numpy as np
 
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import Estimate, difference_estimate
 from lifelore.experiments.chapter4.c4_08_library_size.run import AGAINST
 from lifelore.experiments.chapter4.surveillance_runs import EXACT, LEARNT
 from lifelore.experiments.engine.estimates import share_of
-
-
-def table(settings: Mapping, results: Sequence[Mapping], rule: str, model: str, against: str) -> np.ndarray:
-    """Mean regret of every trial, (n_shares, n_episodes, n_trials)."""
-    of = {r["share"]: np.array(r[against], float).T for r in results if (r["rule"], r["model"]) == (rule, model)}
-    return np.stack([of[share] for share in settings["shares"]])
+from lifelore.experiments.engine.results_table import ResultsTable
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """What size and episodes save, corner against corner, and in how many single steps the mean falls."""
+    """Regret saved by size and by episodes, corner against corner, and in how many single steps the mean falls."""
+    table = ResultsTable(results, ("rule", "model", "share"))
     measured: dict[str, Estimate] = {}
-    first, last = settings["episodes"][0], settings["episodes"][-1]
     for rule in settings["rules"]:
         for model in (LEARNT, EXACT):
             for against in AGAINST:
-                found = table(settings, results, rule, model, against)
+                cells = (table.values(against, rule=rule, model=model, share=x)[0] for x in settings["shares"])
+                found = _savings(np.stack([regret.T for regret in cells]))
                 name = f"{rule.replace(', ', '_')}_{model}" + ("" if against == "all" else "_library_regret")
-                measured[f"saved_by_size_early_{name}"] = _saved(found[0, 0], found[-1, 0])
-                measured[f"saved_by_size_late_{name}"] = _saved(found[0, -1], found[-1, -1])
-                measured[f"saved_by_episodes_small_{name}"] = _saved(found[0, 0], found[0, -1])
-                measured[f"saved_by_episodes_whole_{name}"] = _saved(found[-1, 0], found[-1, -1])
-                mean = found.mean(axis=2)
-                measured[f"steps_of_size_{name}"] = share_of((np.diff(mean, axis=0) < 0).ravel())
-                measured[f"steps_of_episodes_{name}"] = share_of((np.diff(mean, axis=1) < 0).ravel())
-                measured[f"least_step_of_size_late_{name}"] = _least(found[:, -1])
-                measured[f"regret_whole_{last}_{name}"] = mean_estimate(found[-1, -1])
-                measured[f"regret_whole_{first}_{name}"] = mean_estimate(found[-1, 0])
+                measured |= {f"{key}_{name}": number for key, number in found.items()}
     return measured
 
 
-def _saved(before: np.ndarray, after: np.ndarray) -> Estimate:
-    """How much less `after` is, trial by trial."""
-    return mean_estimate(before - after)
-
-
-def _least(found: np.ndarray) -> Estimate:
-    """The smallest of what one step in size saves, (n_shares, n_trials)."""
-    steps = [_saved(small, large) for small, large in pairwise(found)]
-    return min(steps, key=lambda step: step.value)
+def _savings(found: np.ndarray) -> dict[str, Estimate]:
+    """From the mean regret of every trial, (n_shares, n_episodes, n_trials)."""
+    small, whole, mean = found[0], found[-1], found.mean(axis=2)
+    return {
+        "saved_by_size_early": difference_estimate(small[0], whole[0]),
+        "saved_by_size_late": difference_estimate(small[-1], whole[-1]),
+        "saved_by_episodes_small": difference_estimate(small[0], small[-1]),
+        "saved_by_episodes_whole": difference_estimate(whole[0], whole[-1]),
+        "steps_of_size": share_of((np.diff(mean, axis=0) < 0).ravel()),
+        "steps_of_episodes": share_of((np.diff(mean, axis=1) < 0).ravel()),
+    }
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row a cell: mean regret up to each number of episodes, its standard error, and tasks met in training."""
-    kept = []
+    found = []
     for result in results:
         row = {key: result[key] for key in ("rule", "model", "share")}
         for against in AGAINST:
@@ -60,5 +48,5 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             row[against] = values.mean(axis=0).round(3).tolist()
             row[f"{against}_error"] = (values.std(axis=0, ddof=1) / len(values) ** 0.5).round(3).tolist()
         row["share_met"] = round(float(np.mean(result["met"])), 4)
-        kept.append(row)
-    return kept
+        found.append(row)
+    return found

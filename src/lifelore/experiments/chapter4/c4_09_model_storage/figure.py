@@ -1,103 +1,90 @@
-"""What observation models take to store: tables by the number of rewards, what episodes fill, the worlds."""
+"""Sizes of observation models: tables by number of rewards, entries that episodes fill, the thesis's worlds."""
 
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter4.reuse_palette import look_of
+from lifelore.experiments.chapter4.reuse_figures import look_of
+from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_stored_models(result["rows"])
-
-
 SIGNALS = {"performance": "U", "reward": "(s, a, r)", "state-action-state": "(s, a, s′)"}
+PRINTED = {"reward": ", in print (s, a, s′)", "state-action-state": ", in print (s, a, r)"}
+"""The two formulas have changed places in print."""
 SHOWN_STATES = 16
+LINES = {"transition": ("-", "reward a function of (s, a, s′)"), "noise": ((0, (1, 1.2)), "noisy reward")}
 
 
-def draw_stored_models(rows: Sequence[Mapping]) -> "Figure":
-    """Three panels, entries on a log scale.
-
-    Parameters
-    ----------
-    rows : sequence of mapping
-        As in the result of C4.9: kind, sizes S, R, A and pairs, and under ``table`` and ``filled`` the entries by
-        signal.
-    """
+def draw(result: Mapping) -> "Figure":
+    """Three panels, entries on a log scale."""
+    random = [row for row in result["rows"] if row["kind"] == "random"]
+    sizes = {row["S"] for row in random}
+    n_states = SHOWN_STATES if SHOWN_STATES in sizes else max(sizes)
+    own = sorted((row for row in random if row["S"] == n_states), key=lambda row: row["R"])
     with house_style():
         figure = new_figure(10.5, 3.6)
         left, middle, right = figure.subplots(1, 3, width_ratios=[1, 1, 1.25])
-        random = [row for row in rows if row["kind"] == "random"]
-        sizes = sorted({row["S"] for row in random})
-        n_states = SHOWN_STATES if SHOWN_STATES in sizes else sizes[-1]
-        _draw_tables(left, [row for row in random if row["S"] == n_states], n_states)
-        _draw_filled(middle, [row for row in random if row["S"] == n_states], n_states)
-        _draw_worlds(right, [row for row in rows if row["kind"] != "random"])
+        _draw_tables(left, [row for row in own if row["rewards_of"] == own[0]["rewards_of"]], n_states)
+        _draw_filled(middle, own, n_states)
+        _draw_worlds(right, [row for row in result["rows"] if row["kind"] != "random"])
     return figure
 
 
 def _draw_tables(axes: "Axes", rows: Sequence[Mapping], n_states: int) -> None:
-    own = _by_rewards(rows, rows[0]["rewards_of"])
-    n_rewards = [row["R"] for row in own]
+    series, looks = {}, {}
     for name, shown in SIGNALS.items():
-        # The two formulas have changed places in print.
-        printed = {"reward": ", in print (s, a, s′)", "state-action-state": ", in print (s, a, r)"}.get(name, "")
-        entries = [row["table"][name] for row in own]
-        axes.plot(n_rewards, entries, "o-", color=look_of(shown)[0], ms=4, label=shown + printed)
-    axes.plot(n_rewards, [2 * row["pairs"] for row in own], color=GREY, ls=":", label="U as a Gaussian")
-    axes.set(xscale="log", yscale="log", xlabel="rewards |R|", ylabel="entries of the table")
+        label = shown + PRINTED.get(name, "")
+        series[label] = {"mean": [row["table"][name] for row in rows]}
+        looks[label] = {"color": look_of(shown)[0], "marker": "o", "ms": 4}
+    series["U as a Gaussian"] = {"mean": [2 * row["pairs"] for row in rows]}
+    looks["U as a Gaussian"] = {"color": GREY, "ls": ":"}
+    n_rewards = [row["R"] for row in rows]
+    draw_curves(
+        axes, n_rewards, series, looks=looks, ylabel="entries of the table", logarithmic="xy", legend=False
+    )
     axes.set_ylim(top=30 * axes.get_ylim()[1])
-    axes.set_title(f"Tables, |S| = {n_states}", pad=16)
-    _mark(axes, n_states, [row["R"] for row in own])
-    axes.legend(loc="upper left")
+    _finish(axes, n_states, n_rewards, f"Tables, |S| = {n_states}")
 
 
 def _draw_filled(axes: "Axes", rows: Sequence[Mapping], n_states: int) -> None:
-    own: list[Mapping] = []
-    for of, line in (("transition", "-"), ("noise", (0, (1, 1.2)))):
-        own = _by_rewards(rows, of)
+    for of, (line, label) in LINES.items():
+        own = [row for row in rows if row["rewards_of"] == of]
         for name, shown in SIGNALS.items():
-            axes.plot([r["R"] for r in own], [r["filled"][name] for r in own], color=look_of(shown)[0], ls=line)
-    axes.plot([], [], color=GREY, label="reward a function of (s, a, s′)")
-    axes.plot([], [], color=GREY, ls=(0, (1, 1.2)), label="noisy reward")
-    axes.set(xscale="log", yscale="log", xlabel="rewards |R|", ylabel="entries that episodes filled")
+            filled = [row["filled"][name] for row in own]
+            axes.plot([row["R"] for row in own], filled, color=look_of(shown)[0], ls=line)
+        axes.plot([], [], color=GREY, ls=line, label=label)
+    axes.set(xscale="log", yscale="log", ylabel="entries that episodes filled")
     axes.set_ylim(top=3 * axes.get_ylim()[1])
-    axes.set_title("What was ever seen", pad=16)
-    _mark(axes, n_states, [row["R"] for row in own])
-    axes.legend(loc="upper left")
+    _finish(axes, n_states, sorted({row["R"] for row in rows}), "Entries ever seen")
 
 
-def _by_rewards(rows: Sequence[Mapping], of: str) -> list[Mapping]:
-    return sorted((row for row in rows if row["rewards_of"] == of), key=lambda row: row["R"])
-
-
-def _mark(axes: "Axes", n_states: int, n_rewards: Sequence[int]) -> None:
+def _finish(axes: "Axes", n_states: int, n_rewards: Sequence[int], title: str) -> None:
     axes.minorticks_off()
     axes.set_xticks(n_rewards, [str(n) for n in n_rewards])
+    axes.set_xlabel("rewards |R|")
+    axes.set_title(title, pad=16)
     axes.axvline(n_states, color=INK, lw=0.8, ls=":")
     axes.annotate(
         "|R| = |S|", (n_states, 1), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
         ha="center", va="bottom", fontsize=8,
     )  # fmt: skip
     axes.grid(True, axis="y")
+    axes.legend(loc="upper left")
 
 
 def _draw_worlds(axes: "Axes", rows: Sequence[Mapping]) -> None:
-    """Tables as pale bars, what is filled as dark ones."""
+    """Tables as pale bars, the entries that episodes filled as dark ones."""
     for place, row in enumerate(rows):
         for k, (name, shown) in enumerate(SIGNALS.items()):
-            height, y = 0.24, place + 0.26 * (k - 1)
-            colour = look_of(shown)[0]
-            axes.barh(y, row["table"][name], height, left=1, color=colour, alpha=0.3)
-            axes.barh(y, row["filled"][name], height, left=1, color=colour)
+            y, colour = place + 0.26 * (k - 1), look_of(shown)[0]
+            axes.barh(y, row["table"][name], 0.24, left=1, color=colour, alpha=0.3)
+            axes.barh(y, row["filled"][name], 0.24, left=1, color=colour)
     axes.set_yticks(range(len(rows)), [_name(row) for row in rows])
     axes.invert_yaxis()
-    axes.set(xscale="log", xlim=(20, None), xlabel="entries: table pale, filled dark")
-    axes.set_title("The thesis's worlds")
+    axes.set(xscale="log", xlim=(20, None), xlabel="entries: table pale, filled dark", title="The thesis's worlds")
     axes.grid(True, axis="x", color=LIGHT)
 
 

@@ -1,4 +1,4 @@
-"""What observation models of three signals take to store, once learnt: what C4.9 is made of.
+"""Sizes of observation models of three signals, learnt in random applications and in the thesis's own.
 
 An *application* is a problem with states, actions, rewards, types and policies, whose episodes are run offline as
 §4.4.1 says. From the same episodes three models are learnt: of the return (a histogram with as many bins as there
@@ -38,7 +38,7 @@ MOST_ENTRIES = 4_000_000
 """Tables of more entries are not built; their number follows from the sizes, as for those that are built."""
 BRANCHES = 3
 PACMAN_MOVES = 0.5
-"""How often each of Pacman's four policies here moves its own way; otherwise anywhere."""
+"""Share of moves that each of Pacman's four policies makes its own way; the others are random."""
 
 
 @dataclass(frozen=True)
@@ -239,7 +239,7 @@ def _transitions_learnt(found: Application) -> TransitionSignal:
 
 
 def _filled(found: Application, returns: Array) -> dict[str, int]:
-    """How many cells of each table the episodes filled; of the performance, different returns."""
+    """Number of cells of each table that the episodes filled; of the performance, different returns."""
     rewards: set[tuple] = set()
     states: set[tuple] = set()
     for type_, policy, (rows, pay) in found.sequences():

@@ -1,4 +1,4 @@
-"""Tables of what policies achieve on tasks, parted into types by landmarks: what C4.10 is made of.
+"""Tables of utilities of policies on tasks, parted into types by landmarks, and the regret of the landmarks.
 
 Families: ``uniform``, every utility drawn alone; ``smooth``, tasks on a line and each policy a sum of waves over
 it, as in Figure 4.1; ``clustered``, tasks drawn around the centres of types. ``surveillance`` is the reserve's own
@@ -20,7 +20,7 @@ Array = NDArray[np.float64]
 RANDOM = ("uniform", "smooth", "clustered")
 SURVEILLANCE = "surveillance"
 BINS = 20
-"""Bins of regret / ε from 0 to 2; what is exactly 0 is counted apart."""
+"""Bins of regret / ε from 0 to 2; exact zeros are counted apart."""
 TOLERANCE = 1e-9
 """Regrets are differences of floats: past ε means past (1 + this) ε."""
 WAVES = 4
@@ -49,7 +49,7 @@ def surveillance_table(layout: str, metric: str, tasks: str) -> Array:
 
 
 def parted(table: Array, share: float, form: str) -> dict:
-    """A table parted into types of size ε = `share` of its range, and what landmarks cost its tasks, in ε.
+    """A table parted into types of size ε = `share` of its range, and the regret of landmarks on its tasks, in ε.
 
     ``landmark``: the member in the middle stands for the type; ``member``: the one that costs each task most.
     """
@@ -69,16 +69,9 @@ def run_tables(settings: Mapping, cell: Mapping, seed: int) -> list[dict]:
     if cell["family"] == SURVEILLANCE:
         tables = [surveillance_table(cell["layout"], cell["metric"], cell["tasks"])]
     else:
-        numbers = range(cell["first"], cell["last"])
-        tables = [
-            random_table(
-                stream(seed, "C4.10", cell["family"], cell["policies"], number),
-                cell["family"],
-                settings["tasks"],
-                cell["policies"],
-            )
-            for number in numbers
-        ]
+        family, n = cell["family"], cell["policies"]
+        streams = (stream(seed, "C4.10", family, n, number) for number in range(cell["first"], cell["last"]))
+        tables = [random_table(generator, family, settings["tasks"], n) for generator in streams]
     return [
         parted(table, share, form) | {"table": place}
         for place, table in enumerate(tables)

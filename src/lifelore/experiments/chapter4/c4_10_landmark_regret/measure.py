@@ -1,4 +1,4 @@
-"""Measures and rows of claim C4.10."""
+"""C4.10: the largest regret of playing a landmark's best policy, in ε, and the share of tasks within ε."""
 
 from collections.abc import Mapping, Sequence
 
@@ -9,37 +9,28 @@ from lifelore.experiments.chapter4.c4_10_landmark_regret.landmark_tables import 
 from lifelore.interaction.library.task_types import epsilon_types, landmark_regret
 
 WHO = ("landmark", "member")
-"""Who stands for a type: the member in the middle, or for each task the one that costs it most."""
+"""The task that stands for a type: its middle member, or for each task the member that costs it most."""
 EXAMPLE = ((10.0, 10.0), (9.0, 11.0))
 """Two tasks within ε = 1 of each other, the first the landmark: its best policy costs 2 ε on the second."""
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Regret in ε: largest of all, share of tasks (that share a type) within ε, and both by family."""
-    every = _all(results)
+    """Regret in ε: the largest of all, and the share of tasks (that share a type) within ε, also by family."""
+    every = [(result["cell"], found) for result in results for found in result["parted"]]
     largest = np.array([p[who]["largest"] for _, p in every for who in WHO if who in p] + [example_regret()])
-    found = {
+    measured = {
         "largest_regret_in_epsilon": _largest(largest),
         "largest_regret_in_two_epsilon": _largest(largest / 2),
-        "regret_of_the_example_in_epsilon": _largest(np.array([example_regret()])),
     }
     pairwise = [(cell, p) for cell, p in every if p["form"] == "pairwise"]
-    drawn = [(cell, p) for cell, p in pairwise if cell["family"] != SURVEILLANCE]
     for who in WHO:
-        found[f"tasks_within_epsilon_{who}"] = mean_estimate(_within(drawn, who))
-    for family in (*settings["families"], SURVEILLANCE):
-        own = [(cell, p) for cell, p in pairwise if cell["family"] == family]
-        for who in WHO:
+        drawn = [(cell, p) for cell, p in pairwise if cell["family"] != SURVEILLANCE]
+        measured[f"tasks_within_epsilon_{who}"] = mean_estimate(_within(drawn, who))
+        for family in (*settings["families"], SURVEILLANCE):
+            own = [(cell, p) for cell, p in pairwise if cell["family"] == family]
             if within := _within(own, who):
-                found[f"tasks_within_epsilon_{who}_{family}"] = mean_estimate(within)
-            found[f"largest_regret_in_epsilon_{who}_{family}"] = _largest(
-                np.array([p[who]["largest"] for _, p in own])
-            )
-    return found
-
-
-def _all(results: Sequence[Mapping]) -> list[tuple[Mapping, Mapping]]:
-    return [(result["cell"], found) for result in results for found in result["parted"]]
+                measured[f"tasks_within_epsilon_{who}_{family}"] = mean_estimate(within)
+    return measured
 
 
 def _within(found: Sequence[tuple[Mapping, Mapping]], who: str) -> list[float]:
@@ -58,14 +49,14 @@ def _largest(values: np.ndarray) -> Estimate:
 
 
 def example_regret() -> float:
-    """What the landmark's best policy costs on the second task of `EXAMPLE`, in ε."""
+    """Regret of the landmark's best policy on the second task of `EXAMPLE`, in ε."""
     return float(landmark_regret(EXAMPLE, epsilon_types(EXAMPLE, 1.0)).max())
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """By family, number of policies (or the reserve's table), ε and form: types and regrets in ε."""
     groups: dict[tuple, list[Mapping]] = {}
-    for cell, found in _all(results):
+    for cell, found in ((result["cell"], found) for result in results for found in result["parted"]):
         kind = {key: cell[key] for key in ("family", "policies", "layout", "metric", "tasks") if key in cell}
         key = (tuple(kind.items()), found["share"], found["form"])
         groups.setdefault(key, []).append(found)

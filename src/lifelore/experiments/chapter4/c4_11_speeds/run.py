@@ -1,9 +1,4 @@
-"""C4.11: the loss of every speed for every ball size, and where fast stops being best.
-
-The default game was chosen to have such a transition (`ball_game_settings`); the grid says how far it goes.
-
-Thesis: §4.8.5.2, Figure 4.15.
-"""
+"""C4.11: losses of every ball size at every speed, in several games. Thesis: §4.8.5.2, Figure 4.15."""
 
 from collections.abc import Mapping
 
@@ -12,15 +7,14 @@ import numpy as np
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale
 from lifelore.experiments.chapter4.ball_game_play import FixedSpeeds, Players, play_all
-from lifelore.experiments.chapter4.ball_game_settings import Setting, check_games
+from lifelore.experiments.chapter4.ball_game_settings import Setting
+from lifelore.experiments.chapter4.ball_game_settings import check_games as check
 
-
-def check(settings: Mapping) -> None:
-    check_games(settings, ("episodes",))
+__all__ = ["cells", "check", "run_cell"]
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """One a game; every normalisation is taken of the same episodes."""
+    """A cell for each game; every normalisation uses the same episodes."""
     return [{"game": list(game)} for game in settings["games"]]
 
 

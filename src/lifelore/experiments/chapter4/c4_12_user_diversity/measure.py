@@ -1,4 +1,4 @@
-"""Measures and rows of claim C4.12."""
+"""C4.12: at how many diversities, and in how many games, BEAT loses less than EXP-3 and the best static speed."""
 
 from collections.abc import Mapping, Sequence
 from math import comb
@@ -7,9 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, Setting
-from lifelore.experiments.chapter4.c4_12_user_diversity.run import DIVERSITIES
-from lifelore.experiments.chapter4.diversity_runs import (
+from lifelore.experiments.chapter4.ball_game_methods import (
     HINDSIGHT,
     METHODS,
     ORACLE,
@@ -17,65 +15,44 @@ from lifelore.experiments.chapter4.diversity_runs import (
     STATIC,
     TUNED_EXP3,
 )
+from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, Setting
+from lifelore.experiments.chapter4.c4_12_user_diversity.run import DIVERSITIES
+from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 
 BEAT, PRINTED = "BEAT", "BEAT, ε as printed"
-FEW, MANY = 3, 4
-"""Types up to which the thesis finds the best static speed better, and from which BEAT."""
+FEW, MANY = range(1, 4), range(4, N_TYPES + 1)
+"""Numbers of types for which the thesis finds the best static speed better, and for which BEAT."""
 
 
 def _losses(results: Sequence[Mapping], game: Sequence) -> dict[int, dict[str, NDArray[np.float64]]]:
-    """Mean loss of each run, by diversity and method."""
-    mine = [r for r in results if r["game"] == list(game)]
-    return {r["diversity"]: {m: np.array(r["losses"][m]) for m in METHODS} for r in mine}
+    """Mean loss of each run of a game, by diversity and method."""
+    own = [r for r in results if r["game"] == list(game)]
+    return {r["diversity"]: {m: np.array(r["losses"][m]) for m in METHODS} for r in own}
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Of the first game by diversity, and over the grid; something is so where its interval leaves no doubt."""
+    """Comparisons in the first game and over the grid; a method is below another if the whole interval is."""
     by = _losses(results, settings["games"][0])
     found: dict[str, Estimate] = {}
-    for x in DIVERSITIES:
-        for method, key in ((STATIC, "static"), (PRINTED, "beat_printed"), (BEAT, "beat"), (PRINTED_EXP3, "exp3")):
-            found[f"loss_{key}_{x}"] = mean_estimate(by[x][method])
-        found[f"printed_less_static_{x}"] = mean_estimate(by[x][PRINTED] - by[x][STATIC])
-        found[f"beat_less_static_{x}"] = mean_estimate(by[x][BEAT] - by[x][STATIC])
-        for other, key in ((PRINTED_EXP3, "exp3"), (TUNED_EXP3, "tuned_exp3")):
-            found[f"printed_to_{key}_{x}"] = ratio_estimate(by[x][PRINTED], by[x][other])
-            found[f"beat_to_{key}_{x}"] = ratio_estimate(by[x][BEAT], by[x][other])
-    for key in ("printed", "beat"):
-        for other in ("exp3", "tuned_exp3"):
-            ratios = [found[f"{key}_to_{other}_{x}"] for x in DIVERSITIES]
-            found[f"{key}_below_{other}"] = _share([_below(r, 1.0) for r in ratios])
-            worst = max(ratios, key=lambda r: r.value)
-            found[f"largest_{key}_to_{other}"] = worst
-        for name, some in (("few", range(1, FEW + 1)), ("many", range(MANY, N_TYPES + 1))):
-            gaps = [found[f"{key}_less_static_{x}"] for x in some]
-            found[f"{key}_below_static_{name}"] = _share([_below(g, 0.0) for g in gaps])
-            found[f"{key}_above_static_{name}"] = _share([_above(g, 0.0) for g in gaps])
-    found["beat_below_static_from_3"] = _share([_below(found[f"beat_less_static_{x}"], 0.0) for x in range(3, 7)])
-    found["beat_to_oracle"] = ratio_estimate(*(_all(by, m) for m in (BEAT, ORACLE)))
-    found["beat_to_hindsight"] = ratio_estimate(*(_all(by, m) for m in (BEAT, HINDSIGHT)))
+    for key, method in (("printed", PRINTED), ("beat", BEAT)):
+        for other, name in (("exp3", PRINTED_EXP3), ("tuned_exp3", TUNED_EXP3)):
+            ratios = [ratio_estimate(by[x][method], by[x][name]) for x in DIVERSITIES]
+            found[f"{key}_below_{other}"] = share_of([is_below(ratio, 1.0) for ratio in ratios])
+            found[f"largest_{key}_to_{other}"] = max(ratios, key=lambda ratio: ratio.value)
+        for some, diversities in (("few", FEW), ("many", MANY)):
+            gaps = [mean_estimate(by[x][method] - by[x][STATIC]) for x in diversities]
+            found[f"{key}_below_static_{some}"] = share_of([is_below(gap, 0.0) for gap in gaps])
+            found[f"{key}_above_static_{some}"] = share_of([is_above(gap, 0.0) for gap in gaps])
+    found["beat_to_oracle"] = ratio_estimate(*(_by_population(by, m) for m in (BEAT, ORACLE)))
+    found["beat_to_hindsight"] = ratio_estimate(*(_by_population(by, m) for m in (BEAT, HINDSIGHT)))
     grid = [_losses(results, game) for game in settings["games"]]
-    below = [_below(ratio_estimate(_all(g, PRINTED), _all(g, PRINTED_EXP3)), 1.0) for g in grid]
-    found["grid_below_exp3"] = _share(below)
-    found["grid_below_static_at_6"] = _share([_below(mean_estimate(g[6][BEAT] - g[6][STATIC]), 0.0) for g in grid])
-    return found
+    ratios = [ratio_estimate(*(_by_population(g, m) for m in (PRINTED, PRINTED_EXP3))) for g in grid]
+    return found | {"grid_below_exp3": share_of([is_below(ratio, 1.0) for ratio in ratios])}
 
 
-def _all(by: Mapping[int, Mapping[str, NDArray]], method: str) -> NDArray[np.float64]:
+def _by_population(by: Mapping[int, Mapping[str, NDArray]], method: str) -> NDArray[np.float64]:
     """Mean loss in each population, (63,)."""
     return np.concatenate([by[x][method].reshape(comb(N_TYPES, x), -1).mean(axis=1) for x in sorted(by)])
-
-
-def _below(number: Estimate, bound: float) -> bool:
-    return number.ci95 is not None and number.ci95[1] < bound
-
-
-def _above(number: Estimate, bound: float) -> bool:
-    return number.ci95 is not None and number.ci95[0] > bound
-
-
-def _share(answers: Sequence[bool]) -> Estimate:
-    return Estimate(float(np.mean(answers)), float(np.median(answers)), None, len(answers))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -93,5 +70,5 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
 
 
 def _half_width(lost: NDArray[np.float64]) -> float:
-    """Of the 95 % interval of the mean of strata (types of a population), all of one size."""
+    """Half of the 95 % interval of the mean over strata (types of a population), all of one size."""
     return round(float(1.96 * np.sqrt(lost.var(axis=1).mean() / lost.size)), 4)

@@ -1,25 +1,17 @@
-"""C4.12: BEAT against EXP-3 and the best static speed, by the diversity of the population.
-
-The best static speed is the population's in training (Eq. 4.8); BEAT and EXP-3 are not told the population. The
-default game was chosen by what it shows (`ball_game_settings`); the grid says how far that goes.
-Thesis: §4.8.5.2, Figure 4.16.
-"""
+"""C4.12: BEAT, EXP-3 and constant speeds, by the diversity of the population. Thesis: §4.8.5.2, Figure 4.16."""
 
 from collections.abc import Mapping
 from math import comb
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, check_games
-from lifelore.experiments.chapter4.diversity_runs import run_cell
+import numpy as np
+
+from lifelore.core.streams import stream
+from lifelore.experiments.chapter4.ball_game_methods import crowd_of, known_of, run_methods
+from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, Setting
+from lifelore.experiments.chapter4.ball_game_settings import check_games as check
 
 __all__ = ["cells", "check", "run_cell"]
 DIVERSITIES = range(1, N_TYPES + 1)
-
-
-def check(settings: Mapping) -> None:
-    check_games(settings, ("runs", "least", "grid_runs", "training", "tuning"))
-    if settings["training"] < 2:
-        raise InputError(f"training must be at least 2 episodes, got {settings['training']}")
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -31,3 +23,15 @@ def cells(settings: Mapping) -> list[dict]:
             runs = settings["grid_runs"] if place else max(settings["runs"], least)
             found.append({"game": list(game), "diversity": diversity, "runs": runs})
     return found
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Mean loss of each run's five episodes by method, for all populations of one size."""
+    setting = Setting(*cell["game"])
+    known = known_of(setting, settings["training"], settings["tuning"], seed)
+    name = f"C4.12 {setting.words} {cell['diversity']}"
+    crowd = crowd_of(cell["diversity"], known.game.n_types, cell["runs"], stream(seed, name, "players"))
+    found = run_methods(known, crowd, seed, name)
+    losses = {method: np.round(lost.mean(axis=1), 5).tolist() for method, lost in found.items()}
+    best = np.array(known.game.speeds)[known.value.argmax(axis=1)].tolist()
+    return {**cell, "populations": len(crowd.members), "losses": losses, "gamma": known.gamma, "best": best}

@@ -1,14 +1,13 @@
 """Loss by episode, loss by type against the best static speed, and how soon the type is named for good."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.diversity_runs import EPISODES
-from lifelore.experiments.chapter4.population_diversity import LINES
-from lifelore.experiments.chapter4.speed_losses import size_colours
+from lifelore.experiments.chapter4.reuse_figures import lines_of, size_lines
+from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
 
@@ -16,67 +15,53 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_adaptation_safety(result, SIZES, EPISODES)
-
-
 SHOWN = (
-    "EXP-3 as printed",
-    "EXP-3 tuned",
-    "best static speed",
-    "BEAT, ε as printed",
-    "BEAT",
+    "EXP-3 as printed", "EXP-3 tuned", "best static speed", "BEAT, ε as printed", "BEAT",
     "best speed of each type",
-)
+)  # fmt: skip
 
 
-def draw_adaptation_safety(result: Mapping, sizes: Sequence[int], episodes: int) -> "Figure":
-    """The figure from the rows of C4.15's result."""
+def draw(result: Mapping) -> "Figure":
+    """Efficiency, safety and speed, a panel each."""
     losses = {row["method"]: np.array(row["loss"]) for row in result["rows"] if "method" in row}
     with house_style():
         figure = new_figure(11.6, 3.9)
-        by_episode, by_type, naming = figure.subplots(1, 3, width_ratios=[1, 1, 1])
-        _draw_episodes(by_episode, losses, episodes)
-        _draw_types(by_type, losses, sizes, episodes)
-        _draw_naming(naming, result["rows"][-1], sizes)
+        by_episode, by_type, naming = figure.subplots(1, 3)
+        _draw_episodes(by_episode, losses)
+        ratios = losses["BEAT"] / losses["best static speed"]
+        names, episodes = [f"b = {b}" for b in SIZES], [str(e + 1) for e in range(ratios.shape[1])]
+        draw_heat_grid(
+            by_type, ratios, np.zeros(ratios.shape, bool), names, episodes, neutral=1.0, spread=1.35, good="low",
+            ratio=True, words="{:.2f}".format,
+        )  # fmt: skip
+        by_type.set(xlabel="episode", title="safety: BEAT to the static speed")
+        _draw_naming(naming, result["rows"][-1])
     return figure
 
 
-def _draw_episodes(axes: "Axes", losses: Mapping[str, np.ndarray], episodes: int) -> None:
-    every = np.arange(1, episodes + 1)
-    for method in SHOWN:
-        colour, dash = LINES[method]
-        axes.plot(every, losses[method].mean(axis=0), color=colour, linestyle=dash, label=method, marker="o", ms=3)
+def _draw_episodes(axes: "Axes", losses: Mapping[str, np.ndarray]) -> None:
+    series = {method: {"mean": losses[method].mean(axis=0)} for method in SHOWN}
+    draw_curves(axes, None, series, looks=lines_of(SHOWN, marker="o", ms=3), legend=False)
+    axes.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types")
+    axes.set_xticks(range(1, len(series["BEAT"]["mean"]) + 1))
     low, high = axes.get_ylim()
-    # The legend stands below the curves.
-    axes.set_ylim(low - 0.75 * (high - low), high)
-    axes.set(xlabel="episode", ylabel="mean loss, six types", xticks=every, title="efficiency")
+    axes.set_ylim(low - 0.75 * (high - low), high)  # room for the legend below the curves
     axes.grid(axis="y", color=LIGHT)
     axes.legend(loc="lower left")
 
 
-def _draw_types(axes: "Axes", losses: Mapping[str, np.ndarray], sizes: Sequence[int], episodes: int) -> None:
-    ratios = losses["BEAT"] / losses["best static speed"]
-    draw_heat_grid(
-        axes, ratios, np.zeros(ratios.shape, bool), [f"b = {b}" for b in sizes],
-        [str(e) for e in range(1, episodes + 1)], neutral=1.0, spread=1.35, good="low", ratio=True,
-        words="{:.2f}".format,
-    )  # fmt: skip
-    axes.set(xlabel="episode", title="safety: BEAT to the static speed")
-
-
-def _draw_naming(axes: "Axes", row: Mapping, sizes: Sequence[int]) -> None:
-    for b, shares, colour in zip(sizes, row["named"], size_colours(len(sizes)), strict=True):
-        axes.plot(row["steps"], shares, color=colour, label=f"b = {b}")
+def _draw_naming(axes: "Axes", row: Mapping) -> None:
+    looks = size_lines(SIZES)
+    series = {name: {"mean": shares} for name, shares in zip(looks, row["named"], strict=True)}
+    draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
+    axes.set(title="speed", xlabel="steps played", ylabel="share named right for good")
     axes.axvline(row["length"], color=GREY, linewidth=1)
     axes.annotate(
         "end of the first episode", (row["length"], 0.02), (3, 0), textcoords="offset points", fontsize=7,
         color=GREY, rotation=90, va="bottom",
     )  # fmt: skip
-    axes.set(xscale="log", xlabel="steps played", ylabel="share named right for good", ylim=(0, 1.03))
+    axes.set_ylim(0, 1.03)
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
     axes.minorticks_off()
     axes.grid(axis="y", color=LIGHT)
     axes.legend(loc="upper left")
-    axes.set_title("speed")

@@ -1,26 +1,57 @@
-"""C4.15: is BEAT safe, efficient and fast?
-
-Safe: no worse than the best static speed, by type and episode. Efficient: what it loses above each type's best
-speed. Fast: steps until the type it names is right and stays so. Thesis: §4.8.5.2.
-"""
+"""C4.15: losses and naming of types by type and episode, on as many players of every type. Thesis: §4.8.5.2."""
 
 from collections.abc import Mapping
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.ball_game_settings import check_games
-from lifelore.experiments.chapter4.c4_15_safety.safety_runs import run_cell
+import numpy as np
+
+from lifelore.core.streams import stream
+from lifelore.experiments.chapter4.ball_game_methods import (
+    NamedTypes,
+    beat_learner,
+    crowd_of,
+    known_of,
+    run_methods,
+)
+from lifelore.experiments.chapter4.ball_game_play import play_all
+from lifelore.experiments.chapter4.ball_game_settings import Setting
+from lifelore.experiments.chapter4.ball_game_settings import check_games as check
 
 __all__ = ["cells", "check", "run_cell"]
-
-
-def check(settings: Mapping) -> None:
-    check_games(settings, ("players", "lots", "training", "tuning"))
-    if settings["training"] < 2:
-        raise InputError(f"training must be at least 2 episodes, got {settings['training']}")
-    if settings["lag"] < 0:
-        raise InputError(f"lag must be at least 0 steps, got {settings['lag']}")
+LAGGING = "BEAT, players who adapt late"
+"""Players adapt to a new speed only after ``lag`` steps of it; BEAT is unchanged."""
 
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots of players of the first game."""
     return [{"game": list(settings["games"][0]), "lot": lot} for lot in range(settings["lots"])]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Losses (n_types, players, episodes) by method, and the steps until the type that BEAT names stays right."""
+    setting = Setting(*cell["game"])
+    known = known_of(setting, settings["training"], settings["tuning"], seed)
+    n_types = known.game.n_types
+    name = f"C4.15 {setting.words} {cell['lot']}"
+    crowd = crowd_of(n_types, n_types, settings["players"] * n_types, stream(seed, name, "players"))
+    n, kinds = len(crowd.population), crowd.players.kinds
+    found = run_methods(known, crowd, seed, name)
+    lagging = beat_learner(known, n, stream(seed, name, LAGGING), {})
+    found[LAGGING] = known.scale.loss(
+        *play_all(known.game, crowd.players, lagging, known.scale, lag=settings["lag"])
+    )
+    losses = {
+        method: np.round(lost.reshape(n_types, -1, lost.shape[1]), 4).tolist() for method, lost in found.items()
+    }
+    learner = beat_learner(known, n, stream(seed, name, "naming"), {})
+    watch = NamedTypes(learner)
+    played = play_all(known.game, crowd.players, learner, known.scale, watch=watch)
+    named = learner.users.log_belief.argmax(axis=1)
+    chosen = known.value.argmax(axis=1)
+    return {
+        **cell,
+        "losses": losses,
+        "needed": np.where(named == kinds, watch.wrong_until, -1).reshape(n_types, -1).tolist(),
+        # Types with the same best speed need not be told apart.
+        "right_speed": (chosen[named] == chosen[kinds]).reshape(n_types, -1).tolist(),
+        "lengths": played.steps.reshape(n_types, -1, played.steps.shape[1])[:, :, 0].tolist(),
+    }

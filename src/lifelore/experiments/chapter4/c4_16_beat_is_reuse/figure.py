@@ -1,6 +1,6 @@
-"""Decisions of BEAT that are those of policy reuse, and why beliefs are kept in logs."""
+"""Decisions of BEAT that are those of policy reuse, and why beliefs are stored as logarithms."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -12,28 +12,24 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(result: Mapping):
-    return draw_decision_agreement(result, list(EPSILONS))
-
-
 SMALLEST = 745.0
 """Minus the log of the smallest positive float64."""
 
 
-def draw_decision_agreement(result: Mapping, epsilons: Sequence[str]) -> "Figure":
-    """The figure from the rows of C4.16's result."""
+def draw(result: Mapping) -> "Figure":
+    """Decisions alike by ε, spreads of the log belief, and steps at which printed products become 0."""
     rows = result["rows"]
     with house_style():
         figure = new_figure(9.2, 2.9)
         left, middle, right = figure.subplots(1, 3, width_ratios=[1.15, 1, 1])
-        for place, name in enumerate(epsilons):
+        for place, name in enumerate(EPSILONS):
             mine = [row for row in rows if row["epsilon"] == name]
             alike, decisions = (sum(row[key] for row in mine) for key in ("alike", "decisions"))
             left.barh(place, 100 * alike / decisions, color=BLUE, height=0.6)
             left.text(
                 50, place, f"{alike:,} of {decisions:,}", ha="center", va="center", color="white", fontsize=8
             )
-        left.set_yticks(range(len(epsilons)), [f"ε = {name}" for name in epsilons])
+        left.set_yticks(range(len(EPSILONS)), [f"ε = {name}" for name in EPSILONS])
         left.set(xlim=(0, 100), xlabel="decisions alike (%)", title="BEAT and policy reuse")
         left.invert_yaxis()
         spread = np.array([x for row in rows for x in row["spread"]])

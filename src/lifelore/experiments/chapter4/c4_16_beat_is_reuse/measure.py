@@ -1,30 +1,23 @@
-"""Measures and rows of claim C4.16."""
+"""C4.16: the share of decisions alike, the difference of beliefs, and products that become zero."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.experiments.engine.estimates import exact_value
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Share of decisions alike, the largest difference of beliefs, and when the printed products become zero."""
+    """Share of decisions alike, largest difference of beliefs, share of sessions whose products become 0."""
     sessions = [s for r in results for s in r["sessions"]]
     decisions = sum(s["decisions"] for s in sessions)
-    share = sum(s["alike"] for s in sessions) / decisions
-    apart = max(s["apart"] for s in sessions)
-    spread = np.array([s["spread"] for s in sessions])
-    gone = [s["vanished"] for s in sessions if s["vanished"]]
-    found = {
-        "decisions_alike": Estimate(share, share, None, decisions),
-        "beliefs_apart": Estimate(apart, float(np.median([s["apart"] for s in sessions])), None, len(sessions)),
-        "belief_spread": mean_estimate(spread),
-        "belief_spread_largest": Estimate(float(spread.max()), float(np.median(spread)), None, len(spread)),
+    apart = np.array([s["apart"] for s in sessions])
+    return {
+        "decisions_alike": exact_value(sum(s["alike"] for s in sessions) / decisions, decisions),
+        "beliefs_apart": Estimate(float(apart.max()), float(np.median(apart)), None, len(sessions)),
         "products_that_vanish": mean_estimate([float(s["vanished"] > 0) for s in sessions]),
     }
-    if gone:
-        found["steps_until_products_vanish"] = mean_estimate(np.array(gone, float))
-    return found
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

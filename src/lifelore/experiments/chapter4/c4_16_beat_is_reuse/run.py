@@ -1,34 +1,31 @@
-"""C4.16: BEAT is Bayesian policy reuse: the same decisions, step by step, through the general algorithm.
-
-The general algorithm gets ε-greedy selection, the transitions as signal, action sets as policies, and the same
-generator. Beside them runs the belief as printed, which is never normalised. Thesis: §4.8.4.2.
-"""
+"""C4.16: BEAT and Bayesian policy reuse with the same generator, decision by decision. Thesis: §4.8.4.2."""
 
 from collections.abc import Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, draw_sigma
-from lifelore.domains.ball_game.moves import read_moves
+from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
+from lifelore.domains.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-from lifelore.experiments.chapter4.ball_game_play import train
-from lifelore.experiments.chapter4.ball_game_settings import Setting, check_games
-from lifelore.experiments.chapter4.c4_16_beat_is_reuse.ball_game_library import library_of, transition_of
-from lifelore.experiments.chapter4.diversity_runs import EPISODES
+from lifelore.experiments.chapter4.ball_game_methods import EPISODES
+from lifelore.experiments.chapter4.ball_game_play import Trained, train
+from lifelore.experiments.chapter4.ball_game_settings import Setting
+from lifelore.experiments.chapter4.ball_game_settings import check_games as check
 from lifelore.interaction.adaptation.beat import Beat, Exploration, epsilon_of
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+from lifelore.interaction.signals.transition_signal import TransitionSignal
 
+__all__ = ["cells", "check", "run_cell"]
 EPSILONS: dict[str, Exploration] = {"0": 0.0, "0.3": 0.3, "1/n": "1/n", "0.5 − 0.1 an episode": "by episode"}
-
-
-def check(settings: Mapping) -> None:
-    check_games(settings, ("users", "training"))
+N_STATES = max(N_CONTEXTS, N_OUTCOMES)
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """One an ε; each runs users of all types."""
+    """A cell for each ε, with users of all types."""
     return [{"game": list(settings["games"][0]), "epsilon": name} for name in EPSILONS]
 
 
@@ -78,3 +75,27 @@ def _session(
         "kind": kind, "decisions": decisions, "alike": alike, "apart": apart, "vanished": vanished,
         "spread": round(float(finite.max() - finite.min()), 2),
     }  # fmt: skip
+
+
+def library_of(game: BallGame, trained: Trained, scale: LossScale) -> PolicyLibrary:
+    """Types × speeds as a policy library; its signal takes the pairs of `transition_of`."""
+    samples = -scale.loss(trained.steps, trained.hits)
+    types = [f"b = {b}" for b in game.sizes]
+    policies = [f"speed {z}" for z in game.speeds]
+    return PolicyLibrary.from_samples(samples, types, policies, signal=transition_signal(trained))
+
+
+def transition_signal(trained: Trained) -> TransitionSignal:
+    """T(s' | s; type, speed) in classes: from the context of a command to its outcome."""
+    table = np.exp(trained.signal_table())
+    n_speeds, _, n_types = table.shape
+    probs = np.zeros((n_types, n_speeds, N_STATES, 1, N_STATES))
+    shares = table.reshape(n_speeds, N_CONTEXTS, N_OUTCOMES, n_types).transpose(3, 0, 1, 2)
+    probs[:, :, :N_CONTEXTS, 0, :N_OUTCOMES] = shares
+    probs[:, :, N_CONTEXTS:, 0, 0] = 1.0  # no command has such a context
+    return TransitionSignal(probs / probs.sum(axis=-1, keepdims=True))
+
+
+def transition_of(signal: int) -> NDArray[np.int64]:
+    """A signal's number as one transition (context, outcome), (1, 2) int64."""
+    return np.array([divmod(int(signal), N_OUTCOMES)], np.int64)

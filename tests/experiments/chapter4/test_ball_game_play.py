@@ -22,10 +22,12 @@ from lifelore.experiments.chapter4.ball_game_play import (
     populations,
     train,
 )
-from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, GAMES, Setting, check_games
-from lifelore.experiments.chapter4.c4_16_beat_is_reuse.ball_game_library import library_of, transition_of
+from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, Setting, check_games
+from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import library_of, transition_of
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.baselines.exp3 import EXP3
 
+GAMES = claim_of("C4.12").sizes["full"]["games"]
 GAME = ball_game()
 SCALE = LossScale()
 TRAINED = train(GAME, 12, 0)
@@ -151,7 +153,7 @@ def test_the_library_says_what_the_tables_say():
 
 
 def test_games_that_cannot_be_played_are_refused():
-    check_games({"games": GAMES, "n": 1}, ["n"])
+    check_games({"games": GAMES})
     for games, rule in (
         ([], "games must name at least one"),
         ([["moon", 0.5, 3.0, "fixed", "slides"]], "cannot be played: unknown layout"),
@@ -160,9 +162,7 @@ def test_games_that_cannot_be_played_are_refused():
         ([["blobs", 0.5, 3.0, "fixed"]], r"must be \[layout, radius_share, care, normalisation, blocked\]"),
     ):
         with pytest.raises(InputError, match=rule):
-            check_games({"games": games}, [])
-    with pytest.raises(InputError, match="n must be at least 1"):
-        check_games({"games": GAMES, "n": 0}, ["n"])
+            check_games({"games": games})
     assert Setting(*GAMES[-1]).words == "s-maze 160, r = b/2, by maxima"
     assert Setting("blobs", 1.0, 0.0, "fixed", "stays").words == "blobs, r = b, careless, stays"
     assert Setting(*DEFAULT).game.blocked == "slides"

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.experiments.chapter4.c4_09_model_storage.measure import measure
 from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
     Application,
@@ -108,9 +107,3 @@ def test_tiny_run_draws_its_figure(tiny):
     settings, results = tiny
     figure = CLAIM.draw({"rows": CLAIM.rows(settings, results)})
     assert len(figure.axes) == 3
-
-
-def test_settings_that_cannot_be_run_are_refused():
-    for bad in ({"draws": 0}, {"states": []}, {"rewards_of": ["odd"]}, {"rewards": [0]}):
-        with pytest.raises(InputError):
-            CLAIM.settings("quick", bad)

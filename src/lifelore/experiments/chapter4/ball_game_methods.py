@@ -1,17 +1,18 @@
-"""BEAT, EXP-3 and constant speeds in all populations of ball game players: the runs behind claim C4.12.
+"""BEAT, EXP-3 and constant speeds on crowds of ball game players, and the types that BEAT names.
 
 Thesis: §4.8.5.1.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from functools import cache
-from typing import NamedTuple
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import BallGame, LossScale
+from lifelore.domains.ball_game.simulated_player import Balls
 from lifelore.experiments.chapter4.ball_game_learners import (
     BeatLearner,
     PrintedExp3,
@@ -20,7 +21,9 @@ from lifelore.experiments.chapter4.ball_game_learners import (
 )
 from lifelore.experiments.chapter4.ball_game_play import (
     Floats,
+    Ints,
     Learner,
+    Moves,
     Players,
     Trained,
     losses_by_speed,
@@ -29,7 +32,6 @@ from lifelore.experiments.chapter4.ball_game_play import (
     train,
 )
 from lifelore.experiments.chapter4.ball_game_settings import Setting
-from lifelore.interaction.adaptation.beat import Exploration
 
 EPISODES = 5
 GAMMAS = [0.05, 0.1, 0.2, 0.4, 0.7, 1.0]
@@ -39,7 +41,7 @@ BEATS: dict[str, dict] = {
     "BEAT, ε = 1/n": {"epsilon": "1/n"},
     "BEAT, told the population": {"told": True},
 }
-"""Ways of BEAT: ε is 0 and the prior that of all six types unless said otherwise."""
+"""Variants of BEAT; by default ε is 0 and the prior is uniform over all six types."""
 HINDSIGHT = "best speed in hindsight"
 STATIC, ORACLE = "best static speed", "best speed of each type"
 PRINTED_EXP3, TUNED_EXP3 = "EXP-3 as printed", "EXP-3 tuned"
@@ -47,7 +49,7 @@ METHODS = (STATIC, HINDSIGHT, ORACLE, *BEATS, PRINTED_EXP3, TUNED_EXP3)
 
 
 class Known(NamedTuple):
-    """What training leaves for the learners of one game.
+    """Knowledge from training that the learners of one game use.
 
     worst : float
         Largest loss seen, which pays EXP-3 nothing.
@@ -126,40 +128,47 @@ def _without_learning(known: Known, crowd: Crowd, losses: Floats) -> Iterator[tu
 
 
 def _learners(known: Known, crowd: Crowd, seed: int, name: str) -> Iterator[tuple[str, Learner]]:
-    n, table = len(crowd.population), known.trained.signal_table()
-    for method, way in BEATS.items():
-        prior = _told(crowd, known.game.n_types) if way.get("told") else None
-        yield method, beat(known, n, stream(seed, name, method), way.get("epsilon", 0.0), prior, table)
+    n = len(crowd.population)
+    for method, variant in BEATS.items():
+        prior = _population_prior(crowd, known.game.n_types) if variant.get("told") else None
+        yield method, beat_learner(known, n, stream(seed, name, method), variant, prior)
     generator = stream(seed, name, PRINTED_EXP3)
     yield PRINTED_EXP3, PrintedExp3(n, known.game.n_speeds, known.worst, known.horizon, generator)
 
 
-def beat(
-    known: Known,
-    n_players: int,
-    generator: np.random.Generator,
-    epsilon: Exploration = 0.0,
-    prior: Floats | None = None,
-    table: Floats | None = None,
+def beat_learner(
+    known: Known, n_players: int, generator: np.random.Generator, variant: dict, prior: Floats | None = None
 ) -> BeatLearner:
-    """BEAT with what is known of a game."""
-    table = known.trained.signal_table() if table is None else table
-    return BeatLearner(known.value, table, n_players, prior=prior, epsilon=epsilon, seed=generator)
+    """BEAT for players of a trained game; `variant` may set ``epsilon`` and ``commands`` (a second signal)."""
+    return BeatLearner(
+        known.value, known.trained.signal_table(), n_players, prior=prior, epsilon=variant.get("epsilon", 0.0),
+        command_table=known.trained.command_table() if variant.get("commands") else None, seed=generator,
+    )  # fmt: skip
 
 
-def _told(crowd: Crowd, n_types: int) -> Floats:
+def _population_prior(crowd: Crowd, n_types: int) -> Floats:
     """For each player the uniform prior over the types of her population, (n, n_types)."""
     prior = np.array([[t in p for t in range(n_types)] for p in crowd.members], float)
     return (prior / prior.sum(axis=1, keepdims=True))[crowd.population]
 
 
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean loss of each run's five episodes by method, for all populations of one size."""
-    setting = Setting(*cell["game"])
-    known = known_of(setting, settings["training"], settings["tuning"], seed)
-    name = f"C4.12 {setting.words} {cell['diversity']}"
-    crowd = crowd_of(cell["diversity"], known.game.n_types, cell["runs"], stream(seed, name, "players"))
-    found = run_methods(known, crowd, seed, name)
-    losses = {method: np.round(lost.mean(axis=1), 5).tolist() for method, lost in found.items()}
-    best = np.array(known.game.speeds)[known.value.argmax(axis=1)].tolist()
-    return {**cell, "populations": len(crowd.members), "losses": losses, "gamma": known.gamma, "best": best}
+class NamedTypes:
+    """Watches BEAT and records the most likely type of every player, step by step of her first episode."""
+
+    STEPS: ClassVar[int] = 150
+    """Steps of the first episode that are recorded; players who need longer stay in the last."""
+
+    def __init__(self, learner: BeatLearner) -> None:
+        self._learner = learner
+        self.first: list[Ints] = []
+        self.wrong_until = np.zeros(len(learner.users.log_belief), np.int64)
+        """Steps played, over all episodes, until the named type last changed from wrong to right."""
+        self._played = np.zeros_like(self.wrong_until)
+
+    def __call__(self, balls: Balls, speed: Ints, moves: Moves) -> None:
+        named = self._learner.users.log_belief.argmax(axis=1)
+        self._played[moves.rows] += 1
+        wrong = named != balls.kind
+        self.wrong_until[wrong] = self._played[wrong]
+        if (self._played <= self.STEPS).any() and len(self.first) < self.STEPS:
+            self.first.append(named)

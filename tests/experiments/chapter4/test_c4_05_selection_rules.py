@@ -50,7 +50,7 @@ def test_a_tiny_run(cells):
     assert len(cells) == len(RULES) * len(CASES)
     found = measure(SMALL, cells)
     assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
-    assert found["stuck_EI_exact"].n == 4
+    assert found["stuck_EI_printed_exact"].n == 4
     assert found["grid_all"].n == 1
 
 
@@ -66,14 +66,6 @@ def test_the_figure_is_drawn_from_rows_alone(cells):
     assert len(figure.axes[0].lines) == len(RULES)
 
 
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"layouts": '["ring"]'}, "layouts must include the default, X"),
-        ({"metrics": '["taxi"]'}, "metrics must be among"),
-        ({"groups": 0}, "groups must be at least 1"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
+def test_settings_that_limits_cannot_describe():
+    with pytest.raises(InputError, match="layouts must include the default, X"):
+        CLAIM.settings("quick", {"layouts": '["ring"]'})

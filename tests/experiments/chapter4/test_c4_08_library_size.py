@@ -54,7 +54,7 @@ def test_counts_by_hand():
     assert found["saved_by_size_late_EI_exact"].value == 2.5
     assert found["saved_by_episodes_small_EI_exact"].value == 2.5
     assert found["steps_of_size_EI_exact"].value == 1.0
-    assert found["regret_whole_6_EI_exact"].value == 2.0
+    assert found["saved_by_episodes_whole_EI_exact"].value == 4.0
     assert rows(SMALL, results)[0]["share_met"] == 0.5
 
 
@@ -72,6 +72,6 @@ def test_the_figure_is_drawn_from_rows_alone(cells):
         ({"rules": '["sampling"]'}, "rules must include EI"),
     ],
 )
-def test_settings_that_cannot_be_run(overrides, rule):
+def test_settings_that_limits_cannot_describe(overrides, rule):
     with pytest.raises(InputError, match=rule):
         CLAIM.settings("quick", overrides)
