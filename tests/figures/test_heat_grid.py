@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.heat_grid import draw_heat_grid
+from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid, minus_sign
 from lifelore.figures.style import new_figure
 
 
@@ -50,3 +50,12 @@ def test_shapes_must_agree():
         draw_heat_grid(
             new_figure(2, 2).subplots(), [[1.0, 2.0]], [[True, False]], ["a"], ["b"], neutral=0, spread=1
         )
+
+
+def test_estimates_are_scaled_and_bold_where_their_interval_excludes_the_neutral_value():
+    axes = new_figure(3, 2).subplots()
+    numbers = [[{"value": 0.5, "ci95": [0.1, 0.9]}, None, {"value": -0.25, "ci95": [-1.0, 0.5]}]]
+    names = ["a"], ["x", "y", "z"]
+    draw_estimate_grid(axes, numbers, *names, neutral=0.0, scale=100.0, spread=50.0, words=minus_sign("{:.0f}"))
+    assert [(t.get_text(), t.get_fontweight()) for t in axes.texts] == [("50", "bold"), ("−25", "normal")]
+    assert np.asarray(axes.images[0].get_array())[0, ::2].tolist() == [1.0, -0.5]

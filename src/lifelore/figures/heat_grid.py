@@ -1,7 +1,7 @@
 """A table of numbers as colours around a neutral value; what differs from it for certain is set in bold."""
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -71,6 +71,50 @@ def draw_heat_grid(
 
         corner = (outlined[1] - 0.5, outlined[0] - 0.5)
         axes.add_patch(Rectangle(corner, 1, 1, fill=False, edgecolor=INK, linewidth=1.6, clip_on=False, zorder=3))
+
+
+def draw_estimate_grid(
+    axes: "Axes",
+    numbers: Sequence[Sequence[Mapping[str, Any] | None]],
+    rows: Sequence[str],
+    columns: Sequence[str],
+    *,
+    neutral: float,
+    scale: float = 1.0,
+    **look: Any,
+) -> None:
+    """Draw a table of estimates; those whose 95 % interval excludes `neutral` are set in bold.
+
+    Parameters
+    ----------
+    axes : matplotlib axes
+    numbers : (n_rows, n_columns) of ``{"value", "ci95"}`` or None
+        None is left white.
+    rows, columns : sequence of str
+    neutral : float
+        The value drawn white, in the unit of the numbers.
+    scale : float
+        What values are multiplied with before they are drawn, such as 100 for percent.
+    **look
+        `spread` (in the unit drawn) and the further parameters of `draw_heat_grid`.
+    """
+    values = [[scale * _value(number) for number in row] for row in numbers]
+    certain = [[_excludes(number, neutral) for number in row] for row in numbers]
+    draw_heat_grid(axes, values, certain, rows, columns, neutral=scale * neutral, **look)
+
+
+def minus_sign(template: str) -> Callable[[float], str]:
+    """A value's text by a format such as ``"{:.0f}"``, with a minus sign instead of a hyphen."""
+    return lambda value: template.format(value).replace("-", "−")
+
+
+def _value(number: Mapping[str, Any] | None) -> float:
+    return np.nan if number is None or number["value"] is None else number["value"]
+
+
+def _excludes(number: Mapping[str, Any] | None, neutral: float) -> bool:
+    interval = number["ci95"] if number else None
+    return bool(interval) and not interval[0] <= neutral <= interval[1]
 
 
 def _label(axes: "Axes", rows: Sequence[str], columns: Sequence[str]) -> None:
