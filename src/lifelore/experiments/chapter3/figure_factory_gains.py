@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.experiments.chapter3.figure_factory_priors import ENCODINGS
+from lifelore.experiments.chapter3.reward_curves import schedule_in_words
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.learning_curve import draw_curve
-from lifelore.figures.prior_grid import schedule_in_words
 from lifelore.figures.style import GREY, INK, colour_of, house_style, new_figure
 
 if TYPE_CHECKING:

@@ -7,9 +7,9 @@ import numpy as np
 
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.factory_floor import draw_factory_prior
+from lifelore.experiments.chapter3.reward_curves import schedule_in_words
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.learning_curve import draw_curve, draw_optimal
-from lifelore.figures.prior_grid import schedule_in_words
 from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure
 
 if TYPE_CHECKING:

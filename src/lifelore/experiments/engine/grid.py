@@ -1,7 +1,7 @@
 """The grid of choices that the thesis leaves open, and its runner: every method in every cell.
 
-A cell is a mapping of the same keys, such as schedule, ties and α⁰; one cell is the stated default. A method meets a
-cell without the choices that it does not read (they are None), so that it runs each such cell once.
+A cell is a mapping of the same keys, such as schedule, ties and α⁰; one cell is the stated default. A method
+meets a cell without the choices that it does not read (they are None), so that it runs each such cell once.
 """
 
 from collections.abc import Callable, Hashable, Iterator, Mapping, Sequence

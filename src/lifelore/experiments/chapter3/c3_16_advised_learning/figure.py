@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.experiments.chapter3.explorer_palette import ADVISORS, EXPERT_NAMES
+from lifelore.experiments.chapter3.reward_curves import schedule_in_words
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.prior_grid import schedule_in_words
 from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure
 
 if TYPE_CHECKING:

@@ -5,7 +5,6 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
-from lifelore.experiments.chapter3 import lattice_learning
 from lifelore.experiments.chapter3.lattice_learning import (
     exact_prior,
     learn_task,
@@ -16,7 +15,7 @@ from lifelore.experiments.chapter3.lattice_learning import (
     start_values,
     summary,
 )
-from lifelore.experiments.engine import learning_run
+from lifelore.experiments.engine import curve_blocks, learning_run
 from lifelore.experiments.engine.curve_blocks import block_edges, block_means
 from lifelore.experiments.engine.registry import claim_of
 
@@ -146,7 +145,7 @@ def test_percent_of_optimal_is_of_the_best_from_the_same_starts():
 
 
 def test_blocks_by_hand(monkeypatch):
-    monkeypatch.setattr(lattice_learning, "BLOCKS", 3)
+    monkeypatch.setattr(curve_blocks, "BLOCKS", 3)
     assert block_edges(100).tolist() == [0, 1, 10, 100]
     returns = np.concatenate([[5.0], np.full(9, 2.0), np.full(90, 1.0)])
     assert block_means(returns) == [5.0, 2.0, 1.0]
