@@ -5,7 +5,7 @@ import pytest
 from matplotlib.collections import PathCollection
 
 from lifelore.domains.factory.layout import factory
-from lifelore.experiments.chapter3.factory_floor import draw_factory_prior
+from lifelore.experiments.chapter3.c3_04_factory_priors.factory_floor import draw_factory_prior
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import finish
 from lifelore.figures.style import colour_of, house_style, new_figure

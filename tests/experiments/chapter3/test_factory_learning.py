@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.layout import factory
@@ -21,9 +20,9 @@ from lifelore.experiments.chapter3.factory_learning import (
     tasks_of,
     with_pseudo_count,
 )
-from lifelore.experiments.chapter3.factory_settings import OPEN, check_components, check_open, check_sizes
+from lifelore.experiments.engine.registry import claim_of
 
-SETTINGS = {**OPEN, "max_steps": 300}
+SETTINGS = {**claim_of("C3.5").sizes["full"], "max_steps": 300}
 THREE_CELLS = """
 #####
 #S1a#
@@ -111,29 +110,3 @@ def test_a_prior_of_the_task_itself_finds_it_sooner():
     guided, _ = learn_task(problem, rows, schedule)
     plain, _ = learn_task(problem, None, schedule)
     assert guided.rewards.mean() > plain.rewards.mean() + 1000
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"ties": ["first"]}, "ties must be among"),
-        ({"encodings": []}, "encodings must be among"),
-        ({"discount": 1.0}, "discount must lie"),
-        ({"learning_rate": 1.5}, "learning_rate must lie"),
-        ({"schedules": [[1.0, 0.5]]}, "three decimals"),
-        ({"alpha0": [0.0]}, "alpha0 must be decimals above 0"),
-        ({"alpha0": [1.0]}, "default must be a cell of the grid"),
-    ],
-)
-def test_choices_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        check_open({**SETTINGS, **overrides})
-
-
-def test_sizes_that_cannot_be_run():
-    check_open(SETTINGS)
-    with pytest.raises(InputError, match="max_steps must be at least 1"):
-        check_sizes({"max_steps": 0}, "max_steps")
-    for wrong in ([], [0], [7], ["a"]):
-        with pytest.raises(InputError, match="components must lie in"):
-            check_components(wrong)
