@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 
-def short_schedule(schedule: Sequence[float]) -> str:
+def schedule_in_brief(schedule: Sequence[float]) -> str:
     """First ε and its factor an episode, as a column's head."""
     first, decay, _ = schedule
     return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
@@ -50,7 +50,7 @@ def draw_choice_grid(
         axes,
         [[cells.get((values, tuple(schedule), ties)) for schedule, ties in columns] for values in sides],
         [name(*values) for values in sides],
-        [f"{short_schedule(schedule).replace(' ×', chr(10) + '×')}\n{ties}" for schedule, ties in columns],
+        [f"{schedule_in_brief(schedule).replace(' ×', chr(10) + '×')}\n{ties}" for schedule, ties in columns],
         outlined=(sides.index(_side(default, side)), columns.index((default["schedule"], default["ties"]))),
         **look,
     )

@@ -9,7 +9,6 @@ from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
 from lifelore.experiments.chapter3.factory_learning import ENCODINGS
 from lifelore.experiments.chapter3.reward_curves import schedule_in_words
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.heat_grid import minus_sign
 from lifelore.figures.style import GREY, INK, colour_of, house_style, new_figure, width_of
 
 if TYPE_CHECKING:
@@ -29,7 +28,7 @@ def draw(result: Mapping) -> "Figure":
         figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
         draw_choice_grid(
             grid, settings, [row for row in result["rows"] if "growth" in row], "many", ("encoding", "alpha0"),
-            "{}, α⁰ {:g}".format, neutral=0.0, spread=100.0, scale=100.0, words=minus_sign("{:.0f}"),
+            "{}, α⁰ {:g}".format, neutral=0.0, spread=100.0, scale=100.0, words="{:.0f}".format,
         )  # fmt: skip
         grid.set_title("Gained of the possible gain (%)")
         figure.supxlabel(_caption(settings), fontsize=8, color=GREY)

@@ -97,19 +97,21 @@ def solved(components: tuple[int, ...], discount: float) -> Solved:
     q = task.optimal_q(tables)
     best = best_actions(q)
     best[task.completed] = False
-    way, reward = _walk(tables, q, int(tables.starts[0]))
+    way, reward = optimal_way(tables, q)
     return Solved(task, best, way, float(q[tables.starts[0]].max()), reward)
 
 
-def _walk(tables: Tables, q: NDArray[np.float64], state: int) -> tuple[NDArray[np.int64], float]:
-    """The states and the summed reward of the first best actions, to the end."""
-    way, total, ended = [], 0.0, False
-    while not ended:
-        action = int(q[state].argmax())
+def optimal_way(tables: Tables, preference: NDArray) -> tuple[NDArray[np.int64], float]:
+    """States and summed reward on the way from the start to the end, by the first action of largest `preference`.
+
+    `preference` is (n_states, n_actions), such as Q or marks of best actions; the world is deterministic.
+    """
+    state, way, total, event = int(tables.starts[0]), [], 0.0, 0
+    while not event & TERMINAL:
+        action = int(preference[state].argmax())
         way.append(state)
         total += float(tables.reward[state, action, 0])
-        ended = bool(tables.event[state, action, 0] & TERMINAL)
-        state = int(tables.next_state[state, action, 0])
+        state, event = int(tables.next_state[state, action, 0]), int(tables.event[state, action, 0])
     return np.array(way), total
 
 

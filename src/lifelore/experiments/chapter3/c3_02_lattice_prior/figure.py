@@ -7,7 +7,6 @@ from lifelore.experiments.chapter3.c3_02_lattice_prior.run import KEYS
 from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
 from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
 from lifelore.experiments.engine.results_table import ResultsTable
-from lifelore.figures.heat_grid import minus_sign
 from lifelore.figures.style import GREY, colour_of, house_style, new_figure
 
 if TYPE_CHECKING:
@@ -62,7 +61,7 @@ def _draw_grids(panels, result: Mapping) -> None:
     grid = (result["settings"], cells)
     first, ratio = panels
     draw_choice_grid(
-        first, *grid, "first", ("form", "alpha0"), name, neutral=0.0, spread=40.0, words=minus_sign("{:+.1f}")
+        first, *grid, "first", ("form", "alpha0"), name, neutral=0.0, spread=40.0, words="{:+.1f}".format
     )
     draw_choice_grid(
         ratio, *grid, "to_80_ratio", ("form", "alpha0"), name,

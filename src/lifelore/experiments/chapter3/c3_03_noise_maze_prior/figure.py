@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
 from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
-from lifelore.figures.heat_grid import minus_sign
 from lifelore.figures.style import GREY, colour_of, house_style, new_figure
 
 if TYPE_CHECKING:
@@ -70,7 +69,7 @@ def _draw_grids(panels, result: Mapping) -> None:
     for (above, below), (one, other, title) in zip(panels.T, PAIRS, strict=True):
         draw_choice_grid(
             above, result["settings"], cells, f"first_{one}_minus_{other}", side, name,
-            neutral=0.0, spread=60.0, words=minus_sign("{:+.1f}"),
+            neutral=0.0, spread=60.0, words="{:+.1f}".format,
         )  # fmt: skip
         draw_choice_grid(
             below, result["settings"], cells, f"to_80_ratio_{one}_to_{other}", side, name,

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.feature_bars import FEATURES
+from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
 from lifelore.figures.style import BLUE, GREY, PAPER, house_style, new_figure
 
 if TYPE_CHECKING:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 from lifelore.action.priors.exploration import TIES
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_07_feature_sets.run import check_components
+from lifelore.domains.factory.factory import N_COMPONENTS
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.chapter3.modified_factory_tasks import FULL_SET, problem_of
 from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent
@@ -76,7 +76,8 @@ def check(settings: Mapping) -> None:
     check_counts(settings, ("runs", "tasks", "last", "episodes", "long_episodes", "max_steps", "components"))
     check_learning({**settings, "schedules": [settings["schedule"]]})
     check_among({"ties": [settings["ties"]]}, "ties", TIES)
-    check_components(settings)
+    if settings["components"] > N_COMPONENTS:
+        raise InputError(f"components must be at most {N_COMPONENTS}, got {settings['components']}")
     if settings["last"] > settings["tasks"]:
         raise InputError(f"last must be at most tasks ({settings['tasks']}), got {settings['last']}")
     if settings["alpha0"] <= 0:

@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.errors import InputError
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_08_feature_importance.measure import gaps, measure, rows
 from lifelore.experiments.chapter3.c3_08_feature_importance.run import (
     cells,
     counted_actions,
     counted_states,
-    hows,
+    grid_of,
     importance,
     run_cell,
 )
@@ -40,7 +39,7 @@ def made_up(way=OTHERS, way_four=0.10, chosen=CARDINALS):
         selected = {phi: list(chosen) for phi in PHI}
         return {**how, "increase": found, "entropy": dict.fromkeys(PHI, 1.5 + run), "chosen": selected}
 
-    return [{"run": run, "found": [numbers(how, run) for how in hows(SETTINGS)]} for run in range(4)]
+    return [{"run": run, "found": [numbers(how, run) for how in grid_of(SETTINGS).cells]} for run in range(4)]
 
 
 def plain(measured):
@@ -56,7 +55,7 @@ def test_gaps_and_shares_by_hand():
     assert found["diagonal_share_phi4"].value == pytest.approx(0.04 / 0.1015)
     assert found["own_cell_share_phi4"].value == pytest.approx(0.03 / 0.1015)
     assert found["items_share_phi4"].value == pytest.approx(0.02 / 0.1015)
-    assert found["delta_phi3_PosDM"].value == pytest.approx(0.1315)
+    assert rows(SETTINGS, made_up())[0]["increase"]["phi3"]["PosDM"]["value"] == pytest.approx(0.1315)
     assert found["entropy_phi1"].value == 3.0
     assert found["exactly_four_selected"].value == 1.0
     assert found["grid_consistent"].value == 1.0
@@ -123,7 +122,7 @@ def test_a_small_run_agrees_with_counts_made_anew(small):
             prior.update(codes[[state]], problem.best[[state]])
     ours = next(f for f in result["found"] if (f["policies"], f["over"], f["actions"]) == (2, "way", "tied"))
     assert ours["increase"] == importance(prior)["increase"]
-    assert len(result["found"]) == len(hows(settings)) == 8
+    assert len(result["found"]) == len(grid_of(settings).cells) == 8
 
 
 def test_the_figure_is_drawn_from_rows_alone():
@@ -133,18 +132,3 @@ def test_the_figure_is_drawn_from_rows_alone():
     assert len(bars.patches) == sum(map(len, PHI.values())) == 22
     assert [text.get_text() for text in grid.texts][:5] == ["102", "112", "122", "132", "30"]
     assert [text.get_fontweight() for text in grid.texts][3:5] == ["bold", "normal"]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"over": '["some"]'}, "over must be among"),
-        ({"actions": "[]"}, "actions must be among"),
-        ({"policies": "[2]"}, "its policies is not"),
-        ({"runs": 0}, "runs must be at least 1"),
-        ({"components": 10}, "components must be at most 9"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
