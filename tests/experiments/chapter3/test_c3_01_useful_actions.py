@@ -1,4 +1,4 @@
-"""Useful actions by hand and against a naive twin."""
+"""Claim C3.1: useful actions by hand and against a naive twin; the figure shows the shares of the result."""
 
 from collections import deque
 
@@ -9,6 +9,7 @@ from scipy import ndimage
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.experiments.chapter3.c3_01_useful_actions import run as c3_1
+from lifelore.experiments.chapter3.c3_01_useful_actions.figure import draw
 from lifelore.experiments.chapter3.c3_01_useful_actions.measure import measure
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import (
     prior_of,
@@ -107,12 +108,10 @@ def test_measures_by_hand():
     ]
     settings = {**FULL, "generators": ["uniform"]}
     found = measure(settings, [{"generator": "uniform", "mazes": mazes}])
-    assert found["useful_share_uniform"].value == pytest.approx((38 + 42 + 57 + 60) / 76 / 4)
     assert found["rank_of_42_of_76_uniform"].value == 1.5 / 4  # one below, half of the one that is equal
     assert found["rank_of_48_of_76_uniform"].value == 2 / 4
     assert found["passable_found_useful_uniform"].value == pytest.approx((38 / 40 + 3) / 4)
     assert found["useful_that_collide_uniform"].value == pytest.approx(3 / 57 / 4)
-    assert found["mazes_where_useful_is_passable_uniform"].value == 3 / 4
     assert found["useful_share_goal_rows_counted_uniform"].value == 1.0
 
 
@@ -126,18 +125,30 @@ def test_moves_are_in_the_order_that_figures_draw():
     assert MOVES.tolist() == [[-1, 0], [1, 0], [0, 1], [0, -1]]
 
 
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"generators": '["magic"]'}, "generators must be among"),
-        ({"generators": "[]"}, "among"),
-        ({"mazes": 0}, "at least 1"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
-
-
 def test_without_the_generator_that_the_predicate_asks_about_it_cannot_be_told():
     assert CLAIM.predicate.verdict({}) == "cannot be tested"
+
+
+def result(examples=True):
+    rows = [
+        {"generator": "g", "useful": 3, "actions": 8, "mazes": 1},
+        {"generator": "g", "useful": 4, "actions": 8, "mazes": 3},
+    ]
+    example = {
+        "example": 2, "shape": [1, 2], "cells": [[0, 0], [0, 1]], "counted": [True, True],
+        "probs": [[0, 0, 1, 0], [0, 0, 0, 1]],
+    }  # fmt: skip
+    return {"rows": rows + ([example] if examples else []), "settings": {"generators": ["g"], "mazes": 4}}
+
+
+def test_shares_and_examples():
+    figure = draw(result())
+    maze, shares = figure.axes
+    assert maze.get_title("left") == "2 of 8 actions useful"
+    bars = [(bar.get_x() + bar.get_width() / 2, bar.get_height()) for bar in shares.patches]
+    np.testing.assert_allclose(bars, [[37.5, 25], [50, 75]])
+    assert [line.get_xdata()[0] for line in shares.lines] == [4200 / 76, 4800 / 76]
+
+
+def test_without_examples_only_shares_are_drawn():
+    assert len(draw(result(examples=False)).axes) == 1
