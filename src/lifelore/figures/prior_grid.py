@@ -66,6 +66,12 @@ def schedule_in_words(schedule: Sequence[float]) -> str:
     return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"
 
 
+def schedule_in_brief(schedule: Sequence[float]) -> str:
+    """The first ε of a schedule and its factor, as a row or column of a table names it."""
+    first, decay, _ = schedule
+    return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
+
+
 def _cell(result: Mapping, schedule: Sequence[float], how: Mapping) -> Mapping:
     keys = ("ties", "alpha0", "form")
     return next(

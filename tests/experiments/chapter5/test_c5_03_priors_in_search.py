@@ -5,7 +5,6 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.experiments.chapter5.c5_03_priors_in_search.measure import measure, rows
 from lifelore.experiments.chapter5.c5_03_priors_in_search.run import (
     BOTH,
@@ -127,21 +126,3 @@ def test_the_figure_is_drawn_from_rows_alone():
     assert "without prior: 50 %, by best mean 50 %" in figure.axes[0].get_xlabel()
     assert len(figure.axes[3].lines) == 4
     assert np.asarray(figure.axes[3].lines[0].get_ydata()) == pytest.approx([0, 22.525])
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"forms": '["magic"]'}, "forms must be among"),
-        ({"forms": '["proportion"]'}, "forms must include the defaults"),
-        ({"density": "[0.8, 0.5]"}, "density must be two shares"),
-        ({"slip": 0.5}, "slip must lie in"),
-        ({"prune": 1.5}, "prune must lie in"),
-        ({"strength": 0.0}, "must be positive"),
-        ({"simulations": "[]"}, "simulations must be at least 1"),
-        ({"mazes": 0}, "mazes must be at least 1"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)

@@ -2,7 +2,6 @@
 
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.experiments.chapter3.c3_13_futile_goals.measure import measure, rows, slope
 from lifelore.experiments.engine.registry import claim_of
 
@@ -90,20 +89,3 @@ def test_rows_and_figure():
     assert states.get_legend_handles_labels()[1] == ["α⁰ = 1"]
     assert percepts.get_legend_handles_labels()[1] == ["|T| · 1", "|T| · 2"]
     assert [tick.get_text() for tick in worlds.get_yticklabels()] == ["random, 1"]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"tasks": "[1, 3, 10]"}, "tasks must hold 0"),
-        ({"tasks": "[0, 1]"}, "two other numbers"),
-        ({"alpha0": "[0.1, 0.0]"}, "alpha0 must be positive"),
-        ({"alpha0": "[1.0]"}, "its alpha0 is not"),
-        ({"kinds": '["maze"]'}, "kinds must be among"),
-        ({"actions": "[1, 4]"}, "actions must be at least 2"),
-        ({"draws": 0}, "draws must be at least 1"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)

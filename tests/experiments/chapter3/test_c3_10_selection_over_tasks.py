@@ -5,7 +5,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import best_actions
 from lifelore.experiments.chapter3.c3_10_selection_over_tasks.measure import (
     GOAL,
@@ -154,19 +153,3 @@ def test_the_figure_is_drawn_from_rows_alone():
     # Rows of the picture: N, W, E, S, then the others, Items last.
     shown = np.asarray(panels[0].images[0].get_array())
     assert shown[[0, 3, 4, 9]].tolist() == [[1] * 4, [1] * 4, [1, 0, 0, 0], [1, 1, 0, 0]]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"last": 5}, "last must be at most tasks"),
-        ({"tasks": 0}, "tasks must be at least 1"),
-        ({"schedule": "[1.0, 2.0, 0.1]"}, "three decimals"),
-        ({"ties": "first"}, "ties must be among"),
-        ({"alpha0": 0.0}, "alpha0 must be positive"),
-        ({"components": 10}, "components must be at most 9"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)

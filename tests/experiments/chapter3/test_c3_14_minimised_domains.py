@@ -2,7 +2,6 @@
 
 import pytest
 
-from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter3.c3_14_minimised_domains.measure import measure, rows, worst
 from lifelore.experiments.chapter3.c3_14_minimised_domains.run import FORMS, WHOLE, WITHIN
@@ -113,21 +112,3 @@ def test_rows_and_figure():
     assert kept.texts[0].get_text() == "100"
     assert walks.texts[0].get_text() == "42"
     assert learning.texts[0].get_text() == "0.81"
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"kinds": '["maze"]'}, "kinds must be among"),
-        ({"kinds": '["random, few starts"]'}, "kinds must hold one of lattice, every start"),
-        ({"kinds": '["lattice, every start"]'}, "kinds must hold one of random, few starts"),
-        ({"size": 8}, "size must be odd"),
-        ({"tasks": 1}, "tasks must be at least 2"),
-        ({"random_states": 5}, "random_states must be at least"),
-        ({"window": 1000}, "window must be at most episodes"),
-        ({"schedules": "[[0.1, 1.0, 0.1]]"}, "its schedule is not"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)
