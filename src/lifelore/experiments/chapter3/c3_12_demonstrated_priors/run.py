@@ -3,8 +3,8 @@
 The thesis's demonstrator was a person. Here people are simulated, each with a skill: the share of steps taken
 knowingly. A run draws training factories with lists of components; each is demonstrated once, by the people in
 turn, and solved exactly for the self-trained prior. A trajectory counts an action for each visit, a policy its
-tied best actions in every state. All priors meet the same factories, lists and random numbers. Optimal rewards lie near
-0, so that the scale of *comparable* is the distance from learning without a prior to the optimum, as in C3.11.
+tied best actions in every state. All priors meet the same factories, lists and random numbers. Optimal rewards
+lie near 0; *comparable* is relative to the distance from learning without a prior to the optimum, as in C3.11.
 Thesis: §3.4.8, Figure 3.16.
 """
 
