@@ -4,16 +4,11 @@ from collections.abc import Callable, Mapping, Sequence
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-
-def schedule_in_brief(schedule: Sequence[float]) -> str:
-    """First ε and its factor an episode, as a column's head."""
-    first, decay, _ = schedule
-    return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
 
 
 def draw_choice_grid(

@@ -31,6 +31,12 @@ def schedule_in_words(schedule: Sequence[float]) -> str:
     return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"
 
 
+def schedule_in_brief(schedule: Sequence[float]) -> str:
+    """The first ε of a schedule and its factor, as a row or column of a table names it."""
+    first, decay, _ = schedule
+    return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
+
+
 def curve_edges(result: Mapping) -> list[int]:
     """Edges of the blocks of episodes of a result's curves."""
     return next(row["curve_edges"] for row in result["rows"] if "curve_edges" in row)

@@ -3,8 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.choice_grid import schedule_in_brief
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
 from lifelore.figures.style import GREY, VERMILION, colour_of, house_style, new_figure, two_rows
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.choice_grid import schedule_in_brief
+from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import BLUE, GREY, PURPLE, house_style, new_figure, two_rows

@@ -6,17 +6,12 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.mdp import TERMINAL, Tables
-from lifelore.domains.factory.contexts import feature_codes, features
-from lifelore.experiments.chapter3 import factory_forms
-from lifelore.experiments.chapter3.factory_forms import (
+from lifelore.core.mdp import TERMINAL
+from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import (
     FORMS,
     KEYS,
-    PLAIN,
-    best_of,
-    hows,
-    learn_task,
-    optimal_reward,
+    WITHOUT_PRIOR,
+    grid_of,
     probs_of,
     rows_of,
     run_cell,
@@ -24,6 +19,7 @@ from lifelore.experiments.chapter3.factory_forms import (
     summary,
 )
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import contexts_of, learn_problem, problem_of
 from lifelore.experiments.engine.registry import claim_of
 
 FULL = dict(claim_of("C3.11").sizes["full"])
@@ -75,8 +71,8 @@ def test_forms_are_probabilities_and_uniform_where_nothing_is_known(form):
 def test_pooled_counts_by_a_slow_tally(run):
     tally = {}
     for i in range(3):
-        task = factory_forms._task(SMALL, (3, "C3.11", 0, "training", i))
-        best, codes = best_of(task), feature_codes(features(task), "phi3")
+        problem = problem_of(SMALL, (3, "C3.11", 0, "training", i))
+        task, best, codes = problem.task, problem.best, contexts_of(problem, "phi3")
         for state in range(
             task.domain.n_states - task.factory.n_cells
         ):  # the last configuration is the finished one
@@ -95,13 +91,15 @@ def test_the_prior_of_fewer_policies_is_that_of_the_first(run):
     assert (first.counts(first.contexts) == run.priors["phi2", 1].counts(first.contexts)).all()
 
 
-def test_optimal_reward_by_hand():
-    # State 0: wait (-2, stay) or walk (-1, to 1); state 1: finish (+10).
-    next_state = np.array([[0, 1], [1, 1]], np.int32)[..., None]
-    reward = np.array([[-2.0, -1.0], [-2.0, 10.0]])[..., None]
-    event = np.array([[0, 0], [0, TERMINAL]], np.uint8)[..., None]
-    tables = Tables(next_state, reward, event, np.ones(1), np.array([0], np.int32))
-    assert optimal_reward(tables, np.array([[1.0, 8.9], [7.0, 10.0]])) == 9.0
+def test_the_optimal_reward_is_that_of_the_exact_policy(run):
+    for problem in run.testing:
+        tables, q = problem.tables, problem.task.optimal_q()
+        state, total, event = int(tables.starts[0]), 0.0, 0
+        while not event & TERMINAL:
+            action = int(q[state].argmax())
+            total += tables.reward[state, action, 0]
+            state, event = int(tables.next_state[state, action, 0]), int(tables.event[state, action, 0])
+        assert problem.optimal == total
 
 
 def test_summary_by_hand():
@@ -109,12 +107,9 @@ def test_summary_by_hand():
     rewards = np.array([[-8.0, -4.0, 0.0, 2.0], [-4.0, -4.0, 4.0, 6.0]])
     found = summary(rewards, 2)
     half = 2**-0.5
-    expected = {"first": -6.0, "early": -5.0, "all": -1.0, "late": 3.0}
-    expected |= {"spread_first": 4 * half, "spread_early": 2 * half, "spread_of_means": 2 * half}
-    assert found == pytest.approx(expected)
-    # Opposite ups and downs spread every episode, and not the means.
-    apart = summary(np.array([[0.0, 2.0], [2.0, 0.0]]), 2)
-    assert (apart["spread_early"], apart["spread_of_means"]) == (pytest.approx(2 * half), 0.0)
+    assert found == pytest.approx({"early": -5.0, "all": -1.0, "spread_early": 2 * half})
+    # Opposite ups and downs spread every episode, and not the means of the tasks.
+    assert summary(np.array([[0.0, 2.0], [2.0, 0.0]]), 2)["spread_early"] == pytest.approx(2 * half)
 
 
 def test_a_draw_from_the_dirichlet_is_the_same_for_the_task_whenever_it_is_made(run):
@@ -127,15 +122,18 @@ def test_a_draw_from_the_dirichlet_is_the_same_for_the_task_whenever_it_is_made(
 
 def test_a_prior_that_has_seen_nothing_is_uniform_exploration(run):
     schedule = schedule_of({**SMALL, "max_steps": 100}, [1.0, 0.95, 0.01])
-    met = run.testing[0]
-    plain = learn_task(met, factory_forms.uniform_rows(met.tables), schedule)
+    problem = run.testing[0]
+
+    def rewards(rows):
+        return learn_problem(problem, rows, schedule)[0].rewards.tobytes()
+
     how = {**SMALL["default"], "ties": "prior"}
     for form in ("proportion", "softmax of counts", "softmax of counts a policy"):
-        assert learn_task(met, rows_of(met, ActionPrior(6), form, how), schedule).tobytes() == plain.tobytes()
+        assert rewards(rows_of(problem, ActionPrior(6), form, how)) == rewards(None)
 
 
 def test_the_grid_of_full_by_counting():
-    found = hows(FULL)
+    found = grid_of(FULL).cells
     # 3 sets of features × 2 schedules × 2 ties, then one other α⁰, cap and number of policies.
     assert len(found) == 12 + 3
     assert len({json.dumps(how) for how in found}) == 15
@@ -152,10 +150,10 @@ def test_a_cell_is_plain_data_with_every_form_in_every_cell_of_the_grid(run, cel
     assert json.loads(json.dumps(cell)) == cell
     forms = [found["form"] for found in cell["found"]]
     # Uniform exploration knows neither features nor ties: 2 schedules, and the other cap.
-    expected = {PLAIN: 3, **dict.fromkeys(FORMS, len(hows(SMALL)))}
+    expected = {WITHOUT_PRIOR: 3, **dict.fromkeys(FORMS, len(grid_of(SMALL).cells))}
     assert {form: forms.count(form) for form in expected} == expected
     assert sum("mean" in found for found in cell["found"]) == 2 * (1 + len(FORMS))
-    assert cell["optimal"] == pytest.approx(np.mean([met.optimal for met in run.testing]))
+    assert cell["optimal"] == pytest.approx(np.mean([problem.optimal for problem in run.testing]))
 
 
 def test_a_number_is_what_learning_alone_gives(run, cell):
@@ -165,9 +163,13 @@ def test_a_number_is_what_learning_alone_gives(run, cell):
     )
     schedule = schedule_of({**SMALL, "max_steps": 100}, how["schedule"])
     prior = run.priors["phi2", 3]
-    rewards = [learn_task(met, rows_of(met, prior, "softmax of counts", how), schedule) for met in run.testing]
+    rewards = [
+        learn_problem(problem, rows_of(problem, prior, "softmax of counts", how), schedule)[0].rewards
+        for problem in run.testing
+    ]
     assert found["all"] == pytest.approx(np.mean(rewards))
-    assert found["spread_first"] == pytest.approx(np.std([r[0] for r in rewards], ddof=1))
+    early = np.std([r[: SMALL["early"]] for r in rewards], axis=0, ddof=1)
+    assert found["spread_early"] == pytest.approx(early.mean())
 
 
 def test_leaving_out_choices_moves_no_number(cell):

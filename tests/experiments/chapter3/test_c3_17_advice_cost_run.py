@@ -8,7 +8,7 @@ import pytest
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import Purpose
-from lifelore.experiments.chapter3.advice_grid import (
+from lifelore.experiments.chapter3.advice_mazes import (
     errands_of,
     maze_of,
     policy_of,
@@ -16,7 +16,7 @@ from lifelore.experiments.chapter3.advice_grid import (
     thesis_advisor,
     walk,
 )
-from lifelore.experiments.chapter3.c3_17_advice_cost.advice_amount import (
+from lifelore.experiments.chapter3.c3_17_advice_cost.run import (
     agent_policies,
     ceiling,
     greedy_policy,

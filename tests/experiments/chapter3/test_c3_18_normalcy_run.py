@@ -1,4 +1,4 @@
-"""Explorers on errands: readings of P(M₁ | H) by hand, and cells that are whole."""
+"""Explorers on errands: readings of P(M₁ | H) by hand, and a whole cell of C3.18."""
 
 import json
 
@@ -8,17 +8,15 @@ import pytest
 from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import Purpose
-from lifelore.experiments.chapter3.advised_explorers import (
+from lifelore.experiments.chapter3.c3_18_normalcy.run import (
     block_curve,
     own_normalcy,
     run_cell,
-    run_normalcy_cell,
     unadvised_normalcy,
 )
 from lifelore.experiments.engine.registry import claim_of
 
-QUICK = dict(claim_of("C3.15").sizes["quick"])
-NORMALCY = dict(claim_of("C3.18").sizes["quick"])
+QUICK = dict(claim_of("C3.18").sizes["quick"])
 
 CELL = {"loops": 0.1, "maze": 0}
 
@@ -55,35 +53,8 @@ def test_curves_by_blocks_by_hand():
     assert found["reached"] == [0, 1, 1]
 
 
-@pytest.fixture(scope="module")
-def cell():
-    return run_cell(QUICK, CELL, 0)
-
-
-def test_a_cell_has_every_agent_under_every_advisor(cell):
-    assert json.loads(json.dumps(cell)) == cell
-    ways = [(e["experts"], e["way"], e["agent"]) for e in cell["walks"]]
-    # Nobody; three advisors for two kinds of experts; and at the default, experts of other goals alone.
-    assert len(set(ways)) == len(ways) == 5 * (1 + 3 * 2 + 1)
-    assert all(len(e["reached"]) == QUICK["tasks"] for e in cell["walks"])
-    assert [one["experts"] for one in cell["learners"]] == [None, "walks", "policies"]
-
-
-def test_nobody_advises_the_unadvised_and_the_better_advisor_keeps_to_its_share(cell):
-    for entry in cell["walks"]:
-        shares = np.array(entry["advised"]) / np.array(entry["steps"])
-        assert entry["way"] != "none" or not shares.any()
-        assert entry["way"] in ("none", "thesis") or shares.max() <= 0.4
-    assert any(sum(entry["advised"]) for entry in cell["walks"] if entry["way"] == "better")
-
-
-def test_optimal_agents_arrive_unadvised(cell):
-    alone = next(e for e in cell["walks"] if (e["way"], e["agent"]) == ("none", "optimal"))
-    assert alone["reached"] == [1] * QUICK["tasks"]
-
-
 def test_normalcy_cell_is_plain_and_an_unadvised_walk_reads_alike_every_way():
-    found = run_normalcy_cell(NORMALCY, CELL, 0)
+    found = run_cell(QUICK, CELL, 0)
     assert json.loads(json.dumps(found)) == found
     assert len(found["explorers"]) == 2 * 4
     for entry in found["explorers"]:

@@ -5,8 +5,9 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter3.advice_grid import errands_of, maze_of
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand, learnt, run_cell
+from lifelore.experiments.chapter3.advice_mazes import errands_of, maze_of
+from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.c3_16_advised_learning.run import run_cell, summary
 from lifelore.experiments.engine.registry import claim_of
 
 QUICK = dict(claim_of("C3.16").sizes["quick"])
@@ -32,7 +33,7 @@ def maze():
 def test_a_tasks_numbers_by_hand(at, expected):
     reached = np.zeros(20, bool)
     reached[at] = True
-    assert learnt({"episodes": 20, "last": 4}, reached) == expected
+    assert summary({"episodes": 20, "last": 4}, reached) == expected
 
 
 def test_episodes_start_in_one_cell_or_anywhere(maze):

@@ -3,10 +3,16 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_11_forms_of_prior.measure import NUMBERS, measure, pay_of, rows
-from lifelore.experiments.chapter3.factory_forms import AS_PRINTED, DIRICHLET, FORMS, KEYS, PLAIN, PROPORTION, hows
-from lifelore.experiments.engine.open_choices import plain_how
+from lifelore.experiments.chapter3.c3_11_forms_of_prior.measure import measure, rows
+from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import (
+    AS_PRINTED,
+    DIRICHLET,
+    FORMS,
+    PROPORTION,
+    WITHOUT_PRIOR,
+    grid_of,
+)
+from lifelore.experiments.engine.grid import run_grid
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.11")
@@ -24,26 +30,26 @@ SETTINGS = {
     "policies": [3],
 }
 """A grid of two cells, ties uniform and by the prior, by four softmaxes."""
-EARLY = {PLAIN: -5000.0, PROPORTION: -1000.0, DIRICHLET: -1010.0, AS_PRINTED: -3000.0}
-SPREAD = {PLAIN: 900.0, PROPORTION: 200.0, DIRICHLET: 250.0, AS_PRINTED: 800.0}
+EARLY = {WITHOUT_PRIOR: -5000.0, PROPORTION: -1000.0, DIRICHLET: -1010.0, AS_PRINTED: -3000.0}
+SPREAD = {WITHOUT_PRIOR: 900.0, PROPORTION: 200.0, DIRICHLET: 250.0, AS_PRINTED: 800.0}
 
 
 def made_up(early=EARLY, spread=SPREAD):
     """Cells of four runs; softmaxes not named are as good as proportions, every number a bit apart by run."""
 
-    def numbers(form, how, run):
+    def numbers(form, run):
         place = FORMS.index(form) if form in FORMS else 0
         jitter = np.array([-3.0, 1.0, -1.0, 3.0])[(run + place) % 4] * (1 + 0.1 * place)
         value = early.get(form, early[PROPORTION]) + jitter
-        found = dict.fromkeys(NUMBERS, spread.get(form, spread[PROPORTION]) + jitter)
-        found |= {"first": value, "early": value, "all": value, "late": value}
-        return {"form": form, **how, **found, "mean": [value] * 3, "deviation": [1.0 + run] * 3}
+        found = {"early": value, "all": value, "spread_early": spread.get(form, spread[PROPORTION]) + jitter}
+        return {**found, "mean": [value] * 3, "deviation": [1.0 + run] * 3}
 
     cells = []
     for run in range(4):
-        found = [numbers(PLAIN, plain_how(hows(SETTINGS)[0], KEYS), run)]
-        found += [numbers(form, how, run) for how in hows(SETTINGS) for form in FORMS]
-        cells.append({"run": run, "optimal": -20.0, "found": found})
+        found = run_grid(
+            grid_of(SETTINGS), "form", WITHOUT_PRIOR, FORMS, lambda form, _, run=run: numbers(form, run)
+        )
+        cells.append({"run": run, "optimal": -20.0, "found": list(found)})
     return cells
 
 
@@ -51,39 +57,31 @@ def plain(measured):
     return {name: number.to_dict() for name, number in measured.items()}
 
 
-def test_what_a_finished_task_pays_by_hand():
-    assert pay_of(4) == 4 * 10 + 4 * 10 + 100
-
-
 def test_headline_by_hand():
     found = measure(SETTINGS, made_up())
     # The jitter is shifted by form and cancels over the four runs.
-    assert found["early_proportion"].value == pytest.approx(-1000)
     assert found["proportion_minus_softmax"].value == pytest.approx(2000)
     assert found["early_dirichlet_minus_softmax"].value == pytest.approx(1990)
     assert found["early_spread_ratio_softmax_to_proportion"].value == pytest.approx(4)
     assert found["early_spread_ratio_softmax_to_dirichlet"].value == pytest.approx(3.2)
-    assert found["dirichlet_minus_proportion"].value == pytest.approx(-10)
-    assert found["dirichlet_minus_proportion_of_pay"].value == pytest.approx(-10 / 120)
     # Learning without a prior lies 4980 below the optimum.
     assert found["dirichlet_minus_proportion_of_distance"].value == pytest.approx(-10 / 4980)
-    assert found["early_softmax_of_ten_proportions"].value == pytest.approx(-1000)
 
 
 def test_shares_of_the_grid_by_hand():
     found = measure(SETTINGS, made_up())
     # Of four softmaxes in two cells only the printed one is apart from proportions.
-    assert found["grid_softmax_poor"].value == found["grid_softmax_spread"].value == 0.25
+    assert found["grid_softmax_poor_and_spread"].value == 0.25
     assert found["grid_softmax_poor_and_spread"].n == 8
-    worse = dict.fromkeys(FORMS[2:], -3000.0) | {key: EARLY[key] for key in (PLAIN, PROPORTION, DIRICHLET)}
+    worse = dict.fromkeys(FORMS[2:], -3000.0) | {key: EARLY[key] for key in (WITHOUT_PRIOR, PROPORTION, DIRICHLET)}
     found = measure(SETTINGS, made_up(worse))
-    assert found["grid_softmax_poor"].value == 1.0
+    # All earn less then, but only the printed one spreads more.
     assert found["grid_softmax_poor_and_spread"].value == 0.25
 
 
 def test_verdicts():
-    every = dict.fromkeys(FORMS[2:], -3000.0) | {key: EARLY[key] for key in (PLAIN, PROPORTION, DIRICHLET)}
-    wide = dict.fromkeys(FORMS[2:], 800.0) | {key: SPREAD[key] for key in (PLAIN, PROPORTION, DIRICHLET)}
+    every = dict.fromkeys(FORMS[2:], -3000.0) | {key: EARLY[key] for key in (WITHOUT_PRIOR, PROPORTION, DIRICHLET)}
+    wide = dict.fromkeys(FORMS[2:], 800.0) | {key: SPREAD[key] for key in (WITHOUT_PRIOR, PROPORTION, DIRICHLET)}
     assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(every, wide)))) == "holds"
     assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds in part"
     # A softmax that earns more and spreads less, whatever the Dirichlet does.
@@ -98,7 +96,7 @@ def test_rows_hold_the_whole_grid_and_its_curves():
     assert grid[0]["early_difference_softmax_of_counts"]["value"] == pytest.approx(2000)
     assert grid[1]["early_spread_ratio_dirichlet"]["value"] == pytest.approx(1.25)
     curves = {row["curve_of"]: row for row in found if "curve_of" in row}
-    assert list(curves) == [PLAIN, *FORMS]
+    assert list(curves) == [WITHOUT_PRIOR, *FORMS]
     np.testing.assert_allclose(curves[AS_PRINTED]["mean"], -3000)
     assert curves[AS_PRINTED]["deviation"] == [2.5] * 3
 
@@ -111,30 +109,10 @@ def test_the_figure_is_drawn_from_rows_alone():
     cells = made_up()
     result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, cells)), "rows": rows(SETTINGS, cells)}
     curves, difference, ratio = CLAIM.draw(result).axes
-    assert [line.get_label() for line in curves.lines] == [PLAIN, *FORMS, "optimal"]
+    assert [line.get_label() for line in curves.lines] == [WITHOUT_PRIOR, *FORMS, "optimal"]
     assert [text.get_text() for text in difference.texts][:2] == ["+10", "+2,000"]
     assert [text.get_text() for text in ratio.texts][:3] == ["1.25", "4.00", "1.00"]
     assert [tick.get_text() for tick in difference.get_yticklabels()] == [
         "φ3, ε 1 × 0.95, ties uniform",
         "φ3, ε 1 × 0.95, ties prior",
     ]
-
-
-@pytest.mark.parametrize(
-    ("overrides", "rule"),
-    [
-        ({"test_tasks": 1}, "test_tasks must be at least 2"),
-        ({"features": '["phi9"]'}, "features must be among"),
-        ({"features": '["phi2"]'}, "its features is not"),
-        ({"ties": '["first"]'}, "ties must be among"),
-        ({"policies": "[1]"}, "its policies is not"),
-        ({"policies": "[0, 3]"}, "policies must be at least 1"),
-        ({"early": 21}, "early must be at most episodes"),
-        ({"components": 10}, "components must be at most 9"),
-        ({"alpha0": "[0.1, 0.0]"}, "alpha0 must be positive"),
-        ({"schedules": "[[1.0, 0.95, 2.0]]"}, "three decimals"),
-    ],
-)
-def test_settings_that_cannot_be_run(overrides, rule):
-    with pytest.raises(InputError, match=rule):
-        CLAIM.settings("quick", overrides)

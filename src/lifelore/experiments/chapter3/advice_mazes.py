@@ -1,44 +1,35 @@
-"""Mazes, experts and errands of the claims on advice, and who watches: what C3.15 to C3.18 share.
+"""Mazes, experts, errands, agents and the thesis's advisor of claims C3.15 to C3.18, and estimates over mazes.
 
-The thesis draws one maze and does not say how its experts walked. Here loop densities are crossed with kinds of
-experts, over many mazes: an interval is over mazes, since the errands of one maze share its experts. Experts go
-shortest ways, as policies learnt to the end do. Everything compared in an errand shares its start and its random
-numbers. Thesis: §3.7.2.
+The thesis draws one maze and does not say how its experts walked. The claims cross loop densities with kinds of
+experts, over many mazes; an interval is over mazes, since the errands of one maze share its experts. Experts take
+shortest paths, as converged policies do. Everything compared in an errand shares its start and its random numbers.
+Thesis: §3.7.2.
 """
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.advice.advised_walk import Walk, advised_walk
-from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
-from lifelore.action.advice.behaviour_models import Tabulated
-from lifelore.action.advice.goal_model import Purpose, Trajectory, stitched
+from lifelore.action.advice.advisor import AdviceSettings, Advisor
+from lifelore.action.advice.goal_model import Purpose, Trajectory
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.mdp import Tables
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
 
 EXPERTS = ("walks", "few walks", "trips", "policies")
-"""Walks to each goal from anywhere, few of them, walks from other goals; or what is best in every state."""
+"""Walks to each goal from anywhere, few of them, walks from other goals; or the best actions of every state."""
 AGENTS = (*EXPLORERS, "optimal")
-GRID = {
-    "size": 30,
-    "loops": [0.0, 0.1, 0.2, 0.4],
-    "experts": list(EXPERTS),
-    "expert_walks": 20,
-    "few_walks": 5,
-    "kappa": 0.5,
-    "window": 300,
-    "default": {"loops": 0.1, "experts": "walks"},
-}
-"""The settings that the claims share at full size."""
-SMALL = {**GRID, "size": 13, "loops": [0.1], "experts": ["walks", "policies"], "expert_walks": 4}
+ROUNDING = 12
+"""Decimals of a maze's number: a difference that is only rounding must not pass for a certain gain."""
 
 
 class Errand(NamedTuple):
@@ -67,6 +58,11 @@ def maze_cells(settings: Mapping) -> list[dict]:
     return [{"loops": loops, "maze": number} for loops in settings["loops"] for number in range(settings["mazes"])]
 
 
+def grid_of(settings: Mapping) -> list[tuple[float, str]]:
+    """Loop densities crossed with kinds of experts."""
+    return list(product(settings["loops"], settings["experts"]))
+
+
 def maze_of(settings: Mapping, cell: Mapping, seed: int) -> Maze:
     """The maze of a cell."""
     names = (seed, "advice", f"{cell['loops']:g}", cell["maze"])
@@ -75,7 +71,7 @@ def maze_of(settings: Mapping, cell: Mapping, seed: int) -> Maze:
 
 
 def errand_to(world: GridWorld, goal: int) -> Errand:
-    """The errand to a goal; where several moves are as good, all are best."""
+    """The errand to a goal; equally good moves are all best."""
     place = np.zeros(world.n_states, np.int8)
     place[goal] = GOAL
     moves = world.neighbour
@@ -92,7 +88,7 @@ def errands_of(maze: Maze, n: int) -> list[Errand]:
 
 
 def purposes_of(settings: Mapping, maze: Maze, experts: str) -> list[Purpose]:
-    """What experts of a kind, bound for each goal in turn, left behind."""
+    """The goal models of experts of a kind, one for each goal."""
     return [_purpose(settings, maze, goal, experts) for goal in maze.errands]
 
 
@@ -109,7 +105,7 @@ def _purpose(settings: Mapping, maze: Maze, goal: int, experts: str) -> Purpose:
 
 
 def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.Generator) -> Trajectory:
-    """A shortest way from `start`, drawn among equals step by step."""
+    """A shortest path from `start`, drawn among equal moves step by step."""
     states, actions = [start], []
     while states[-1] != found.goal:
         ways = np.flatnonzero(found.best[states[-1]])
@@ -122,18 +118,6 @@ def thesis_advisor(settings: Mapping, purposes: Sequence[Purpose], kappa: float 
     """M₁ pooled over all goals, M₂ uniform."""
     kappa = settings["kappa"] if kappa is None else kappa
     return Advisor.of_thesis(purposes, AdviceSettings(kappa, settings["window"]))
-
-
-def better_advisor(
-    settings: Mapping, world: GridWorld, purposes: Sequence[Purpose], explorers: bool = True
-) -> Advisor:
-    """Goals apart, at most 40 steps in 100 advised; `explorers`: whether it knows how each of them walks."""
-    chosen = replace(BETTER, kappa=settings["kappa"], window=settings["window"])
-    others = None
-    if explorers:
-        bugs = [Tabulated(explorer_probs(world, "bug", purpose.goals[0])) for purpose in purposes]
-        others = [*(Tabulated(explorer_probs(world, name)) for name in EXPLORERS if name != "bug"), bugs]
-    return Advisor(stitched(purposes, world.neighbour), others, chosen)
 
 
 def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64]:
@@ -153,6 +137,25 @@ def walk(
     max_steps: int,
     heeds: bool = True,
 ) -> Walk:
-    """An agent's walk on the maze's errand `number`: the same start and random numbers whoever walks."""
+    """An agent's walk on errand `number`; every agent meets the same start and random numbers."""
     random = stream(*maze.names, "walk", number)
     return advised_walk(found.tables, policy, advisor, random, max_steps, heeds=heeds)
+
+
+def maze_estimate(values: ArrayLike) -> Estimate:
+    """Mean over mazes; the interval of three or more equal values is the value itself."""
+    values = np.round(np.asarray(values, float), ROUNDING)
+    found = mean_estimate(values)
+    if found.ci95 is None and len(values) >= 3:
+        found = replace(found, ci95=(found.value, found.value))
+    return found
+
+
+def without_interval(value: float, n: int) -> Estimate:
+    """A count, a share of a grid or the least of several means."""
+    return Estimate(float(value), float(value), None, n)
+
+
+def grid_share(answers: Sequence[bool]) -> Estimate:
+    """Share of true answers among the cells of a grid."""
+    return without_interval(float(np.mean(answers)), len(answers))

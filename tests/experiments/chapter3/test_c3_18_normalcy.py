@@ -30,7 +30,6 @@ def made_up(unadvised: float | None = 0.8):
                         "told": [0.5 + 0.01 * maze, 0.7 + 0.01 * maze],
                         "own": [own - 0.1, own + 0.1],
                         "unadvised": [None, unadvised],
-                        "advised_share": [1.0, 0.25],
                         "curve_alone": curve,
                         "curve_told": curve,
                     }
@@ -40,15 +39,14 @@ def made_up(unadvised: float | None = 0.8):
 
 
 def test_every_reading_by_hand():
-    found = measure(SETTINGS, made_up())
-    assert found["normal_alone_random"].value == pytest.approx(0.2)
-    assert found["gain_told_left"].value == pytest.approx(0.41)
-    assert found["gain_own_bug"].value == pytest.approx(0.1)
-    assert found["gain_own_random"].value == pytest.approx(0.0)
-    # The first errand was advised throughout: only the second is compared, with what it had alone.
-    assert found["gain_unadvised_avoid"].value == pytest.approx(0.5)
-    assert found["normal_unadvised_avoid"].value == pytest.approx(0.8)
-    assert found["advised_avoid"].value == pytest.approx(62.5)
+    found = {row["agent"]: row for row in rows(SETTINGS, made_up()) if row.get("experts") == "walks"}
+    assert found["random"]["alone"] == pytest.approx(0.2)
+    assert found["left"]["gain"]["told"] == pytest.approx(0.41)
+    assert found["bug"]["gain"]["own"] == pytest.approx(0.1)
+    assert found["random"]["gain"]["own"] == pytest.approx(0.0)
+    # The first errand was advised throughout: only the second is compared, with its own walk alone.
+    assert found["avoid"]["gain"]["unadvised"] == pytest.approx(0.5)
+    assert found["avoid"]["unadvised"] == pytest.approx(0.8)
 
 
 def test_explorers_raised_by_hand():
@@ -61,7 +59,6 @@ def test_explorers_raised_by_hand():
 
 def test_where_all_was_advised_nothing_is_said_of_untold_steps():
     found = measure(SETTINGS, made_up(unadvised=None))
-    assert found["gain_unadvised_bug"].n == 0
     assert found["explorers_raised_unadvised"].value == 0
     row = rows(SETTINGS, made_up(unadvised=None))[0]
     assert row["gain"]["unadvised"] is row["unadvised"] is None
@@ -80,8 +77,10 @@ def test_rows_hold_the_grid_and_the_curves():
 
 @pytest.mark.parametrize(
     ("overrides", "rule"),
-    [({"blocks": 7}, "blocks must divide max_steps"), ({"window": 0}, "window must be at least 1")],
+    [
+        ({"blocks": 7}, "blocks must divide max_steps"),
+    ],
 )
-def test_settings_that_cannot_be_run(overrides, rule):
+def test_settings_that_limits_cannot_describe(overrides, rule):
     with pytest.raises(InputError, match=rule):
         CLAIM.settings("quick", overrides)

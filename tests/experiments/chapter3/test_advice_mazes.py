@@ -3,30 +3,27 @@
 import numpy as np
 import pytest
 
-from lifelore.action.advice.advisor import BETTER
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.experiments.chapter3.advice_estimates import (
-    grid_of,
-    is_positive,
-    maze_estimate,
-    plain,
-    share_of_grid,
-)
-from lifelore.experiments.chapter3.advice_grid import (
+from lifelore.experiments.chapter3.advice_mazes import (
     AGENTS,
     EXPERTS,
-    SMALL,
-    better_advisor,
     errands_of,
     expert_walk,
+    grid_of,
+    grid_share,
     maze_cells,
+    maze_estimate,
     maze_of,
     policy_of,
     purposes_of,
     thesis_advisor,
     walk,
+    without_interval,
 )
+from lifelore.experiments.engine.estimates import is_above
+from lifelore.experiments.engine.registry import claim_of
 
+SMALL = claim_of("C3.15").settings("quick")
 CELL = {"loops": 0.1, "maze": 0}
 
 
@@ -115,15 +112,6 @@ def test_told_or_not_a_walk_starts_alike(maze):
     assert (alone.states[: first + 1] == told.states[: first + 1]).all()
 
 
-def test_the_better_advisor_knows_explorers_only_if_asked_to(maze):
-    purposes = purposes_of(SMALL, maze, "walks")
-    knowing, plain_one = (better_advisor(SMALL, maze.world, purposes, explorers=e) for e in (True, False))
-    # Eight experts; three explorers and a bug for each goal, or Uniform.
-    assert (len(knowing.guide.log_prior), len(plain_one.guide.log_prior)) == (8 + 3 + 8, 8 + 1)
-    assert knowing.settings.share == BETTER.share == 0.4
-    assert (knowing.settings.kappa, knowing.settings.window) == (0.5, 300)
-
-
 def test_mazes_that_agree_leave_no_doubt():
     assert maze_estimate([2.0, 2.0, 2.0]).ci95 == (2.0, 2.0)
     assert maze_estimate([2.0, 2.0]).ci95 is None
@@ -132,14 +120,14 @@ def test_mazes_that_agree_leave_no_doubt():
     assert found.ci95[0] < 7 / 3 < found.ci95[1]
 
 
-def test_positive_is_an_interval_above_0():
-    assert is_positive(maze_estimate([1.0, 2.0, 3.0, 2.0]))
-    assert not is_positive(maze_estimate([-5.0, 2.0, 3.0, 2.0]))
-    assert not is_positive(maze_estimate([0.0, 0.0, 0.0]))
-    assert not is_positive(maze_estimate([1.0, 1.0]))
-    assert not is_positive(maze_estimate([2e-17, 1e-17, 3e-17]))
+def test_a_gain_that_is_only_rounding_is_not_certain():
+    assert is_above(maze_estimate([1.0, 2.0, 3.0, 2.0]), 0.0)
+    assert not is_above(maze_estimate([-5.0, 2.0, 3.0, 2.0]), 0.0)
+    assert not is_above(maze_estimate([0.0, 0.0, 0.0]), 0.0)
+    assert not is_above(maze_estimate([1.0, 1.0]), 0.0)
+    assert not is_above(maze_estimate([2e-17, 1e-17, 3e-17]), 0.0)
 
 
 def test_shares_of_the_grid():
     assert grid_of({"loops": [0.0, 0.1], "experts": ["walks", "trips"]})[1:3] == [(0.0, "trips"), (0.1, "walks")]
-    assert share_of_grid([True, False, False, False]) == plain(0.25, 4)
+    assert grid_share([True, False, False, False]) == without_interval(0.25, 4)

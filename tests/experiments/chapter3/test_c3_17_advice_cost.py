@@ -43,14 +43,11 @@ def made_up(changed=None):
 
 def test_headline_by_hand():
     found = measure(SETTINGS, made_up())
-    assert found["advised_random"].value == 41.0
     assert found["advice_at_zero"].value == 100.0
-    assert found["advice_at_zero_all_steps"].value == pytest.approx((80 + 60 * 3 + 50 + 80 + 50) / 7)
     assert found["agents_falling"].value == 1.0
     assert found["largest_rise"].value == 0.0
     assert (found["early_minus_random"].value, found["early_minus_random"].ci95) == (0.0, (0.0, 0.0))
     assert found["late_minus_optimal"].value == 3.0
-    assert found["ceiling_reaches_kappa"].value == pytest.approx(0.6)
     assert (found["grid_falling"].value, found["grid_falling"].n) == (1.0, 4)
 
 
@@ -81,14 +78,11 @@ def test_full_size_is_the_thesiss():
     ("overrides", "rule"),
     [
         ({"kappas": "[0.5, 1.0]"}, "kappas must rise from 0"),
-        ({"kappas": "[0.0, 1.0, 0.5]"}, "kappas must rise from 0"),
         ({"kappas": "[0.0, 1.0]"}, "contain kappa"),
         ({"snapshots": "[5, 1]"}, "snapshots must be rising"),
-        ({"q_starts": "two"}, "q_starts must be one of"),
-        ({"schedule": "[1.0]"}, "schedule must be three numbers"),
         ({"default": '{"loops": 0.1, "experts": "walks"}'}, "whether agents heed"),
     ],
 )
-def test_settings_that_cannot_be_run(overrides, rule):
+def test_settings_that_limits_cannot_describe(overrides, rule):
     with pytest.raises(InputError, match=rule):
         CLAIM.settings("quick", overrides)
