@@ -53,6 +53,7 @@ def test_curve_has_a_t_interval_worked_by_hand():
     # The 97.5 % point of t with one degree of freedom is 12.706; the standard error is 1.
     assert found["high"] == pytest.approx([1 + 12.7062, 1.0], rel=1e-5)
     assert curve_of([[1.0, 2.0]])["low"] == [1.0, 2.0]
+    assert curve_of([[1.04, 2.0]], digits=1, parts=("mean",)) == {"mean": [1.0, 2.0]}
 
 
 def test_what_is_not_there_is_refused():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.figures.heat_grid import draw_heat_grid
+from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid
 from lifelore.figures.style import new_figure
 
 
@@ -43,6 +43,23 @@ def test_good_low_turns_the_colours_round():
 def test_frame():
     (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(1, 0)).patches
     assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((-0.5, 0.5), 1, 1)
+
+
+def test_a_frame_without_a_row_is_the_whole_column():
+    (frame,) = drawn([[1.0, 1.0], [1.0, 1.0]], neutral=1.0, spread=1.0, outlined=(None, 1)).patches
+    assert (frame.get_xy(), frame.get_width(), frame.get_height()) == ((0.5, -0.5), 1, 2)
+
+
+def test_estimates_are_scaled_and_bold_where_their_interval_excludes_the_neutral_value():
+    numbers = [[{"value": -0.2, "ci95": [-0.3, -0.1]}, {"value": 0.1, "ci95": [-0.1, 0.3]}]]
+    numbers += [
+        [{"value": 0.4, "ci95": None}, None],
+        [{"value": None, "ci95": None}, {"value": 1, "ci95": [1, 1]}],
+    ]
+    axes = new_figure(3, 2).subplots()
+    draw_estimate_grid(axes, numbers, ["a", "b", "c"], ["d", "e"], neutral=0.0, scale=100.0, spread=50.0)
+    found = [(text.get_text(), text.get_fontweight()) for text in axes.texts]
+    assert found == [("−20.0", "bold"), ("10.0", "normal"), ("40.0", "normal"), ("100.0", "bold")]
 
 
 def test_shapes_must_agree():

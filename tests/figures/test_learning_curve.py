@@ -5,7 +5,7 @@ import pytest
 from matplotlib.colors import to_hex
 
 from lifelore.core.errors import InputError
-from lifelore.figures.learning_curve import draw_curve, draw_episode_bars, draw_optimal
+from lifelore.figures.learning_curve import draw_curve
 from lifelore.figures.style import COLOURS, new_figure
 
 
@@ -34,18 +34,3 @@ def test_curve_without_interval(axes):
 def test_shapes_must_agree(axes):
     with pytest.raises(InputError, match="x and mean must agree in shape"):
         draw_curve(axes, [0, 1], [0, 1, 2], None, "lore")
-
-
-def test_optimal_line(axes):
-    draw_optimal(axes, 54.0)
-    assert list(axes.lines[0].get_ydata()) == [54.0, 54.0]
-
-
-def test_bars_stand_in_order_and_mark_the_cap(axes):
-    draw_episode_bars(axes, ["q-learning", "eps-QSAP"], [400, 1000], [(350, 450), None], cap=1000)
-    widths = [bar.get_width() for bar in axes.patches]
-    tops = [bar.get_y() for bar in axes.patches]
-    assert widths == [400, 1000]
-    assert tops[0] > tops[1]
-    assert [text.get_text() for text in axes.texts] == ["400", "≥ 1000"]
-    assert list(axes.lines[0].get_xdata()) == [350, 450]

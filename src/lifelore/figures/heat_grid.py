@@ -1,7 +1,7 @@
 """A table of numbers as colours around a neutral value; what differs from it for certain is set in bold."""
 
-from collections.abc import Callable, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -25,7 +25,7 @@ def draw_heat_grid(
     good: str = "high",
     ratio: bool = False,
     words: Callable[[float], str] = "{:.1f}".format,
-    outlined: tuple[int, int] | None = None,
+    outlined: tuple[int | None, int] | None = None,
 ) -> None:
     """Draw the table.
 
@@ -44,9 +44,9 @@ def draw_heat_grid(
     ratio : bool
         Values are ratios: `spread` is a factor, so that half is as far from 1 as double.
     words : callable
-        A value's text.
+        A value's text; its minus signs are set as such.
     outlined : (row, column), optional
-        The cell to frame.
+        The cell to frame; a row of None frames the whole column.
     """
     from matplotlib.colors import LinearSegmentedColormap
 
@@ -61,7 +61,7 @@ def draw_heat_grid(
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             axes.text(
-                column, row, words(value), ha="center", va="center", fontsize=7.5,
+                column, row, words(value).replace("-", "−"), ha="center", va="center", fontsize=7.5,
                 color=PAPER if abs(scaled[row, column]) > 0.75 else INK,
                 fontweight="bold" if certain[row, column] else "normal",
             )  # fmt: skip
@@ -69,8 +69,45 @@ def draw_heat_grid(
     if outlined is not None:
         from matplotlib.patches import Rectangle
 
-        corner = (outlined[1] - 0.5, outlined[0] - 0.5)
-        axes.add_patch(Rectangle(corner, 1, 1, fill=False, edgecolor=INK, linewidth=1.6, clip_on=False, zorder=3))
+        first, height = (0, len(rows)) if outlined[0] is None else (outlined[0], 1)
+        frame = Rectangle((outlined[1] - 0.5, first - 0.5), 1, height, fill=False, edgecolor=INK, linewidth=1.6)
+        frame.set(clip_on=False, zorder=3)
+        axes.add_patch(frame)
+
+
+def draw_estimate_grid(
+    axes: "Axes",
+    numbers: Sequence[Sequence[Mapping[str, Any] | None]],
+    rows: Sequence[str],
+    columns: Sequence[str],
+    *,
+    neutral: float,
+    scale: float = 1.0,
+    **look: Any,
+) -> None:
+    """Draw a table of estimates; bold are those whose 95 % interval excludes `neutral`.
+
+    Parameters
+    ----------
+    axes : matplotlib axes
+    numbers : n_rows of n_columns
+        ``{"value", "ci95"}`` each, or None; a number without an interval is not bold.
+    rows, columns : sequence of str
+    neutral : float
+        In the units of what is written.
+    scale : float
+        Factor from the numbers to what is written, such as 100 for percent.
+    look : mapping
+        Passed on to `draw_heat_grid`.
+    """
+    values = [[np.nan if n is None or n["value"] is None else scale * n["value"] for n in row] for row in numbers]
+    certain = [[_excludes(n, neutral / scale) for n in row] for row in numbers]
+    draw_heat_grid(axes, values, certain, rows, columns, neutral=neutral, **look)
+
+
+def _excludes(number: Mapping[str, Any] | None, value: float) -> bool:
+    interval = number["ci95"] if number else None
+    return bool(interval) and not interval[0] <= value <= interval[1]
 
 
 def _label(axes: "Axes", rows: Sequence[str], columns: Sequence[str]) -> None:

@@ -3,13 +3,13 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from lifelore.figures.style import BLUE, INK
+from lifelore.figures.style import BLUE, INK, PAPER
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 Number = Mapping[str, Any]
-"""``{"value", "ci95"}``; `ci95` is (low, high) or None."""
+"""``{"value", "ci95"}``; `ci95` is (low, high) or None. With ``words`` it has a text of its own."""
 
 
 def draw_interval_bars(
@@ -67,7 +67,7 @@ def draw_interval_bars(
                 axes.plot(*ends, color=INK, linewidth=1.1, solid_capstyle="butt")
             if words:
                 end = max(number["value"], interval[1] if interval else number["value"])
-                _write(axes, words(number["value"]), end, at, horizontal)
+                _write(axes, number.get("words") or words(number["value"]), end, at, horizontal)
     _ticks(axes, names, horizontal)
     if level is not None:
         (axes.axvline if horizontal else axes.axhline)(level, color=INK, linestyle=(0, (1, 2)), linewidth=1.1)
@@ -92,7 +92,10 @@ def _has(axes: "Axes", label: str) -> bool:
 def _write(axes: "Axes", text: str, end: float, at: float, horizontal: bool) -> None:
     place, offset = ((end, at), (4, 0)) if horizontal else ((at, end), (0, 3))
     across, along = ("left", "center") if horizontal else ("center", "bottom")
-    axes.annotate(text, place, offset, textcoords="offset points", fontsize=7.5, ha=across, va=along)
+    axes.annotate(
+        text, place, offset, textcoords="offset points", fontsize=7.5, ha=across, va=along, zorder=7,
+        bbox={"facecolor": PAPER, "alpha": 0.8, "edgecolor": "none", "pad": 0.4}, linespacing=0.95,
+    )  # fmt: skip
 
 
 def _ticks(axes: "Axes", names: Sequence[str], horizontal: bool) -> None:

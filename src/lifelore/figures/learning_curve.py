@@ -1,13 +1,12 @@
-"""Learning curves: a line for the mean, a shaded interval, and bars for the episodes a method takes."""
+"""A method's learning curve in its colour: a line for the mean and a shaded interval."""
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.core.errors import InputError
-from lifelore.figures.style import INK, colour_of, width_of
+from lifelore.figures.style import colour_of, width_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,38 +41,3 @@ def draw_curve(
         axes.fill_between(x, *interval, color=colour, alpha=0.18, linewidth=0)
     width = width_of(name)
     axes.plot(x, mean, color=colour, label=label or name, linewidth=width, zorder=10 - width)
-
-
-def draw_optimal(axes: "Axes", value: float) -> None:
-    """The dotted line of the average optimal return."""
-    axes.axhline(value, color=INK, linestyle=(0, (1, 2)), linewidth=1.2, label="optimal", zorder=1)
-
-
-def draw_episode_bars(
-    axes: "Axes", names: Sequence[str], episodes: ArrayLike, intervals: Sequence, cap: float
-) -> None:
-    """Bars of episodes taken, one a method; a bar that ends at `cap` is marked ≥.
-
-    Parameters
-    ----------
-    axes : matplotlib axes
-    names : sequence of str
-        Keys of `style.COLOURS`, top to bottom.
-    episodes : (n,)
-    intervals : sequence of (low, high) or None
-    cap : float
-        The number of episodes run; runs that never arrive count as this many.
-    """
-    values = np.asarray(episodes, float)
-    places = -np.arange(len(values))
-    axes.barh(places, values, height=0.72, color=[colour_of(name) for name in names], alpha=0.9)
-    for place, value, interval in zip(places, values, intervals, strict=True):
-        if interval:
-            axes.plot(interval, [place, place], color=INK, linewidth=1.1, solid_capstyle="butt")
-        text = f"≥ {value:.0f}" if value >= cap else f"{value:.0f}"
-        axes.annotate(
-            text, (max(value, interval[1] if interval else value), place), (4, 0),
-            textcoords="offset points", va="center", fontsize=7.5,
-        )  # fmt: skip
-    axes.set(yticks=[], ylim=(places[-1] - 0.6, 0.6))
-    axes.spines["left"].set_visible(False)

@@ -18,7 +18,7 @@ from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import NotFoundError, StoreError
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
 MAX_BYTES = 300_000
 """Largest PNG that `save_figure` writes: figures are committed."""
@@ -51,6 +51,11 @@ COLOURS = {
     "left": SKY,
     "listed": PURPLE,
     "phase": ORANGE,
+    # sets of features in the modified factory
+    "phi1": ORANGE,
+    "phi2": GREEN,
+    "phi3": BLUE,
+    "phi4": PURPLE,
 }
 """Colour by agent or method, told apart by people with any common colour blindness (after Okabe and Ito)."""
 
@@ -121,6 +126,12 @@ def new_figure(width: float, height: float) -> "Figure":
     figure = Figure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
+
+
+def two_rows(figure: "Figure", heights: tuple[float, float]) -> tuple["SubFigure", "SubFigure"]:
+    """An upper and a lower part of these relative heights, each with a legend and a caption of its own."""
+    upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=heights, hspace=0.02)[:, 0]
+    return upper, lower
 
 
 def save_figure(figure: "Figure", path: str | Path) -> Path:

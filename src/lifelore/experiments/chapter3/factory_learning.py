@@ -1,7 +1,7 @@
-"""Learners in the factory, with priors of several makes, on streams that they share.
+"""Learners in the factory with learnt and hand-made priors, on shared random streams.
 
-A run is a sequence of random tasks of so many components each. All that is compared in a task meets the same
-world and the same random numbers of its own, so differences between methods are paired. Thesis: §3.4.2, §3.4.3.
+A run is a sequence of random tasks with the same number of components. All methods meet a task with the same
+random numbers, so differences between methods are paired. Thesis: §3.4.2, §3.4.3.
 """
 
 from collections.abc import Iterable, Mapping
@@ -21,9 +21,21 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.factory import ACTION_NAMES, Factory, FactoryTask
 from lifelore.domains.factory.layout import factory
+from lifelore.experiments.engine.grid import Grid
 from lifelore.experiments.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
+PLAIN, LEARNT = "uniform", "learnt"
+"""Q-learning, and ε-QSAP with a prior from policies."""
+KEYS = ("encoding", "alpha0", "ties", "schedule")
+"""The choices left open that make a cell of the grid."""
+ENCODINGS = {
+    "global": "stage of every component",
+    "left": "what is left to do",
+    "listed": "stages in the list's order",
+    "phase": "procuring or assembling",
+}
+"""Encodings of a configuration in words."""
 
 
 class Solved(NamedTuple):
@@ -55,6 +67,16 @@ def tasks_of(settings: Mapping, seed: int, k: int, run: int, n_tasks: int) -> li
     return [floor(settings["discount"]).draw_components(random, k) for _ in range(n_tasks)]
 
 
+def grid_of(settings: Mapping, hand_made: Iterable[str] = ()) -> Grid:
+    """The grid: encoding × α⁰ × ties × schedule of ε.
+
+    Hand-made priors do not read the encoding; Q-learning reads the schedule alone.
+    """
+    crossed = {"encoding": "encodings", "alpha0": "alpha0", "ties": "ties", "schedule": "schedules"}
+    reads = {PLAIN: ("schedule",), **dict.fromkeys(hand_made, KEYS[1:])}
+    return Grid.crossed(settings, KEYS, crossed, reads=reads)
+
+
 def problem_of(settings: Mapping, components: tuple[int, ...], stream_of: tuple) -> Problem:
     """The problem of a list of components; `stream_of` names its streams."""
     known = solved(components, settings["discount"])
@@ -69,29 +91,28 @@ def floor(discount: float) -> Factory:
 
 @cache
 def solved(components: tuple[int, ...], discount: float) -> Solved:
-    """A task solved exactly; kept, since runs draw the same lists again."""
+    """A task solved exactly; cached, since runs draw the same lists again."""
     task = floor(discount).task(components)
     tables = task.tables()
     q = task.optimal_q(tables)
     best = best_actions(q)
     best[task.completed] = False
-    way, reward = _walk(tables, q, int(tables.starts[0]))
+    way, reward = optimal_way(tables, q)
     return Solved(task, best, way, float(q[tables.starts[0]].max()), reward)
 
 
-def _walk(tables: Tables, q: NDArray[np.float64], state: int) -> tuple[NDArray[np.int64], float]:
-    """The states and the summed reward of the first best actions, to the end."""
-    way, total, ended = [], 0.0, False
-    while not ended:
-        action = int(q[state].argmax())
+def optimal_way(tables: Tables, preference: NDArray) -> tuple[NDArray[np.int64], float]:
+    """States and summed reward on the way from the start to the end, by the first action of largest `preference`.
+
+    `preference` is (n_states, n_actions), such as Q or marks of best actions; the world is deterministic.
+    """
+    state, way, total, event = int(tables.starts[0]), [], 0.0, 0
+    while not event & TERMINAL:
+        action = int(preference[state].argmax())
         way.append(state)
         total += float(tables.reward[state, action, 0])
-        ended = bool(tables.event[state, action, 0] & TERMINAL)
-        state = int(tables.next_state[state, action, 0])
+        state, event = int(tables.next_state[state, action, 0]), int(tables.event[state, action, 0])
     return np.array(way), total
-
-
-# ---- priors ------------------------------------------------------------------------------------------
 
 
 def exact_prior(known: Iterable[Solved], encoding: str, alpha0: float) -> ActionPrior:
@@ -105,7 +126,7 @@ def exact_prior(known: Iterable[Solved], encoding: str, alpha0: float) -> Action
 def hand_made_prior(advice: NDArray[np.bool_], weight: float, alpha0: float) -> ActionPrior:
     """A person's advice (n_states, n_actions) as a prior over the states of one task.
 
-    It is held as firmly as if `weight` policies had been seen to follow it.
+    It counts as much as `weight` policies that follow it.
     """
     prior = ActionPrior(N_ACTIONS, alpha0)
     prior.update(np.arange(len(advice)), advice, weight)
@@ -127,15 +148,12 @@ def hand_made_rows(problem: Problem, prior: ActionPrior, ties: str) -> Rows:
     return prior_rows(problem.tables, np.arange(problem.tables.n_states), prior.probs, ties)
 
 
-# ---- learning ----------------------------------------------------------------------------------------
-
-
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
     return learnt(problem.tables, problem.stream, rows, schedule)
 
 
 def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:
-    """The discounted return from the start of what has been learnt; 0 where it has no policy there."""
+    """The discounted return of the greedy policy from the start; 0 where it has no policy there."""
     values = policy_values(problem.tables, greedy_policy(q), problem.solved.task.domain.discount)
     return float(values[problem.tables.starts[0]])

@@ -1,17 +1,21 @@
-"""The cells of C3.5 and C3.6: a sequence of factory tasks, each learnt with the prior of all before it.
+"""Cells of C3.5 and C3.6: a sequence of factory tasks, each learnt with the prior of all before it.
 
-Measuring and drawing live elsewhere, so that they can change without a new run. Thesis: §3.4.3, Figures 3.8, 3.9.
+Thesis: §3.4.3, Figures 3.8 and 3.9.
 """
 
 from collections.abc import Mapping
+from functools import cache
 
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.experiments.chapter3.factory_learning import (
+    LEARNT,
     N_ACTIONS,
-    Problem,
+    PLAIN,
     exact_prior,
+    grid_of,
     learn_task,
     learnt_rows,
     problem_of,
@@ -20,19 +24,17 @@ from lifelore.experiments.chapter3.factory_learning import (
     with_pseudo_count,
 )
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.engine.grid import run_grid
 
 SOURCES = ("exact", "own")
-"""Whose policies are counted: exact optimal ones, or those that the learner has ended with itself."""
+"""The policies that are counted: exact optimal ones, or those that the learner ends with."""
 
 
 def cells(settings: Mapping) -> list[dict]:
     """The sequence of each run for each number of components; the grid for the first of them."""
-    series = [
-        {"kind": "series", "components": k, "run": run}
-        for k in settings["components"]
-        for run in range(settings["runs"])
-    ]
-    return series + [{"kind": "grid", "run": run} for run in range(settings["runs"])]
+    runs = range(settings["runs"])
+    series = [{"kind": "series", "components": k, "run": run} for k in settings["components"] for run in runs]
+    return series + [{"kind": "grid", "run": run} for run in runs]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -42,7 +44,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean reward of an episode in each task, (prior_tasks + 1,) a method; the n-th has n tasks behind it."""
+    """Mean reward of an episode in each task, (prior_tasks + 1,) a method; task n has n tasks before it."""
     default, k, run = settings["default"], cell["components"], cell["run"]
     schedule = schedule_of(settings, default["schedule"])
     tasks = tasks_of(settings, seed, k, run, settings["prior_tasks"] + 1)
@@ -51,11 +53,11 @@ def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
         for source in SOURCES
         for encoding in settings["encodings"]
     }
-    rewards: dict[str, list[float]] = {"uniform": [], **{" ".join(key): [] for key in priors}}
+    rewards: dict[str, list[float]] = {PLAIN: [], **{" ".join(key): [] for key in priors}}
     optimal, seen = [], []
     for n, components in enumerate(tasks):
         problem = problem_of(settings, components, (seed, "factory", k, run, n))
-        rewards["uniform"].append(float(learn_task(problem, None, schedule)[0].rewards.mean()))
+        rewards[PLAIN].append(float(learn_task(problem, None, schedule)[0].rewards.mean()))
         optimal.append(problem.solved.optimal_reward)
         seen.append(components in tasks[:n])
         for (source, encoding), prior in priors.items():
@@ -68,41 +70,36 @@ def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def _grid(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """The last task of the sequence, with priors of few and of all tasks before it, used in every way."""
+    """Mean reward of an episode in the sequence's last task, with priors of few and of all tasks before it."""
     k, run, last = settings["components"][0], cell["run"], settings["prior_tasks"]
     tasks = tasks_of(settings, seed, k, run, last + 1)
     problem = problem_of(settings, tasks[last], (seed, "factory", k, run, last))
-    priors = {
-        (encoding, n): exact_prior([solved(t, settings["discount"]) for t in tasks[:n]], encoding, 1.0)
-        for encoding in settings["encodings"]
-        for n in settings["grid_tasks"]
-    }
-    uniform = []
-    for epsilon in settings["schedules"]:
-        curve, _ = learn_task(problem, None, schedule_of(settings, epsilon))
-        uniform.append({"schedule": epsilon, "reward": float(curve.rewards.mean())})
-    methods = []
-    for how in uses(settings):
-        of_encoding = {n: priors[how["encoding"], n] for n in settings["grid_tasks"]}
-        methods.append({**how, "rewards": _rewards(settings, problem, of_encoding, how)})
-    return {"uniform": uniform, "methods": methods, "optimal": problem.solved.optimal_reward}
+
+    @cache
+    def prior_of(encoding: str, n: int) -> ActionPrior:
+        return exact_prior([solved(t, settings["discount"]) for t in tasks[:n]], encoding, 1.0)
+
+    def numbers(method: str, choice: Mapping) -> dict:
+        schedule = schedule_of(settings, choice["schedule"])
+        if method == PLAIN:
+            return {"rewards": [float(learn_task(problem, None, schedule)[0].rewards.mean())] * 2}
+        found = []
+        for n in settings["grid_tasks"]:
+            prior = with_pseudo_count(prior_of(choice["encoding"], n), choice["alpha0"])
+            rows = learnt_rows(problem, prior, choice["encoding"], choice["ties"])
+            found.append(float(learn_task(problem, rows, schedule)[0].rewards.mean()))
+        return {"rewards": found}
+
+    found = list(run_grid(grid_of(settings), "prior", PLAIN, (LEARNT,), numbers))
+    return {"found": found, "optimal": problem.solved.optimal_reward}
 
 
-def uses(settings: Mapping) -> list[dict]:
-    """The ways to make and use a prior: encoding × α⁰ × ties × schedule of ε."""
-    return [
-        {"encoding": encoding, "alpha0": alpha0, "ties": ties, "schedule": schedule}
-        for encoding in settings["encodings"]
-        for alpha0 in settings["alpha0"]
-        for ties in settings["ties"]
-        for schedule in settings["schedules"]
-    ]
-
-
-def _rewards(settings: Mapping, problem: Problem, priors: Mapping[int, ActionPrior], how: Mapping) -> list[float]:
-    """Mean reward of an episode with the prior of each number of tasks, in their order."""
-    schedule, found = schedule_of(settings, how["schedule"]), []
-    for prior in priors.values():
-        rows = learnt_rows(problem, with_pseudo_count(prior, how["alpha0"]), how["encoding"], how["ties"])
-        found.append(float(learn_task(problem, rows, schedule)[0].rewards.mean()))
-    return found
+def check(settings: Mapping) -> None:
+    """Refuse late tasks that overlap the first ones, and numbers of tasks that do not rise."""
+    if 2 * settings["late"] > settings["prior_tasks"]:
+        raise InputError(
+            f"late must be at most half of prior_tasks ({settings['prior_tasks']}), got {settings['late']}"
+        )
+    few, many = settings["grid_tasks"]
+    if few >= many:
+        raise InputError(f"grid_tasks must be two numbers, rising, got {settings['grid_tasks']}")

@@ -1,7 +1,7 @@
 """Tasks of the modified factory, each with a layout of its own, solved and as learners meet them.
 
-Everything compared in a task meets the same layout, list and random numbers of its own, so that differences
-between methods are paired. Thesis: §3.4.4.
+All methods meet a task with the same layout, list and random numbers, so that differences between methods are
+paired. Thesis: §3.4.4.
 """
 
 from collections.abc import Mapping
@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from lifelore.action.features.feature_set import FeatureSet
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
-from lifelore.core.mdp import TERMINAL, Tables
+from lifelore.core.mdp import Tables
 from lifelore.core.planning.planning import best_actions
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import (
@@ -26,15 +26,18 @@ from lifelore.domains.factory.contexts import (
 )
 from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
 from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.experiments.chapter3.factory_learning import optimal_way
 from lifelore.experiments.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)
 FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
 """φ4: the ten features of the modified factory."""
 CARDINALS = PHI["phi2"]
-"""N, W, E and S of the robot's cell: what the thesis ends up with."""
+"""N, W, E and S of the robot's cell: the features that the thesis selects."""
 DIAGONALS = ("PosUL", "PosUR", "PosDL", "PosDR")
 OWN_CELL, ITEMS = "PosMM", "Items"
+FEATURES = (*CARDINALS, OWN_CELL, *DIAGONALS, ITEMS)
+"""All ten: first the four that the thesis finds to matter, then the others."""
 
 
 class Problem(NamedTuple):
@@ -64,19 +67,8 @@ def problem_of(settings: Mapping, names: tuple) -> Problem:
     q = task.optimal_q(tables)
     best = best_actions(q)
     best[task.completed] = False
-    way, optimal = _walk(tables, best)
+    way, optimal = optimal_way(tables, best)
     return Problem(task, tables, best, features(task), way, optimal, names)
-
-
-def _walk(tables: Tables, best: NDArray[np.bool_]) -> tuple[NDArray[np.int64], float]:
-    """The states and the summed reward of the first best actions, to the end; the world is deterministic."""
-    state, way, total, event = int(tables.starts[0]), [], 0.0, 0
-    while not event & TERMINAL:
-        action = int(best[state].argmax())
-        way.append(state)
-        total += float(tables.reward[state, action, 0])
-        state, event = int(tables.next_state[state, action, 0]), int(tables.event[state, action, 0])
-    return np.array(way), total
 
 
 def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:

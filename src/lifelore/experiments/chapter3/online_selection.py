@@ -9,7 +9,6 @@ seen. Of an *exact* one: ``all`` states, or ``way``, those on an optimal way fro
 Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
 """
 
-from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -102,14 +101,3 @@ class OnlineAgent:
     def chosen(self) -> tuple[str, ...]:
         """Names of the features in use."""
         return self.selection.chosen.names if self.selection else FULL_SET.names
-
-
-def learn_uniformly(problem: Problem, schedule: Schedule) -> Curve:
-    """The curve of Q-learning without a prior."""
-    return learn_problem(problem, None, schedule)[0]
-
-
-def defaults_and_others(default: Mapping, choices: Mapping[str, list]) -> list[dict]:
-    """The default, then every other choice one at a time."""
-    others = [{**default, key: value} for key, of in choices.items() for value in of if value != default[key]]
-    return [dict(default), *others]

@@ -48,6 +48,11 @@ def is_below(number: Estimate, bound: float) -> bool:
     return number.ci95 is not None and number.ci95[1] < bound
 
 
+def interval_or_value(number: Estimate) -> tuple[float, float]:
+    """Ends of the 95 % interval; the value twice where there is none."""
+    return number.ci95 or (number.value, number.value)
+
+
 def share_of(cells: ArrayLike) -> Estimate:
     """The share of true `cells` (n,); a count of all there are, so without an interval."""
     cells = np.asarray(cells, float)

@@ -18,6 +18,10 @@ from lifelore.experiments.engine.cell_store import canonical
 
 T = TypeVar("T")
 
+PARTS = ("mean", "deviation", "low", "high")
+"""Parts of a summarised curve; `low` and `high` are the ends of its 95 % interval."""
+BAND = ("mean", "low", "high")
+
 
 class ResultsTable:
     """Records by their keys, in the order given.
@@ -123,12 +127,14 @@ class ResultsTable:
         answers = self.values(measure, **where)
         return Estimate(float(answers.mean()), float(np.median(answers)), None, len(answers))
 
-    def curve(self, measure: str, digits: int | None = None, **where: Any) -> dict[str, list[float]]:
+    def curve(
+        self, measure: str, digits: int | None = None, parts: Sequence[str] = PARTS, **where: Any
+    ) -> dict[str, list[float]]:
         """Mean of a curve over the records, its standard deviation and its 95 % t interval, point by point.
 
-        Returns ``{"mean", "deviation", "low", "high"}``, each (length,), rounded to `digits` decimals.
+        Returns the `parts` asked for, each (length,), rounded to `digits` decimals.
         """
-        return curve_of(self.values(measure, **where), digits)
+        return curve_of(self.values(measure, **where), digits, parts)
 
     def _places(self, where: Mapping[str, Any]) -> list[int]:
         unknown = where.keys() - set(self.keys)
@@ -143,8 +149,8 @@ class ResultsTable:
         return self._index[names].get(tuple(_hashable(where[name]) for name in names), [])
 
 
-def curve_of(curves: ArrayLike, digits: int | None = None) -> dict[str, list[float]]:
-    """Mean, standard deviation and 95 % t interval of `curves` (n, length), each (length,)."""
+def curve_of(curves: ArrayLike, digits: int | None = None, parts: Sequence[str] = PARTS) -> dict[str, list[float]]:
+    """The `parts` asked for of `curves` (n, length): mean, standard deviation, 95 % t interval, each (length,)."""
     from scipy.stats import t
 
     curves = np.asarray(curves, float)
@@ -152,7 +158,7 @@ def curve_of(curves: ArrayLike, digits: int | None = None) -> dict[str, list[flo
     deviation = curves.std(axis=0, ddof=1) if n > 1 else np.zeros(curves.shape[1])
     half = t.ppf(0.975, n - 1) * deviation / np.sqrt(n) if n > 1 else deviation
     found = {"mean": mean, "deviation": deviation, "low": mean - half, "high": mean + half}
-    return {name: (x if digits is None else np.round(x, digits)).tolist() for name, x in found.items()}
+    return {part: (found[part] if digits is None else np.round(found[part], digits)).tolist() for part in parts}
 
 
 def tally(records: Iterable[Mapping[str, Any]], label: str) -> list[dict[str, Any]]:

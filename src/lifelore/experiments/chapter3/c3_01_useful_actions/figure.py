@@ -1,11 +1,11 @@
-"""Figure of claim C3.1: two mazes with their useful actions, and where such mazes lie among all."""
+"""Figure of claim C3.1: two mazes with their useful actions, and the useful shares of all mazes."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED
+from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
 from lifelore.figures.prior_arrows import draw_prior
 from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, house_style, new_figure
 
@@ -14,22 +14,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def draw(result: Mapping):
-    return draw_useful_actions(result, [printed / 76 for printed in PRINTED])
-
-
-_COLOURS = (BLUE, SKY, GREY)
-
-
-def draw_useful_actions(result: Mapping, printed: Sequence[float]) -> "Figure":
-    """The figure from the result of C3.1; `printed` are the thesis's shares.
-
-    Parameters
-    ----------
-    result : mapping
-        Its rows hold ``{"generator", "useful", "actions", "mazes"}`` and examples with a prior.
-    printed : sequence of float
-    """
+def draw(result: Mapping) -> "Figure":
+    """The figure from the result: examples that its rows hold, then the spread of shares."""
     examples = [row for row in result["rows"] if "example" in row]
     with house_style():
         figure = new_figure(9.2, 2.9)
@@ -38,18 +24,17 @@ def draw_useful_actions(result: Mapping, printed: Sequence[float]) -> "Figure":
         for axes, row in zip(panels, examples, strict=False):
             draw_prior(axes, row["shape"], row["cells"], row["probs"], row["counted"], negligible=0.0)
             axes.set_anchor("N")
-            actions = 4 * len(row["cells"])
-            axes.set_title(f"{row['example']} of {actions} actions useful")
-        _draw_shares(panels[-1], result, printed)
+            axes.set_title(f"{row['example']} of {4 * len(row['cells'])} actions useful")
+        _draw_shares(panels[-1], result)
     return figure
 
 
-def _draw_shares(axes: "Axes", result: Mapping, printed: Sequence[float]) -> None:
-    """How the useful share is spread over mazes, bars for each way of making them."""
+def _draw_shares(axes: "Axes", result: Mapping) -> None:
+    """Shares of mazes by useful share, bars for each generator; a line for each printed share."""
     from matplotlib.ticker import MaxNLocator
 
     generators = result["settings"]["generators"]
-    for place, (generator, colour) in enumerate(zip(generators, _COLOURS, strict=False)):
+    for place, (generator, colour) in enumerate(zip(generators, (BLUE, SKY, GREY), strict=False)):
         rows = [row for row in result["rows"] if row.get("generator") == generator]
         share = np.array([row["useful"] / row["actions"] for row in rows])
         mazes = np.array([row["mazes"] for row in rows])
@@ -58,10 +43,10 @@ def _draw_shares(axes: "Axes", result: Mapping, printed: Sequence[float]) -> Non
         axes.bar(beside, 100 * mazes / mazes.sum(), width, color=colour, label=generator)
     axes.xaxis.set_major_locator(MaxNLocator(integer=True, steps=[1, 5, 10]))
     top = axes.get_ylim()[1] * 1.2
-    for share in printed:
-        axes.axvline(100 * share, color=VERMILION, linewidth=1.3, zorder=0)
+    for share in (100 * printed / PRINTED_OF for printed in PRINTED):
+        axes.axvline(share, color=VERMILION, linewidth=1.3, zorder=0)
         axes.annotate(
-            f"thesis: {100 * share:.2f} %", (100 * share, top), (4, -1), textcoords="offset points",
+            f"thesis: {share:.2f} %", (share, top), (4, -1), textcoords="offset points",
             va="top", fontsize=7.5, color=VERMILION,
         )  # fmt: skip
     axes.set(ylim=(0, top), xlabel="useful share of all actions (%)", ylabel="share of mazes (%)")

@@ -1,9 +1,8 @@
-"""C3.1: which share of the actions of a small maze is ever useful.
+"""Cells of C3.1: which share of the actions of a small maze is ever useful.
 
-In 7 × 7 walled mazes, 50 random goals each, the prior from exact optimal policies gives mass to some of the 4
-actions of each cell. The printed shares pin the mazes down: 55.26 % = 42/76 and 63.16 % = 48/76 need 19 free
-cells, that is 6 obstacles in the 25 cells inside the wall. How the obstacles were thrown is not stated, so two
-ways are measured: walled up one at a time without parting the rest, and uniform over all connected mazes.
+The printed shares determine the size of the mazes: 55.26 % = 42/76 and 63.16 % = 48/76 need 19 free cells, that
+is 6 obstacles in the 25 cells inside the wall. The thesis does not state how they were placed; there are two
+generators: one walls up cells one at a time without parting the rest, one is uniform over all connected mazes.
 Thesis: §3.2.2.2, Figure 3.1.
 """
 
@@ -20,29 +19,21 @@ from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
 
-PRINTED = (42, 48)
-"""Useful actions, of 76, in the two mazes of Figure 3.1."""
+PRINTED, PRINTED_OF = (42, 48), 76
+"""Useful actions in the two mazes of Figure 3.1, and all actions there."""
 CHUNK = 100
+"""Mazes a cell of the run."""
 MAX_DRAWS = 20_000
-GENERATORS = ("walled up", "uniform")
-
-
-def check(settings: Mapping) -> None:
-    unknown = set(settings["generators"]) - set(GENERATORS)
-    if unknown or not settings["generators"]:
-        raise InputError(f"generators must be among {', '.join(GENERATORS)}, got {settings['generators']}")
-    if settings["mazes"] < 1 or settings["tasks"] < 1:
-        raise InputError(f"mazes and tasks must be at least 1, got {settings['mazes']} and {settings['tasks']}")
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Mazes in lots of `CHUNK`, by generator."""
+    """Mazes in chunks, by generator."""
     firsts = range(0, settings["mazes"], CHUNK)
     return [{"generator": g, "first": first} for g in settings["generators"] for first in firsts]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Counts of actions in each maze of a lot, and an example of each share that the thesis prints."""
+    """Counts of actions in each maze of a chunk, and an example of each printed share."""
     last = min(cell["first"] + CHUNK, settings["mazes"])
     found = {"generator": cell["generator"], "mazes": [], "examples": {}}
     for number in range(cell["first"], last):
@@ -79,7 +70,7 @@ def uniform_maze(random: np.random.Generator, size: int, obstacles: int, discoun
 
 
 def prior_of(world: GridWorld, goals: NDArray[np.int64], goal_rows: bool = False) -> ActionPrior:
-    """The prior from exact optimal policies; `goal_rows` counts every goal's own row too, as one must not."""
+    """The prior from exact optimal policies; `goal_rows` counts every goal's own row too, an error (E3)."""
     prior = ActionPrior(4)
     for goal, times in zip(*np.unique(goals, return_counts=True), strict=True):
         best = best_actions(optimal_q(world.task(int(goal)).tables(), world.discount))

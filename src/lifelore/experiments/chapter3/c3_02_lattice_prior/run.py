@@ -1,13 +1,13 @@
-"""The cells of C3.2: every way to use a prior on the lattice, and the prior accumulated task by task.
+"""Cells of C3.2: every configuration of a prior on the lattice, and the prior accumulated task by task.
 
-Measuring and drawing live elsewhere, so that they can change without a new run. Thesis: §3.4.1, Figure 3.3.
+Thesis: §3.4.1, Figure 3.3.
 """
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.action.priors.action_prior import FORMS, ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learning import Rows, Schedule
 from lifelore.core.planning.planning import learnt_best_actions, mean_start_value
@@ -25,16 +25,17 @@ from lifelore.experiments.chapter3.lattice_learning import (
     summary,
 )
 from lifelore.experiments.engine.curve_blocks import block_means
-from lifelore.experiments.engine.learning_settings import check_counts, check_learning, check_windows
 
 READ_ALPHA0 = ("proportion", "dirichlet", "tempered")
 """Forms that α⁰ enters; the others are measured once, with α⁰ None."""
-PLAIN = {"ties": None, "alpha0": None, "form": None}
+KEYS = ("ties", "alpha0", "form")
+"""Keys of a configuration."""
+PLAIN = dict.fromkeys(KEYS)
 """The configuration that is Q-learning."""
 
 
 def configurations(settings: Mapping) -> list[dict]:
-    """Ways to use a prior: ties × form × α⁰, the last only where the form reads it."""
+    """Configurations of a prior: form × α⁰ × ties; α⁰ is None where the form does not read it."""
     return [
         {"ties": ties, "alpha0": alpha0, "form": form}
         for form in settings["forms"]
@@ -133,30 +134,12 @@ def _same_bits(settings: Mapping, run: Run) -> bool:
 
 
 def check(settings: Mapping) -> None:
-    _check_sizes(settings)
-    check_learning(settings)
-    default = settings["default"]
-    unknown = set(settings["forms"]) - set(FORMS)
-    if unknown:
-        raise InputError(f"forms must be among {', '.join(FORMS)}, got {', '.join(map(str, unknown))}")
-    in_grid = (
-        default.get("ties") in settings["ties"]
-        and default.get("form") in settings["forms"]
-        and default.get("alpha0") in settings["alpha0"]
-        and default.get("schedule") in settings["schedules"]
-    )
-    if not in_grid:
-        raise InputError(f"default must be a cell of the grid of ties, schedules, alpha0 and forms, got {default}")
-    if settings["training_tasks"] not in settings["online_tasks"] or 0 not in settings["online_tasks"]:
+    """Refuse series that lack the number of training tasks, and more tasks than the lattice has goals."""
+    if not {0, settings["training_tasks"]} <= {*settings["online_tasks"]}:
         raise InputError(
             f"online_tasks must contain 0 and training_tasks ({settings['training_tasks']}), "
             f"got {settings['online_tasks']}"
         )
-
-
-def _check_sizes(settings: Mapping) -> None:
-    check_counts(settings, ("runs", "training_tasks", "test_tasks", "episodes", "max_steps", "window", "last"))
-    check_windows(settings, ("window", "last"))
     n_states = lattice(settings["size"], settings["discount"]).n_states
     for key in ("test_tasks", "online_tasks"):
         if np.max(settings[key]) > n_states:

@@ -1,6 +1,6 @@
-"""The cells of C3.4: learnt and hand-made priors in the factory, used in every way that the thesis leaves open.
+"""Cells of C3.4: learnt and hand-made priors in the factory, over the grid of choices that the thesis leaves open.
 
-Measuring and drawing live elsewhere, so that they can change without a new run. Thesis: §3.4.3, Figure 3.7.
+Thesis: §3.4.3, Figure 3.7.
 """
 
 from collections.abc import Iterator, Mapping
@@ -9,17 +9,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learning import Rows
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.knowledge import expert_actions, incorrect_actions, invariances
 from lifelore.experiments.chapter3.factory_learning import (
+    KEYS,
+    LEARNT,
     N_ACTIONS,
+    PLAIN,
     Problem,
     exact_prior,
     floor,
     greedy_return,
+    grid_of,
     hand_made_prior,
     hand_made_rows,
     learn_task,
@@ -29,29 +31,14 @@ from lifelore.experiments.chapter3.factory_learning import (
     tasks_of,
     with_pseudo_count,
 )
-from lifelore.experiments.chapter3.factory_settings import check_components, check_open, check_sizes
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_means
+from lifelore.experiments.engine.grid import run_grid
 
 ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
+"""Actions that a person advises, by name of the hand-made prior."""
 DRAWN = 0
-"""The run whose learnt prior is kept for the figure."""
-
-
-def makes(settings: Mapping) -> list[dict]:
-    """The makes of prior: each hand-made one, and the learnt one in each encoding of states."""
-    hand_made = [{"prior": name, "encoding": None} for name in ADVICE]
-    return hand_made + [{"prior": "learnt", "encoding": encoding} for encoding in settings["encodings"]]
-
-
-def uses(settings: Mapping) -> list[dict]:
-    """The ways to use a prior: α⁰ × ties × schedule of ε."""
-    return [
-        {"alpha0": alpha0, "ties": ties, "schedule": schedule}
-        for alpha0 in settings["alpha0"]
-        for ties in settings["ties"]
-        for schedule in settings["schedules"]
-    ]
+"""The run whose learnt prior the figure shows."""
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -60,29 +47,29 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: training tasks, and one test task learnt in every way."""
+    """One run: training tasks, and one test task learnt with every prior in every cell of the grid."""
     run, k, default = cell["run"], settings["components"], settings["default"]
     training = tasks_of(settings, seed, k, run, settings["training_tasks"])
     components = floor(settings["discount"]).draw_components(stream(seed, "factory", k, run, "test"), k)
     problem = problem_of(settings, components, (seed, "factory", k, run, "test"))
     priors = _priors(settings, training, problem)
-    read = {name: with_pseudo_count(prior, default["alpha0"]) for name, prior in priors.items()}
+    at_default = {name: with_pseudo_count(prior, default["alpha0"]) for name, prior in priors.items()}
     found = {
         **cell,
         "optimal_return": problem.solved.optimal_return,
         "optimal_reward": problem.solved.optimal_reward,
         "seen": components in training,
         "methods": list(_methods(settings, problem, priors)),
-        "masses": _masses(problem, read),
-        "unseen": {encoding: _unseen(problem, read[encoding], encoding) for encoding in settings["encodings"]},
+        "masses": _masses(problem, at_default),
+        "unseen": {name: _unseen(problem, at_default[name], name) for name in settings["encodings"]},
     }
     if run == DRAWN:
-        found["drawn"] = {"components": components, **_drawn(problem, read[default["encoding"]], default)}
+        found["drawn"] = {"components": components, **_drawn(problem, at_default[default["encoding"]], default)}
     return found
 
 
 def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem) -> dict[str, ActionPrior]:
-    """Each make by name: encodings, expert, incorrect; a person is as sure as the training tasks make a prior."""
+    """Learnt priors by encoding, and hand-made ones, which count as much as the training tasks."""
     known = [solved(components, settings["discount"]) for components in training]
     found = {encoding: exact_prior(known, encoding, 1.0) for encoding in settings["encodings"]}
     for name, advice_of in ADVICE.items():
@@ -91,43 +78,30 @@ def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem
 
 
 def _methods(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior]) -> Iterator[dict]:
-    """Every make in every use, and Q-learning under every schedule."""
-    for schedule in settings["schedules"]:
-        how = {"prior": "uniform", "encoding": None, "alpha0": None, "ties": None, "schedule": schedule}
-        yield _summary(settings, problem, None, how)
-    for make in makes(settings):
-        prior = priors[make["encoding"] or make["prior"]]
-        for use in uses(settings):
-            rows = _rows(problem, with_pseudo_count(prior, use["alpha0"]), make["encoding"], use["ties"])
-            yield _summary(settings, problem, rows, {**make, **use})
+    """Rewards of an episode and the return of the learnt policy, of every prior in every cell of the grid."""
+    early, last, default = settings["early"], settings["last"], settings["default"]
 
+    def numbers(name: str, cell: Mapping) -> dict:
+        rows = None
+        if name != PLAIN:
+            prior = with_pseudo_count(priors[cell["encoding"] or name], cell["alpha0"])
+            rows = (
+                hand_made_rows(problem, prior, cell["ties"])
+                if name in ADVICE
+                else learnt_rows(problem, prior, cell["encoding"], cell["ties"])
+            )
+        curve, learner = learn_task(problem, rows, schedule_of(settings, cell["schedule"]))
+        rewards = curve.rewards
+        shown = all(cell[key] in (None, default[key]) for key in KEYS[1:])
+        return {
+            "first": float(rewards[0]),
+            "early": float(rewards[:early].mean()),
+            "last": float(rewards[-last:].mean()),
+            "greedy": greedy_return(problem, learner.q),
+            **({"curve": block_means(rewards)} if shown else {}),
+        }
 
-def _rows(problem: Problem, prior: ActionPrior, encoding: str | None, ties: str) -> Rows:
-    if encoding is None:
-        return hand_made_rows(problem, prior, ties)
-    return learnt_rows(problem, prior, encoding, ties)
-
-
-def _summary(settings: Mapping, problem: Problem, rows: Rows | None, how: Mapping) -> dict:
-    """What is kept of one learner: rewards of an episode, and the return of what it has learnt."""
-    curve, learner = learn_task(problem, rows, schedule_of(settings, how["schedule"]))
-    rewards, early, last = curve.rewards, settings["early"], settings["last"]
-    found = {
-        **how,
-        "first": float(rewards[0]),
-        "early": float(rewards[:early].mean()),
-        "last": float(rewards[-last:].mean()),
-        "greedy": greedy_return(problem, learner.q),
-    }
-    if is_default(settings, how):
-        found["curve"] = block_means(rewards)
-    return found
-
-
-def is_default(settings: Mapping, how: Mapping) -> bool:
-    """Whether a prior is used in the default's way, whatever its make; Q-learning by the schedule alone."""
-    keys = ("schedule",) if how["prior"] == "uniform" else ("alpha0", "ties", "schedule")
-    return all(how[key] == settings["default"][key] for key in keys)
+    yield from run_grid(grid_of(settings, ADVICE), "prior", PLAIN, (*ADVICE, LEARNT), numbers)
 
 
 def _contexts(problem: Problem, name: str) -> NDArray[np.int64]:
@@ -169,12 +143,3 @@ def _drawn(problem: Problem, prior: ActionPrior, default: Mapping) -> dict[str, 
         probs = np.round(prior.probs(contexts), 3).tolist()
         found[name] = [row if known else None for row, known in zip(probs, seen, strict=True)]
     return found
-
-
-def check(settings: Mapping) -> None:
-    check_sizes(settings, "runs", "training_tasks", "episodes", "max_steps", "early", "last")
-    check_components([settings["components"]])
-    check_open(settings)
-    for key in ("early", "last"):
-        if settings[key] > settings["episodes"]:
-            raise InputError(f"{key} must be at most episodes ({settings['episodes']}), got {settings[key]}")

@@ -2,16 +2,19 @@
 
 from collections.abc import Mapping, Sequence
 
-from lifelore.core.metrics import Estimate
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter3 import factory_gains
-from lifelore.experiments.chapter3.factory_gains import rows
+from lifelore.experiments.chapter3.factory_gains import Series, rows
 
 __all__ = ["measure", "rows"]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The measures of C3.5 for four components, and what is gained beside one component."""
-    return {
-        **factory_gains.measure(settings, results),
-        **factory_gains.against_one_component(settings, results),
-    }
+    """The measures of C3.5 for four components, and the difference from one component."""
+    many, one = (Series.of(results, k) for k in settings["components"])
+    found = {}
+    for encoding in settings["encodings"]:
+        closed, closed_one = (series.closed(f"exact {encoding}", settings["late"]) for series in (many, one))
+        found[f"closed_minus_one_component_{encoding}"] = mean_estimate(closed - closed_one)
+    default = found[f"closed_minus_one_component_{settings['default']['encoding']}"]
+    return {**factory_gains.measure(settings, results), "closed_minus_one_component": default, **found}

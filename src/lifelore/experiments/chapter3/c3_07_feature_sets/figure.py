@@ -1,9 +1,69 @@
-"""Figure of claim C3.7."""
+"""Figure of claim C3.7: rewards with priors over features, over states and without a prior; the grid."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.figures.heat_grid import draw_estimate_grid
+from lifelore.figures.style import GREY, VERMILION, colour_of, house_style, new_figure, two_rows
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+LABELS = {
+    "uniform": "no prior",
+    "state": "states",
+    "phi1": "φ1, own cell and Items",
+    "phi2": "φ2, N S E W",
+    "phi3": "φ3, φ1 and φ2",
+    "phi4": "φ4, 3×3 cells and Items",
+}
+COLOURS = {"uniform": GREY, "state": VERMILION, **{phi: colour_of(phi) for phi in LABELS if "phi" in phi}}
+BANDED = ("uniform", "state", "phi3")
+"""Methods whose deviation is shaded; six bands would hide one another."""
 
 
-def draw(result: Mapping):
-    from lifelore.experiments.chapter3.feature_curves import draw_feature_curves
+def draw(result: Mapping) -> "Figure":
+    """The figure from the result."""
+    settings = result["settings"]
+    with house_style():
+        figure = new_figure(10.6, 8.4)
+        upper, lower = two_rows(figure, (1.0, 0.82))
+        panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
+        for axes, schedule in zip(panels, settings["schedules"], strict=True):
+            draw_reward_curves(axes, result, schedule, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
+        panels[0].set_ylabel("reward of an episode")
+        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
+        _draw_grid(lower.subplots(), result)
+        lower.supxlabel(
+            f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
+            "runs, of three methods. Bold: the 95 % interval over runs excludes 0. Framed, at φ3: the default.",
+            fontsize=8, color=GREY,
+        )  # fmt: skip
+    return figure
 
-    return draw_feature_curves(result)
+
+def _draw_grid(axes: "Axes", result: Mapping) -> None:
+    default, methods = result["settings"]["default"], list(LABELS)[1:]
+    cells = [row for row in result["rows"] if "closed_phi1" in row]
+    is_default = [all(row[key] == value for key, value in default.items()) for row in cells]
+    draw_estimate_grid(
+        axes,
+        [[row[f"closed_{method}"] for method in methods] for row in cells],
+        [_name(row, default) for row in cells],
+        [LABELS[method] for method in methods],
+        neutral=0.0, scale=100.0, spread=100.0, words="{:.0f}".format,
+        outlined=(is_default.index(True), methods.index("phi3")),
+    )  # fmt: skip
+    axes.set_title("Distance from no prior to the optimum that is closed, all episodes (%)")
+
+
+def _name(row: Mapping, default: Mapping) -> str:
+    """A row's ε and ties, or the other choice in which it differs from the default."""
+    others = {
+        "encoding": "states coded '{}'", "alpha0": "α⁰ {:g}", "max_steps": "cap of {:,} steps",
+        "policies": "from {} policies",
+    }  # fmt: skip
+    changed = (words.format(row[key]) for key, words in others.items() if row[key] != default[key])
+    return next(changed, f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}")

@@ -1,9 +1,64 @@
-"""Figure of claim C3.8."""
+"""Figure of claim C3.8: how much entropy each feature saves in each set, and over the choices left open."""
 
 from collections.abc import Mapping
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
+from lifelore.figures.heat_grid import draw_heat_grid
+from lifelore.figures.interval_bars import draw_interval_bars
+from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+OVER = {"all": "all states", "way": "states of an optimal way"}
+ACTIONS = {"tied": "all best actions", "first": "the first best action"}
 
 
-def draw(result: Mapping):
-    from lifelore.experiments.chapter3.feature_bars import draw_feature_bars
+def draw(result: Mapping) -> "Figure":
+    """The figure from the result."""
+    with house_style():
+        figure = new_figure(10.2, 7.6)
+        upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
+        cells, default = result["rows"], result["settings"]["default"]
+        at = [all(row[key] == value for key, value in default.items()) for row in cells].index(True)
+        _draw_bars(upper, cells[at]["increase"])
+        _draw_grid(lower, cells, at)
+        for axes in (upper, lower):
+            axes.axvline(3.5, color=GREY, linewidth=0.8)
+        figure.supxlabel(
+            f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
+            "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
+            fontsize=8, color=GREY,
+        )  # fmt: skip
+    return figure
 
-    return draw_feature_bars(result)
+
+def _draw_bars(axes: "Axes", increase: Mapping[str, Mapping]) -> None:
+    groups = {
+        phi.replace("phi", "φ"): [of_feature.get(name) for name in FEATURES]
+        for phi, of_feature in increase.items()
+    }
+    colours = {phi.replace("phi", "φ"): colour_of(phi) for phi in increase}
+    draw_interval_bars(
+        axes, FEATURES, groups, colours=colours, horizontal=False, words=None,
+        title="Importance of each feature in the sets that contain it", label="Δ, bits lost without the feature",
+    )  # fmt: skip
+    axes.axhline(0, color=GREY, linewidth=0.8)
+    axes.grid(axis="y", color=LIGHT)
+    axes.set_xlim(-0.5, len(FEATURES) - 0.5)
+    axes.legend(loc="upper right", ncols=4)
+
+
+def _draw_grid(axes: "Axes", cells: list[Mapping], at: int) -> None:
+    values = [[1000 * row["increase"]["phi4"][f]["value"] for f in FEATURES] for row in cells]
+    selected = [[row["selected"][f] >= 0.95 for f in FEATURES] for row in cells]
+    sides = [f"{row['policies']} policies, {OVER[row['over']]},\n{ACTIONS[row['actions']]}" for row in cells]
+    draw_heat_grid(
+        axes, values, selected, sides, FEATURES, neutral=0.0, spread=float(np.max(np.abs(values))) or 1.0,
+        words="{:.0f}".format, outlined=(at, 0),
+    )  # fmt: skip
+    axes.set_title("Δ in φ4, thousandths of a bit, by what is counted")

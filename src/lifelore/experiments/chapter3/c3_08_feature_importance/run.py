@@ -1,4 +1,4 @@
-"""The cells of C3.8: how much entropy of the action prior each feature saves, in each of the sets φ1 to φ4.
+"""Cells of C3.8: how much entropy of the action prior each feature saves, in each of the sets φ1 to φ4.
 
 The thesis counts policies and does not say of which states. Counted here: every state of a task, or only those on
 an optimal way from the start to the end (what a demonstration shows); all tied-best actions (Eq. 3.1), or the
@@ -15,7 +15,6 @@ from lifelore.action.features.counted_features import CountedFeatures
 from lifelore.action.features.feature_selection import independent_features
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
-from lifelore.experiments.chapter3.c3_07_feature_sets.run import check_components
 from lifelore.experiments.chapter3.modified_factory_tasks import (
     FULL_SET,
     N_ACTIONS,
@@ -23,17 +22,15 @@ from lifelore.experiments.chapter3.modified_factory_tasks import (
     contexts_of,
     problem_of,
 )
-from lifelore.experiments.engine.learning_settings import check_among, check_counts, check_default
+from lifelore.experiments.engine.grid import Grid
 
-OVER = ("all", "way")
-ACTIONS = ("tied", "first")
 KEYS = ("policies", "over", "actions")
+"""The choices left open that make a cell of the grid."""
 
 
-def hows(settings: Mapping) -> list[dict]:
+def grid_of(settings: Mapping) -> Grid:
     """The grid: number of policies × states that count × actions that count."""
-    lists = product(settings["policies"], settings["over"], settings["actions"])
-    return [dict(zip(KEYS, one, strict=True)) for one in lists]
+    return Grid.crossed(settings, KEYS, {key: key for key in KEYS})
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -59,7 +56,7 @@ def _found(settings: Mapping, own: tuple) -> Iterator[dict]:
 
 
 def counted_states(problem: Problem, over: str) -> NDArray[np.int64]:
-    """The states that count; completed ones never do, whatever is asked."""
+    """The states that count; completed ones never do."""
     return problem.way if over == "way" else np.arange(len(problem.best))
 
 
@@ -79,11 +76,3 @@ def importance(prior: ActionPrior) -> dict:
         found["entropy"][name] = round(choice.full_entropy, 6)
         found["chosen"][name] = list(choice.names)
     return found
-
-
-def check(settings: Mapping) -> None:
-    check_counts(settings, ("runs", "policies", "components"))
-    check_among(settings, "over", OVER)
-    check_among(settings, "actions", ACTIONS)
-    check_default(settings, {key: key for key in KEYS})
-    check_components(settings)

@@ -3,86 +3,66 @@
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.core.learning.learning_metrics import jumpstart
-from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_09_online_features.run import ASKED, KEYS, METHODS, hows, method_how
-from lifelore.experiments.chapter3.online_selection import FULL as ALL_TEN
-from lifelore.experiments.chapter3.online_selection import SELECTED, UNIFORM
+from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
+from lifelore.experiments.chapter3.c3_09_online_features.run import ASKED, KEYS, METHODS, grid_of
+from lifelore.experiments.chapter3.online_selection import FULL, SELECTED, UNIFORM
 from lifelore.experiments.engine.estimates import share_of
-from lifelore.experiments.engine.open_choices import default_of, how_key, runs_by_cell
+from lifelore.experiments.engine.results_table import ResultsTable
 
 PARTS = ("first", "last")
-Found = dict[tuple, list[Mapping]]
+PAIRS = ((SELECTED, FULL), (FULL, UNIFORM), (SELECTED, UNIFORM))
 
 
-def _by_method(results: Sequence[Mapping]) -> Found:
-    """(method, cell of the grid as it meets it) to its numbers, run by run."""
-    return runs_by_cell(results, ("method",), KEYS)
+def _table(results: Sequence[Mapping]) -> ResultsTable:
+    return ResultsTable.nested(results, "found", keys=("method", *KEYS), outer=("run",))
 
 
-def _tasks_of(found: Found, method: str, how: Mapping, part: str) -> np.ndarray:
-    """(n_runs, n_tasks) numbers of each task."""
-    return np.array([numbers[part] for numbers in found[method, how_key(method_how(method, how), KEYS)]], float)
-
-
-def _of(found: Found, method: str, how: Mapping, part: str) -> np.ndarray:
-    """Each run's mean over the tasks after the first, (n_runs,)."""
-    return _tasks_of(found, method, how, part)[:, 1:].mean(axis=1)
+def _means(settings: Mapping, table: ResultsTable, cell: Mapping, part: str) -> dict[str, NDArray[np.float64]]:
+    """Each method's mean reward over the tasks after the first, (n_runs,)."""
+    grid = grid_of(settings)
+    return {m: table.values(part, **grid.where(m, cell))[:, 1:].mean(axis=1) for m in METHODS}
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Every method by whose policies count, what the claim compares there, and shares of the grid."""
-    found = _by_method(results)
+    """Paired differences between methods for each source of policies, and the share of the grid in their order."""
+    table, grid = _table(results), grid_of(settings)
     optimal = np.array([np.mean(result["optimal"][1:]) for result in results])
     measured = {"optimal_reward": mean_estimate(optimal)}
     for source in ASKED:
-        how = {**default_of(settings, KEYS), "source": source}
-        for name, number in _compared(found, how, optimal).items():
-            measured[f"{source}_{name}"] = number
-    return measured | {"grid_order_at_first": share_of([_is_ordered(found, how) for how in hows(settings)])}
-
-
-def _compared(found: Found, how: Mapping, optimal: np.ndarray) -> dict[str, Estimate]:
-    """The three methods in a cell of the grid, and their paired differences."""
-    distance = optimal - _of(found, UNIFORM, how, "first")
-    measured = {}
-    for part in PARTS:
-        every = {method: _of(found, method, how, part) for method in METHODS}
-        for method, values in every.items():
-            measured[f"{part}_{method}"] = mean_estimate(values)
-        for ours, theirs in ((SELECTED, ALL_TEN), (ALL_TEN, UNIFORM), (SELECTED, UNIFORM)):
-            name = f"{part}_{ours}_minus_{theirs}"
-            measured[name] = jumpstart(every[ours], every[theirs])
-            measured[f"{name}_of_distance"] = ratio_estimate(every[ours] - every[theirs], distance)
-    features = _tasks_of(found, SELECTED, how, "n_features")[:, -1]
-    return measured | {"features_after_last_task": mean_estimate(features)}
-
-
-def _is_ordered(found: Found, how: Mapping) -> bool:
-    """Selected ≥ all ten > uniform in the first episode, by means."""
-    uniform, ten, selected = (float(_of(found, method, how, "first").mean()) for method in METHODS)
-    return selected >= ten > uniform
+        cell = {**grid.default, "source": source}
+        first, last = (_means(settings, table, cell, part) for part in PARTS)
+        for ours, theirs in PAIRS:
+            name = f"{ours}_minus_{theirs}"
+            measured[f"{source}_first_{name}"] = difference_estimate(first[ours], first[theirs])
+            of_distance = ratio_estimate(last[ours] - last[theirs], optimal - first[UNIFORM])
+            measured[f"{source}_last_{name}_of_distance"] = of_distance
+        features = table.values("n_features", **grid.where(SELECTED, cell))[:, -1]
+        measured[f"{source}_features_after_last_task"] = mean_estimate(features)
+    ordered = []
+    for cell in grid.cells:
+        mean = {method: float(x.mean()) for method, x in _means(settings, table, cell, "first").items()}
+        ordered.append(mean[SELECTED] >= mean[FULL] > mean[UNIFORM])
+    return {**measured, "grid_order_at_first": share_of(ordered)}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The grid, a row for each cell, then the default's curves over tasks by source."""
-    found = _by_method(results)
-    grid = []
-    for how in hows(settings):
-        row: dict = {key: how[key] for key in KEYS}
+    table, grid = _table(results), grid_of(settings)
+    found = []
+    for cell in grid.cells:
+        row = dict(cell)
         for part in PARTS:
-            row |= {f"{part}_{method}": float(_of(found, method, how, part).mean()) for method in METHODS}
-            pair = [_of(found, method, how, part) for method in (SELECTED, ALL_TEN)]
-            row[f"{part}_selected_minus_full"] = jumpstart(*pair).to_dict()
-        grid.append(row)
-    lines = [(source, method, part) for source in settings["sources"] for method in METHODS for part in PARTS]
-    return grid + [_curve_row(found, settings, *line) for line in lines]
-
-
-def _curve_row(found: Found, settings: Mapping, source: str, method: str, part: str) -> dict:
-    """Mean over runs of each task's first or last episode, and the standard deviation between runs."""
-    values = _tasks_of(found, method, {**default_of(settings, KEYS), "source": source}, part)
-    deviation = values.std(axis=0, ddof=1) if len(values) > 1 else np.zeros(values.shape[1])
-    curve = {"mean": np.round(values.mean(axis=0), 2).tolist(), "deviation": np.round(deviation, 2).tolist()}
-    return {"curve_of": method, "of_source": source, "part": part, **curve}
+            every = _means(settings, table, cell, part)
+            row |= {f"{part}_{method}": float(values.mean()) for method, values in every.items()}
+            difference = difference_estimate(every[SELECTED], every[FULL])
+            row[f"{part}_selected_minus_full"] = difference.to_dict()
+        found.append(row)
+    for source in settings["sources"]:
+        for method in METHODS:
+            where = grid.where(method, {**grid.default, "source": source})
+            for part in PARTS:
+                curve = table.curve(part, digits=2, parts=("mean", "deviation"), **where)
+                found.append({"curve_of": method, "of_source": source, "part": part, **curve})
+    return found

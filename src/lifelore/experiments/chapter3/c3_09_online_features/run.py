@@ -1,4 +1,4 @@
-"""The cells of C3.9: what the first and the last episode of each of thirty tasks earn, by the prior in use.
+"""Cells of C3.9: rewards of the first and the last episode of each of thirty tasks, by the prior in use.
 
 Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.13.
 """
@@ -7,22 +7,17 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.action.priors.exploration import TIES
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.c3_07_feature_sets.run import check_components
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import Problem, problem_of
+from lifelore.experiments.chapter3.modified_factory_tasks import Problem, learn_problem, problem_of
 from lifelore.experiments.chapter3.online_selection import (
     FULL,
     SELECTED,
     UNIFORM,
     Counting,
     OnlineAgent,
-    defaults_and_others,
-    learn_uniformly,
 )
-from lifelore.experiments.engine.learning_settings import check_among, check_counts, check_default, check_learning
-from lifelore.experiments.engine.open_choices import default_of, how_key, plain_how
+from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid
 
 METHODS = (UNIFORM, FULL, SELECTED)
 KEYS = ("source", "schedule", "ties", "max_steps")
@@ -32,19 +27,15 @@ SOURCES = {
     "learnt, promising": Counting("learnt", "visited"),
     "exact": Counting("exact", "all"),
 }
-"""Whose policies count, and where."""
+"""The policies that count, and the states in which they count."""
+ASKED = ("exact", "learnt")
+"""The sources that the claim asks about."""
 
 
-def hows(settings: Mapping) -> list[dict]:
+def grid_of(settings: Mapping) -> Grid:
     """The default, then every other choice one at a time."""
-    lists = {"source": "sources", "schedule": "schedules"}
-    choices = {key: settings[lists.get(key, key)] for key in KEYS}
-    return defaults_and_others(default_of(settings, KEYS), choices)
-
-
-def method_how(method: str, how: Mapping) -> dict:
-    """A cell of the grid as one method meets it."""
-    return plain_how(how, KEYS) if method == UNIFORM else {key: how[key] for key in KEYS}
+    singly = {"source": "sources", "schedule": "schedules", "ties": "ties", "max_steps": "max_steps"}
+    return Grid.crossed(settings, KEYS, {}, singly, {UNIFORM: READ_WITHOUT_PRIOR})
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -53,59 +44,43 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: rewards of first and last episodes, a number a task, of every method in every cell of the grid."""
-    met = {}
-    for method in METHODS:
-        for how in hows(settings):
-            read = method_how(method, how)
-            met.setdefault((method, how_key(read, KEYS)), _Series(settings, method, read))
+    """One run: rewards of first and last episodes, of every method in every cell of the grid."""
+    grid = grid_of(settings)
+    learners = [_Series(settings, method, choice) for method in METHODS for choice in grid.cells_of(method)]
     optimal = []
     for i in range(settings["tasks"]):
         problem = problem_of(settings, (seed, "C3.9", cell["run"], i))
         optimal.append(problem.optimal)
-        for series in met.values():
-            series.learn(problem)
-    return {**cell, "optimal": optimal, "found": [series.found() for series in met.values()]}
+        for learner in learners:
+            learner.learn(problem)
+    return {**cell, "optimal": optimal, "found": [learner.found() for learner in learners]}
 
 
 class _Series:
-    """One method going from task to task in one cell of the grid."""
+    """A method that goes from task to task in a cell of the grid."""
 
-    def __init__(self, settings: Mapping, method: str, how: dict) -> None:
-        self.method, self.how = method, how
-        self.schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
+    def __init__(self, settings: Mapping, method: str, choice: Mapping) -> None:
+        self.labels = {"method": method, **choice}
+        self.schedule = schedule_of({**settings, "max_steps": choice["max_steps"]}, choice["schedule"])
         self.agent = None
         if method != UNIFORM:
-            counting = SOURCES[how["source"]]
-            self.agent = OnlineAgent(method == SELECTED, counting, settings["alpha0"], how["ties"])
+            counting = SOURCES[choice["source"]]
+            self.agent = OnlineAgent(method == SELECTED, counting, settings["alpha0"], choice["ties"])
         self.rewards: list[np.ndarray] = []
         self.n_features: list[int] = []
 
     def learn(self, problem: Problem) -> None:
         agent = self.agent
-        curve = agent.learn(problem, self.schedule) if agent else learn_uniformly(problem, self.schedule)
+        curve = agent.learn(problem, self.schedule) if agent else learn_problem(problem, None, self.schedule)[0]
         self.rewards.append(curve.rewards[[0, -1]])
         self.n_features.append(len(agent.chosen) if agent else 0)
 
     def found(self) -> dict:
         first, last = np.array(self.rewards).T
-        of_task = {"first": first.tolist(), "last": last.tolist(), "n_features": self.n_features}
-        return {"method": self.method, **self.how, **of_task}
-
-
-ASKED = ("exact", "learnt")
-"""Whose policies the claim is asked of."""
+        return {**self.labels, "first": first.tolist(), "last": last.tolist(), "n_features": self.n_features}
 
 
 def check(settings: Mapping) -> None:
-    check_counts(settings, ("runs", "episodes", "max_steps", "components"))
-    check_counts(settings, ("tasks",), least=2)  # before the first task there is no prior
-    check_learning(settings)
-    check_among(settings, "sources", tuple(SOURCES))
-    check_among(settings, "ties", TIES)
-    check_default(settings, {"source": "sources", "schedule": "schedules", **{key: key for key in KEYS[2:]}})
-    check_components(settings)
+    """Refuse settings without the sources that the claim asks about."""
     if not {*ASKED} <= {*settings["sources"]}:
         raise InputError(f"sources must hold {' and '.join(ASKED)}, got {settings['sources']}")
-    if settings["alpha0"] <= 0:
-        raise InputError(f"alpha0 must be positive, got {settings['alpha0']}")

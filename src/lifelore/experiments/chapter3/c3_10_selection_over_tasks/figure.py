@@ -5,35 +5,33 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.feature_bars import FEATURES
+from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
 from lifelore.figures.style import BLUE, GREY, PAPER, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+COLUMNS = 4
+TITLES = {
+    "exact": "exact, all states",
+    "learnt": "learnt, states tried",
+    "learnt, promising": "learnt, states that promise a reward",
+    "exact, on the way": "exact, states of an optimal way",
+    "learnt longer": "learnt longer, states tried",
+}
 
 
 def draw(result: Mapping):
-    return draw_feature_shares(result)
-
-
-_COLUMNS = 4
-
-
-def draw_feature_shares(result: Mapping) -> "Figure":
-    """The figure from the result of C3.10."""
-    from matplotlib.colors import LinearSegmentedColormap
-
+    """A panel for each series, a row for each feature."""
     series, settings = result["rows"], result["settings"]
-    blues = LinearSegmentedColormap.from_list("share", [PAPER, BLUE])
-    n_rows = -(-len(series) // _COLUMNS)
+    n_rows = -(-len(series) // COLUMNS)
     with house_style():
         figure = new_figure(12.6, 0.7 + 2.5 * n_rows)
-        panels = figure.subplots(n_rows, _COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
-        images = [_draw_series(axes, row, blues) for axes, row in zip(panels, series, strict=False)]
+        panels = figure.subplots(n_rows, COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
+        images = [_draw_series(axes, row) for axes, row in zip(panels, series, strict=False)]
         for axes in panels[len(series) :]:
             axes.set_axis_off()
-        for axes in panels[max(0, len(series) - _COLUMNS) : len(series)]:
+        for axes in panels[max(0, len(series) - COLUMNS) : len(series)]:
             axes.set_xlabel("tasks")
             axes.tick_params(labelbottom=True)
         figure.colorbar(images[0], ax=list(panels), shrink=0.5, pad=0.01, label="share of runs")
@@ -45,24 +43,16 @@ def draw_feature_shares(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_series(axes: "Axes", row: Mapping, colours):
+def _draw_series(axes: "Axes", row: Mapping):
+    from matplotlib.colors import LinearSegmentedColormap
+
     shares = np.array([row["shares"][feature] for feature in FEATURES])
-    n_tasks = shares.shape[1]
-    extent = (0.5, n_tasks + 0.5, len(FEATURES) - 0.5, -0.5)
     image = axes.imshow(
-        shares, cmap=colours, vmin=0, vmax=1, aspect="auto", interpolation="nearest", extent=extent
-    )
+        shares, cmap=LinearSegmentedColormap.from_list("share", [PAPER, BLUE]), vmin=0, vmax=1, aspect="auto",
+        interpolation="nearest", extent=(0.5, shares.shape[1] + 0.5, len(FEATURES) - 0.5, -0.5),
+    )  # fmt: skip
     axes.axhline(3.5, color=GREY, linewidth=1.0)
     axes.set_yticks(range(len(FEATURES)), FEATURES)
     axes.tick_params(axis="y", length=0)
-    axes.set_title(_TITLES.get(row["series"]) or str(row["series"]), fontsize=9)
+    axes.set_title(TITLES.get(row["series"]) or str(row["series"]), fontsize=9)
     return image
-
-
-_TITLES = {
-    "exact": "exact, all states",
-    "learnt": "learnt, states tried",
-    "learnt, promising": "learnt, states that promise a reward",
-    "exact, on the way": "exact, states of an optimal way",
-    "learnt longer": "learnt longer, states tried",
-}

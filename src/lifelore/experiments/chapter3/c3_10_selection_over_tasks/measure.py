@@ -24,47 +24,37 @@ def shares(masks: np.ndarray) -> np.ndarray:
 
 
 def settled_after(masks: np.ndarray) -> list[int]:
-    """Tasks of each run after which the set is φ2 to the end; one more than there are where it is not."""
-    n_tasks = masks.shape[1]
-    return [n_tasks + 1 if run[-1] != GOAL else 1 + _last_other(run) for run in masks]
-
-
-def _last_other(run: np.ndarray) -> int:
-    """How many tasks there are up to the last after which the set was another; 0 if it never was."""
-    others = np.flatnonzero(run != GOAL)
-    return int(others[-1]) + 1 if others.size else 0
+    """Number of tasks of each run after which the set is φ2 to the end; n_tasks + 1 where it never is."""
+    others = [np.flatnonzero(run != GOAL) for run in masks]
+    last = [int(of_run[-1]) + 1 if of_run.size else 0 for of_run in others]
+    return [1 + n for n in last]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Which features each series ends with, and in how many runs it has come to rest at φ2."""
+    """The features that each series ends with, and in how many runs it has settled at φ2."""
     measured = {}
     for series in SERIES:
-        masks, name = _masks(results, series), name_of(series)
+        masks, name = _masks(results, series), series.replace(",", "").replace(" ", "_")
         of_feature = dict(zip(FULL_SET.names, shares(masks)[:, -1], strict=True))
-        for group, pick in (("least_share_of_four", min), ("largest_share_of_others", max)):
-            wanted = group.endswith("four")
-            feature = pick((f for f in FULL_SET.names if (f in CARDINALS) == wanted), key=lambda f: of_feature[f])
-            bit = masks[:, -1] >> FULL_SET.names.index(feature) & 1
-            measured[f"{name}_{group}"] = exact_share(bit.tolist())
-        measured[f"{name}_settled_share"] = exact_share(
-            (masks[:, -settings["last"] :] == GOAL).all(axis=1).tolist()
-        )
-        measured[f"{name}_exactly_phi2"] = exact_share((masks[:, -1] == GOAL).tolist())
+        others = [feature for feature in FULL_SET.names if feature not in CARDINALS]
+        four = [feature for feature in FULL_SET.names if feature in CARDINALS]
+        least, largest = min(four, key=of_feature.__getitem__), max(others, key=of_feature.__getitem__)
+        for group, feature in (("least_share_of_four", least), ("largest_share_of_others", largest)):
+            chosen = masks[:, -1] >> FULL_SET.names.index(feature) & 1
+            measured[f"{name}_{group}"] = exact_share(chosen.tolist())
+        settled = (masks[:, -settings["last"] :] == GOAL).all(axis=1)
+        measured[f"{name}_settled_share"] = exact_share(settled.tolist())
         measured[f"{name}_settled_after"] = mean_estimate(settled_after(masks))
-        chosen = [int(mask).bit_count() for mask in masks[:, -1]]
-        measured[f"{name}_features_chosen"] = mean_estimate(chosen)
     return measured
-
-
-def name_of(series: str) -> str:
-    """A series in the name of a measure."""
-    return series.replace(",", "").replace(" ", "_")
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row a series: the share of runs with each feature after each task."""
-    kept = []
-    for series, how in SERIES.items():
-        of_feature = dict(zip(FULL_SET.names, np.round(shares(_masks(results, series)), 4).tolist(), strict=True))
-        kept.append({"series": series, "over": how.counting.over, "shares": of_feature})
-    return kept
+    return [
+        {
+            "series": series,
+            "over": use.counting.over,
+            "shares": dict(zip(FULL_SET.names, shares(_masks(results, series)).round(4).tolist(), strict=True)),
+        }
+        for series, use in SERIES.items()
+    ]

@@ -1,36 +1,31 @@
-"""Figure of claim C3.12: learning with priors that simulated people showed, and with self-trained ones."""
+"""Figure of claim C3.12: learning with priors demonstrated by simulated people, and with self-trained priors."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from itertools import product
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves
-from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import BLUE, GREEN, GREY, house_style, new_figure
+from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.heat_grid import draw_estimate_grid
+from lifelore.figures.style import BLUE, GREEN, GREY, house_style, new_figure, two_rows
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+COLOURS = {"uniform": GREY, "self-trained": BLUE, "shown": GREEN}
+LOOK = {"neutral": 0.0, "spread": 20.0, "scale": 100.0, "words": "{:+.1f}".format}
 
 
 def draw(result: Mapping):
-    return draw_shown_priors(result)
-
-
-_COLOURS = {"uniform": GREY, "self-trained": BLUE, "shown": GREEN}
-
-
-def draw_shown_priors(result: Mapping) -> "Figure":
-    """The figure from the result of C3.12."""
+    """Learning curves by schedule above; the grid of open choices and the groups of people below."""
     settings = result["settings"]
     labels = {"shown": f"shown by one person ({settings['default']['people']}, simulated)"}
     with house_style():
         figure = new_figure(12.4, 7.6)
-        upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.0, 1.05], hspace=0.02)[:, 0]
+        upper, lower = two_rows(figure, (1.0, 1.05))
         panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
         for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            draw_reward_curves(axes, result, schedule, _COLOURS, labels, banded=_COLOURS)
+            draw_reward_curves(axes, result, schedule, COLOURS, labels, banded=COLOURS)
         panels[0].set_ylabel("reward of an episode")
         upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=8)
         grid, people = lower.subplots(1, 2, width_ratios=[1.1, 1.0])
@@ -47,51 +42,32 @@ def draw_shown_priors(result: Mapping) -> "Figure":
 
 def _draw_grid(axes: "Axes", result: Mapping) -> None:
     settings, default = result["settings"], result["settings"]["default"]
-    cells = [row for row in result["rows"] if "features" in row]
-    columns = [(s, t) for s in settings["schedules"] for t in settings["ties"]]
-    lines = [("features", name) for name in settings["features"]]
-    lines += [(key, n) for key in ("alpha0", "trajectories") for n in settings[key] if n != default[key]]
-    numbers = [[_cell(cells, default, key, value, column) for column in columns] for key, value in lines]
-    words = {"features": "{}", "alpha0": "α⁰ {:g}", "trajectories": "{} trajectories"}
-    heads = [f"ε {_epsilon(schedule)},\nties {ties}" for schedule, ties in columns]
-    sides = [words[key].format(value).replace("phi", "φ") for key, value in lines]
-    framed = (
-        settings["features"].index(default["features"]),
-        columns.index((default["schedule"], default["ties"])),
-    )
-    _draw_numbers(axes, numbers, sides, heads, framed)
+    keys = ("features", "schedule", "ties", "alpha0", "trajectories")
+    table = ResultsTable((row for row in result["rows"] if "features" in row), keys)
+    columns = list(product(settings["schedules"], settings["ties"]))
+    lines = [("features", name, name.replace("phi", "φ")) for name in settings["features"]]
+    lines += [("alpha0", n, f"α⁰ {n:g}") for n in settings["alpha0"] if n != default["alpha0"]]
+    others = (n for n in settings["trajectories"] if n != default["trajectories"])
+    lines += [("trajectories", n, f"{n} trajectories") for n in others]
+
+    def number(key: str, value, schedule, ties: str) -> Mapping | None:
+        cell = {name: default[name] for name in keys} | {"schedule": schedule, "ties": ties, key: value}
+        found = table.select(**cell).records
+        return found[0]["of_distance"] if found else None
+
+    numbers = [[number(key, value, *column) for column in columns] for key, value, _ in lines]
+    framed = settings["features"].index(default["features"]), columns.index((default["schedule"], default["ties"]))
+    heads = [f"{schedule_in_brief(schedule)},\nties {ties}" for schedule, ties in columns]
+    draw_estimate_grid(axes, numbers, [words for *_, words in lines], heads, outlined=framed, **LOOK)
     axes.set_title("The default person, by choices left open")
 
 
-def _cell(cells, default: Mapping, key: str, value, column: tuple) -> Mapping | None:
-    wanted = {**default, "schedule": column[0], "ties": column[1], key: value}
-    wanted.pop("people")
-    return next((r["of_distance"] for r in cells if all(r[k] == v for k, v in wanted.items())), None)
-
-
 def _draw_people(axes: "Axes", result: Mapping) -> None:
-    told = [row for row in result["rows"] if "weight" in row]
-    people = list(dict.fromkeys(row["people"] for row in told))
-    weights = list(dict.fromkeys(row["weight"] for row in told))
-    numbers = [[r["of_distance"] for r in told if r["people"] == one] for one in people]
-    skills = {row["people"]: ", ".join(f"{skill:g}" for skill in row["skills"]) for row in told}
-    framed = (people.index(result["settings"]["default"]["people"]), 0)
-    _draw_numbers(axes, numbers, [f"{one}\n({skills[one]})" for one in people], weights, framed)
+    table = ResultsTable((row for row in result["rows"] if "weight" in row), ("people", "weight"))
+    people, weights = table.distinct("people"), table.distinct("weight")
+    numbers = [[table.record(people=group, weight=w)["of_distance"] for w in weights] for group in people]
+    skills = [", ".join(f"{skill:g}" for skill in table.record(people=group)["skills"]) for group in people]
+    sides = [f"{group}\n({skill})" for group, skill in zip(people, skills, strict=True)]
+    framed = people.index(result["settings"]["default"]["people"]), 0
+    draw_estimate_grid(axes, numbers, sides, weights, outlined=framed, **LOOK)
     axes.set_title("People (skills) by weights")
-
-
-def _draw_numbers(axes: "Axes", numbers, sides, heads, framed: tuple[int, int]) -> None:
-    values = [[100 * n["value"] if n and n["value"] is not None else np.nan for n in row] for row in numbers]
-    certain = [[bool(n and n["ci95"] and not n["ci95"][0] <= 0 <= n["ci95"][1]) for n in row] for row in numbers]
-    draw_heat_grid(
-        axes, values, certain, sides, heads, neutral=0.0, spread=20.0, words=_signed, outlined=framed
-    )  # fmt: skip
-
-
-def _signed(value: float) -> str:
-    return f"{value:+.1f}".replace("-", "−")
-
-
-def _epsilon(schedule: Sequence[float]) -> str:
-    first, decay, _ = schedule
-    return f"{first:g}" if decay == 1 else f"{first:g} × {decay:g}"

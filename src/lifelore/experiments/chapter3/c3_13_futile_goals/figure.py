@@ -5,44 +5,30 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+
+COLOURS = (BLUE, ORANGE, GREEN)
+NO_TASK = 0.35
+"""Place of "no task" on the logarithmic axis."""
 
 
 def draw(result: Mapping):
-    return draw_futile_goals(result)
-
-
-_COLOURS = (BLUE, ORANGE, GREEN)
-_NO_TASK = 0.35
-"""Where "no task" stands on the logarithmic axis."""
-
-
-def draw_futile_goals(result: Mapping) -> "Figure":
-    """The figure from the result of C3.13."""
-    settings = result["settings"]
+    """Constructed worlds by states and by percepts, then worlds as found."""
+    settings, default = result["settings"], result["settings"]["default"]
+    table = ResultsTable((r for r in result["rows"] if "alike" in r), ("actions", "alike", "alpha0", "tasks"))
     with house_style():
         figure = new_figure(12.0, 4.1)
         states, percepts, found = figure.subplots(1, 3, width_ratios=[1, 1, 1.05])
-        default = settings["default"]
-        _draw_cases(
-            states,
-            [r for r in result["rows"] if r.get("alike") == 1 and r["actions"] == default["actions"]],
-            "alpha0",
-            "α⁰ = {:g}",
-        )
+        _draw_cases(states, table.select(alike=1, actions=default["actions"]), "alpha0", "α⁰ = {:g}")
         states.set(title=f"By states, {default['actions']} actions", ylabel="probability of the one action")
-        chosen = [
-            row
-            for row in result["rows"]
-            if "alike" in row and all(row[key] == value for key, value in default.items())
-        ]
-        _draw_cases(percepts, chosen, "alike", "|T| · {}")
+        _draw_cases(percepts, table.select(**default), "alike", "|T| · {}")
         percepts.set(title=f"By percepts of 1 or more states, α⁰ = {default['alpha0']:g}")
-        _draw_found(found, result)
+        _draw_found(found, [row for row in result["rows"] if "kind" in row])
         figure.supxlabel(
             "Lines: Eq. 3.6, with tasks times states that look alike for percepts. Points: share of "
             f"{settings['draws'] * settings['runs']:,} steps, exact 95 % intervals.",
@@ -51,42 +37,36 @@ def draw_futile_goals(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_cases(axes: "Axes", cases: list[Mapping], key: str, words: str) -> None:
-    for colour, value in zip(_COLOURS, sorted({case[key] for case in cases}), strict=False):
-        line = sorted((case for case in cases if case[key] == value), key=lambda case: case["tasks"])
-        x = np.array([case["tasks"] or _NO_TASK for case in line], float)
+def _draw_cases(axes: "Axes", table: ResultsTable, key: str, words: str) -> None:
+    """The formula as a line and the measured frequency as points, for each value of `key`."""
+    formulas, looks = {}, {}
+    for colour, value in zip(COLOURS, sorted(table.distinct(key)), strict=False):
+        line = sorted(table.select(**{key: value}).records, key=lambda case: case["tasks"])
+        x = [case["tasks"] or NO_TASK for case in line]
+        formulas[words.format(value)] = {"x": x, "mean": [case["formula"] for case in line]}
+        looks[words.format(value)] = {"color": colour, "linewidth": 1.3}
         measured, low, high = (np.array([case[name] for case in line]) for name in ("measured", "low", "high"))
-        axes.plot(x, [case["formula"] for case in line], color=colour, linewidth=1.3, label=words.format(value))
-        axes.errorbar(
-            x, measured, yerr=[measured - low, high - measured], fmt="o", markersize=4, color=colour, linewidth=1
-        )
-    ticks = sorted({case["tasks"] for case in cases})
-    axes.set(xscale="log", yscale="log", xlabel="tasks so far")
-    axes.set_xticks([tick or _NO_TASK for tick in ticks], [str(tick) if tick else "none" for tick in ticks])
+        errors = [measured - low, high - measured]
+        axes.errorbar(x, measured, yerr=errors, fmt="o", markersize=4, color=colour, linewidth=1)
+    draw_curves(axes, None, formulas, looks=looks, xlabel="tasks so far", logarithmic="xy")
+    ticks = sorted(table.distinct("tasks"))
+    axes.set_xticks([tick or NO_TASK for tick in ticks], [str(tick) if tick else "none" for tick in ticks])
     axes.minorticks_off()
     axes.grid(color=LIGHT)
-    axes.legend()
 
 
-def _draw_found(axes: "Axes", result: Mapping) -> None:
+def _draw_found(axes: "Axes", worlds: list[Mapping]) -> None:
     """A point for each world: its least probable way into a futile goal, over the bound."""
-    worlds = [row for row in result["rows"] if "kind" in row]
-    labels = [f"{row['kind']}, {row['tasks']}" for row in worlds]
-    for shift, (key, colour, label) in zip(
-        (-0.17, 0.17), (("least", BLUE, "by states"), ("least_percepts", ORANGE, "by percepts")), strict=True
-    ):
-        for place, row in enumerate(worlds):
-            values = np.array(row[key])
-            spread = (
-                shift + np.linspace(-0.1, 0.1, len(values)) if len(values) > 1 else np.full(len(values), shift)
-            )
-            axes.plot(
-                values, place + spread, "o", markersize=2.6, alpha=0.6, color=colour, markeredgewidth=0,
-                label=label if place == 0 else None,
-            )  # fmt: skip
+    for shift, key, colour, label in (
+        (-0.17, "least", BLUE, "by states"), (0.17, "least_percepts", ORANGE, "by percepts")
+    ):  # fmt: skip
+        values = [value for row in worlds for value in row[key]]
+        places = [place + shift + np.linspace(-0.1, 0.1, len(row[key])) for place, row in enumerate(worlds)]
+        look = {"markersize": 2.6, "alpha": 0.6, "color": colour, "markeredgewidth": 0}
+        axes.plot(values, np.concatenate(places), "o", label=label, **look)
     axes.axvline(1.0, color=INK, linewidth=1.1, linestyle=(0, (4, 3)))
     axes.set(xscale="log", xlabel="least probability over Eq. 3.6", title="Worlds as found: kind, tasks")
-    axes.set_yticks(range(len(labels)), labels)
+    axes.set_yticks(range(len(worlds)), [f"{row['kind']}, {row['tasks']}" for row in worlds])
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
     axes.legend(loc="lower right", markerscale=2)

@@ -1,23 +1,22 @@
 """Figure of claim C3.14: what minimised domains keep, how exploring in them collides, and how fast one learns."""
 
 from collections.abc import Mapping
+from itertools import product
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.figures.heat_grid import draw_heat_grid
+from lifelore.experiments.chapter3.c3_14_minimised_domains.run import WITHIN
+from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid
+from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_minimised_domains(result)
-
-
-_KEPT = (
+KEPT = (
     ("printed", "defined", "printed:\ndefined"),
     ("printed", "return_kept", "return\nkept"),
     ("printed", "policy_kept", "policy\nkept"),
@@ -28,95 +27,66 @@ _KEPT = (
     ("closed", "policy_kept", "closed:\npolicy"),
     ("closed", "no_more_traps", "no more\ntraps"),
 )
-_WALKS = (("domain", "", GREY, "domain"), ("repaired", "stay", BLUE, "repaired, stay"))
-_WALKS += (("closed", "stay", GREEN, "closed, stay"),)
-_WAYS = (("repaired", "stay"), ("repaired", "free"), ("printed", "stay"), ("closed", "stay"))
+EXPLORED = {("domain", ""): ("domain", GREY)}
+EXPLORED |= {("repaired", "stay"): ("repaired, stay", BLUE), ("closed", "stay"): ("closed, stay", GREEN)}
 
 
-def draw_minimised_domains(result: Mapping) -> "Figure":
-    """The figure from the result of C3.14."""
+def draw(result: Mapping):
+    """Shares of tasks and sets, collisions of exploring, episodes of learning: kinds of worlds downwards."""
     kinds = result["settings"]["kinds"]
+    learning = (row for row in result["rows"] if "learnt_in" in row)
+    table = ResultsTable(learning, ("learnt_in", "form", "dead_ends", "schedule"))
     with house_style():
         figure = new_figure(16.0, 1.5 + 0.42 * len(kinds))
-        kept, walks, learning = figure.subplots(1, 3, sharey=True, width_ratios=[1.2, 0.75, 1.2])
-        _draw_kept(kept, result)
-        _draw_walks(walks, result)
-        _draw_learning(learning, result)
+        kept, walks, learnt = figure.subplots(1, 3, sharey=True, width_ratios=[1.2, 0.75, 1.2])
+        _draw_walks(walks, result, table)
+        _draw_learning(learnt, result, table)
+        rows = [row for row in result["rows"] if "kind" in row]
+        shares = np.array([[100 * row[form][key] for form, key, _ in KEPT] for row in rows])
+        heads, nothing = [head for *_, head in KEPT], np.zeros_like(shares)
+        words = "{:.0f}".format
+        draw_heat_grid(kept, shares, nothing, kinds, heads, neutral=100.0, spread=100.0, words=words)
+        kept.set_title("Where it is so (% of tasks, of sets for defined)")
+        kept.set_ylim(len(kinds) - 0.5, -0.5)
         figure.supxlabel(
-            "Bold: the 95 % interval over runs excludes 1. Framed: the default. stay, free: what a state without "
-            "kept actions does. Printed: actions with η = 1/0 left out.",
+            "Lines: 95 % intervals over runs; bold: the interval excludes 1. Framed: the default. stay, free: "
+            "staying, or all actions, in a state without kept actions. Printed: actions with η = 1/0 left out.",
             fontsize=8, color=GREY,
         )  # fmt: skip
     return figure
 
 
-def _draw_kept(axes: "Axes", result: Mapping) -> None:
-    kept = [row for row in result["rows"] if "kind" in row]
-    shares = np.array([[100 * row[form][key] for form, key, _ in _KEPT] for row in kept])
-    heads = [head for *_, head in _KEPT]
-    draw_heat_grid(
-        axes, shares, np.zeros_like(shares, bool), [row["kind"] for row in kept], heads, neutral=100.0,
-        spread=100.0, words="{:.0f}".format,
+def _draw_walks(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+    """Collisions in 100 steps of pure exploration, in the domain and within it."""
+    kinds, schedule = result["settings"]["kinds"], result["settings"]["default"]["schedule"]
+
+    def number(kind: str, way: tuple[str, str]) -> dict:
+        row = table.record(learnt_in=kind, form=way[0], dead_ends=way[1], schedule=schedule)
+        found = row["explored_collisions"]
+        return {"value": 100 * found["value"], "ci95": found["ci95"] and [100 * end for end in found["ci95"]]}
+
+    groups = {label: [number(kind, way) for kind in kinds] for way, (label, _) in EXPLORED.items()}
+    draw_interval_bars(
+        axes, kinds, groups, colours=dict(EXPLORED.values()), legend=False,
+        words=lambda share: f"{share:.0f}" if share >= 1 or share == 0 else f"{share:.1f}",
     )  # fmt: skip
-    axes.set_title("Where it is so (% of tasks, of sets for defined)")
-
-
-def _draw_walks(axes: "Axes", result: Mapping) -> None:
-    """Collisions a step of pure exploration, in the domain and within it."""
-    schedule = result["settings"]["default"]["schedule"]
-    for place, kind in enumerate(result["settings"]["kinds"]):
-        for shift, (form, ends, colour, label) in zip((-0.24, 0.0, 0.24), _WALKS, strict=True):
-            row = _row(result, kind, form, ends, schedule)
-            share = 100 * row["explored_collisions"]["value"]
-            axes.barh(place + shift, share, height=0.2, color=colour, label=label if place == 0 else None)
-            axes.annotate(
-                f"{share:.0f}" if share >= 1 or share == 0 else f"{share:.1f}", (share, place + shift), (3, 0),
-                textcoords="offset points", va="center", fontsize=6.5,
-            )  # fmt: skip
     axes.set(title="Collisions in 100 steps of exploring", xlim=(0, None))
     axes.margins(x=0.12)
     axes.grid(axis="x", color=LIGHT)
-    axes.tick_params(axis="y", length=0)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncols=3, fontsize=7, columnspacing=1)
 
 
-def _draw_learning(axes: "Axes", result: Mapping) -> None:
+def _draw_learning(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
     settings = result["settings"]
-    columns = [(way, schedule) for schedule in settings["schedules"] for way in _WAYS]
-    cells = [
-        [_row(result, kind, *way, schedule)["to_80_ratio"] for way, schedule in columns]
+    columns: list[tuple] = [(*way, schedule) for schedule, way in product(settings["schedules"], WITHIN)]
+    numbers = [
+        [table.record(learnt_in=kind, form=f, dead_ends=d, schedule=s)["to_80_ratio"] for f, d, s in columns]
         for kind in settings["kinds"]
     ]
-    values = [[np.nan if c["value"] is None else c["value"] for c in row] for row in cells]
-    certain = [[bool(c["ci95"]) and not c["ci95"][0] <= 1 <= c["ci95"][1] for c in row] for row in cells]
-    heads = [f"{form},\n{ends}\nε {_epsilon(schedule)}" for (form, ends), schedule in columns]
-    default = columns.index((_WAYS[0], settings["default"]["schedule"]))
-    draw_heat_grid(
-        axes, values, certain, settings["kinds"], heads, neutral=1.0, spread=4.0, ratio=True, good="low",
-        words="{:.2f}".format,
+    heads = [f"{form},\n{ends}\n{schedule_in_brief(schedule)}" for form, ends, schedule in columns]
+    framed = None, columns.index((*WITHIN[0], settings["default"]["schedule"]))
+    draw_estimate_grid(
+        axes, numbers, settings["kinds"], heads, neutral=1.0, spread=4.0, ratio=True, good="low",
+        words="{:.2f}".format, outlined=framed,
     )  # fmt: skip
-    _frame_column(axes, default, len(settings["kinds"]))
     axes.set_title("Episodes to 80 %, over those in the domain")
-
-
-def _frame_column(axes: "Axes", column: int, n_rows: int) -> None:
-    from matplotlib.patches import Rectangle
-
-    from lifelore.figures.style import INK
-
-    corner = (column - 0.5, -0.5)
-    axes.add_patch(Rectangle(corner, 1, n_rows, fill=False, edgecolor=INK, linewidth=1.6, clip_on=False, zorder=3))
-
-
-def _epsilon(schedule) -> str:
-    first, decay, _ = schedule
-    return f"{first:g}" if decay == 1 else f"{first:g} × {decay:g}"
-
-
-def _row(result: Mapping, kind: str, form: str, ends: str, schedule) -> Mapping:
-    return next(
-        row
-        for row in result["rows"]
-        if row.get("learnt_in") == kind
-        and (row["form"], row["dead_ends"], row["schedule"]) == (form, ends, schedule)
-    )

@@ -26,25 +26,17 @@ from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
 from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
-from lifelore.core.mdp import COLLISION, TERMINAL, Tables
+from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.streams import stream
 from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import (
     EVERY_START,
-    KINDS,
     WITH_SINKS,
     Solved,
     TaskSet,
     task_set,
 )
 from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.engine.learning_settings import (
-    check_among,
-    check_counts,
-    check_default,
-    check_learning,
-    check_windows,
-)
 
 WHOLE = "domain"
 WITHIN = (("repaired", "stay"), ("repaired", "free"), ("printed", "stay"), ("closed", "stay"))
@@ -122,9 +114,9 @@ def traps(task: Solved, domain: MinimisedDomain) -> dict:
 
 
 def learn_within(
-    task: Solved, pairs: NDArray[np.bool_] | None, dead_ends: str, schedule: Schedule, what: str
+    task: Solved, pairs: NDArray[np.bool_] | None, dead_ends: str, schedule: Schedule, purpose: str
 ) -> Curve:
-    """Learn a task in its domain, or with `pairs` alone to choose from; `what` names the streams."""
+    """Learn a task in its domain, or with `pairs` alone to choose from; `purpose` names the streams."""
     tables, shape = task.tables, task.tables.next_state.shape[:2]
     allowed = np.ones(shape, bool) if pairs is None else pairs
     if pairs is not None:
@@ -133,7 +125,7 @@ def learn_within(
     ties = np.where(allowed, 1.0, TRACE)
     rows = uniform_rows(tables, allowed / allowed.sum(axis=1, keepdims=True), ties)
     learner = new_learner(
-        shape[0], shape[1], stream(*task.stream, what, "world"), stream(*task.stream, what, "own")
+        shape[0], shape[1], stream(*task.stream, purpose, "world"), stream(*task.stream, purpose, "own")
     )
     learner.q[~allowed] = -np.inf
     curve = new_curve(schedule.epsilon.size)
@@ -141,12 +133,12 @@ def learn_within(
     return curve
 
 
-def best_returns(task: Solved, n_episodes: int, what: str) -> NDArray[np.float64]:
+def best_returns(task: Solved, n_episodes: int, purpose: str) -> NDArray[np.float64]:
     """The optimal return from where each episode starts; worlds of one outcome draw nothing but starts."""
     starts = task.tables.starts
     if task.tables.outcome_cum.size > 1:
         return np.full(n_episodes, task.q[starts].max(axis=1).mean())
-    random = random_state(stream(*task.stream, what, "world"))
+    random = random_state(stream(*task.stream, purpose, "world"))
     drawn = [starts[int(next_uniform(random) * starts.size)] for _ in range(n_episodes)]
     return task.q[drawn].max(axis=1)
 
@@ -209,17 +201,9 @@ def domains_of(tasks: TaskSet) -> dict[str, MinimisedDomain]:
 def exact(tasks: TaskSet) -> dict:
     """Of each form, what every task keeps, its traps, and what is undefined."""
     found = {}
-    first = tasks.tasks[0].tables
     for form, domain in domains_of(tasks).items():
         each = [{**kept(t, domain, tasks.discount), **traps(t, domain)} for t in tasks.tasks]
-        collide = ((first.event & COLLISION) > 0).any(axis=2)
-        found[form] = {
-            "tasks": each,
-            "undefined": int(domain.without_successor.sum()),
-            "renormalised": int((domain.leading_out & ~domain.without_successor).sum()),
-            "pairs": float(domain.pairs.mean()),
-            "colliding": int((domain.pairs & collide).sum()),
-        }
+        found[form] = {"tasks": each, "undefined": int(domain.without_successor.sum())}
     return found
 
 
@@ -237,15 +221,6 @@ def _learning(settings: Mapping, tasks: TaskSet) -> Iterator[dict]:
 
 
 def check(settings: Mapping) -> None:
-    check_counts(
-        settings,
-        ("runs", "learnt_tasks", "worlds", "max_steps", "episodes", "explored", "window", "random_actions"),
-    )
-    check_counts(settings, ("tasks",), least=2)
-    check_among(settings, "kinds", KINDS)
-    check_windows(settings, ("window",))
-    check_learning(settings)
-    check_default(settings, {"schedule": "schedules"})
     for group in (EVERY_START, WITH_SINKS):
         if not set(group) & set(settings["kinds"]):
             raise InputError(f"kinds must hold one of {', '.join(group)}, got {', '.join(settings['kinds'])}")

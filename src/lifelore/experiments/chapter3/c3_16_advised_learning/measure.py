@@ -6,74 +6,60 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.advice_estimates import at, grid_of, maze_estimate, picked, plain, share_of_grid
+from lifelore.experiments.chapter3.advice_mazes import grid_of, grid_share, maze_estimate
 from lifelore.experiments.engine.curve_blocks import block_edges
+from lifelore.experiments.engine.results_table import ResultsTable
+
+
+def _table(results: Sequence[Mapping]) -> ResultsTable:
+    return ResultsTable.nested(results, "learners", ("experts", "starts", "schedule"), ("loops",))
+
+
+def _cells(settings: Mapping) -> list[dict]:
+    """The grid: starts and schedules, each with every loop density and kind of experts."""
+    return [
+        {"loops": loops, "experts": experts, "starts": starts, "schedule": schedule}
+        for starts, schedule in product(settings["starts"], settings["schedules"])
+        for loops, experts in grid_of(settings)
+    ]
+
+
+def _by_maze(table: ResultsTable, measure: str, cell: Mapping, advised: bool) -> np.ndarray:
+    """Each maze's mean over its tasks."""
+    experts = cell["experts"] if advised else None
+    return table.values(measure, **{**cell, "experts": experts}).mean(axis=1)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: goals found within ten episodes and ever, when, and the reward at the end; the grid."""
-    default = settings["default"]
-    how = {"starts": default["starts"], "schedule": default["schedule"]}
-    cells = at(results, default["loops"])
-    columns = {"plain": None, "advised": default["experts"]}
-    found = {}
-    for key, name in (("in_ten", "found_in_ten"), ("ever", "found_ever"), ("final", "final")):
-        alone, told = (_means(cells, how, experts, key) for experts in columns.values())
-        found |= {f"{name}_plain": maze_estimate(alone), f"{name}_advised": maze_estimate(told)}
-        found[f"{name}_gain"] = maze_estimate(told - alone)
-    for name, experts in columns.items():
-        firsts = [t["first"] for t in _tasks(cells, how, experts)]
-        found[f"first_{name}"] = maze_estimate(_means(cells, how, experts, "first"))
-        found[f"median_first_{name}"] = plain(np.median(firsts), len(firsts))
-    grid = _grid(settings)
-    answers = [_is_handful(at(results, loops), how, experts) for loops, experts, how in grid]
-    found["grid_handful"] = share_of_grid(answers)
-    return found
+    """At the default: goals found within ten episodes and ever, and the reward at the end; the grid."""
+    table, default, found = _table(results), settings["default"], {}
+    for measure, name in (("in_ten", "found_in_ten"), ("ever", "found_ever"), ("final", "final")):
+        plain, advised = (_by_maze(table, measure, default, with_advice) for with_advice in (False, True))
+        found |= {f"{name}_plain": maze_estimate(plain), f"{name}_advised": maze_estimate(advised)}
+        found[f"{name}_gain"] = maze_estimate(advised - plain)
+    return found | {"grid_handful": grid_share([_is_handful(table, cell) for cell in _cells(settings)])}
 
 
-def _grid(settings: Mapping) -> list[tuple[float, str, dict]]:
-    hows = [{"starts": s, "schedule": e} for s, e in product(settings["starts"], settings["schedules"])]
-    return [(loops, experts, how) for how in hows for loops, experts in grid_of(settings)]
-
-
-def _tasks(cells: Sequence[Mapping], how: Mapping, experts: str | None) -> list[Mapping]:
-    return [task for cell in cells for task in picked(cell["learners"], **how, experts=experts)["tasks"]]
-
-
-def _means(cells: Sequence[Mapping], how: Mapping, experts: str | None, key: str) -> np.ndarray:
-    """Each maze's mean over its tasks."""
-    return np.array([np.mean([t[key] for t in _tasks([cell], how, experts)]) for cell in cells])
-
-
-def _is_handful(cells: Sequence[Mapping], how: Mapping, experts: str) -> bool:
+def _is_handful(table: ResultsTable, cell: Mapping) -> bool:
     """Whether most tasks' goals are found within ten episodes with advice, and at most 1 of 20 without."""
-    told, alone = (_means(cells, how, e, "in_ten").mean() for e in (experts, None))
-    return bool(told > 0.5 and alone <= 0.05)
+    plain, advised = (_by_maze(table, "in_ten", cell, with_advice).mean() for with_advice in (False, True))
+    return bool(advised > 0.5 and plain <= 0.05)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The grid, a row a cell; then the default's curves by starts, with one standard deviation."""
-    found = []
-    for loops, experts, how in _grid(settings):
-        cells = at(results, loops)
-        row = {"loops": loops, "experts": experts, **how}
-        for name, of in (("plain", None), ("advised", experts)):
-            row[name] = {key: round(float(_means(cells, how, of, key).mean()), 3) for key in ("in_ten", "ever")}
-            row[name]["final"] = round(float(_means(cells, how, of, "final").mean()), 1)
-            row[name]["median_first"] = float(np.median([t["first"] for t in _tasks(cells, how, of)]))
+    table, default, found = _table(results), settings["default"], []
+    for cell in _cells(settings):
+        row: dict = dict(cell)
+        for name, advised in (("plain", False), ("advised", True)):
+            means = {key: float(_by_maze(table, key, cell, advised).mean()) for key in ("in_ten", "ever", "final")}
+            row[name] = {key: round(mean, 1 if key == "final" else 3) for key, mean in means.items()}
+            firsts = table.values("first", **{**cell, "experts": cell["experts"] if advised else None})
+            row[name]["median_first"] = float(np.median(firsts))
         found.append(row)
-    return found + _curves(settings, results)
-
-
-def _curves(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    default = settings["default"]
-    cells = at(results, default["loops"])
-    found: list[dict] = [{"curve_edges": block_edges(settings["episodes"]).tolist()}]
+    found.append({"curve_edges": block_edges(settings["episodes"]).tolist()})
     for starts in settings["starts"]:
         for name, experts in (("plain", None), ("advised", default["experts"])):
-            how = {"starts": starts, "schedule": default["schedule"], "experts": experts}
-            curves = np.array([picked(cell["learners"], **how)["curve"] for cell in cells])
-            spread = curves.std(axis=0, ddof=1) if len(curves) > 1 else np.zeros(curves.shape[1])
-            mean, spread = (np.round(of, 1).tolist() for of in (curves.mean(axis=0), spread))
-            found.append({"curve_of": name, "starts": starts, "mean": mean, "deviation": spread})
+            curve = table.curve("curve", 1, **{**default, "starts": starts, "experts": experts})
+            found.append({"curve_of": name, "starts": starts} | {key: curve[key] for key in ("mean", "deviation")})
     return found

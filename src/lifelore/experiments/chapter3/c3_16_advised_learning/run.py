@@ -1,34 +1,54 @@
-"""C3.16: Q-learning with advice in its ε branch finds its goal within a handful of episodes; without, it does not.
+"""C3.16: Q-learning on errands of a maze, with advice in its ε branch and without.
 
-ε and its annealing, and where a task's episodes start, are not printed: they are crossed with the maze's loops and
-the kinds of experts. Tasks of one maze are not independent: intervals are over mazes. Thesis: §3.7.2, Figure 3.22.
+ε, its annealing and the start of a task's episodes are not printed: they are crossed with the maze's loops and the
+kinds of experts. Tasks of one maze are not independent: intervals are over mazes. Thesis: §3.7.2, Figure 3.22.
 """
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.advice_estimates import check_grid
-from lifelore.experiments.chapter3.advice_grid import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import STARTS, run_cell
+from lifelore.action.advice.advisor import exploration_rows
+from lifelore.action.advice.goal_model import GoalModel
+from lifelore.experiments.chapter3.advice_mazes import errands_of, goal_models_of, maze_of
+from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
+from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.engine.curve_blocks import block_means
 
-__all__ = ["cells", "check", "run_cell"]
+__all__ = ["cells", "run_cell"]
+HANDFUL = 10
+"""Episodes within which a goal must be found."""
 
 
-def check(settings: Mapping) -> None:
-    check_grid(settings, ("tasks", "episodes", "max_episode_steps", "last"))
-    if settings["last"] > settings["episodes"]:
-        raise InputError(f"last must be at most episodes ({settings['episodes']}), got {settings['last']}")
-    if not 0 <= settings["learning_rate"] <= 1:
-        raise InputError(f"learning_rate must lie in [0, 1], got {settings['learning_rate']}")
-    if not settings["starts"] or not set(settings["starts"]) <= set(STARTS):
-        raise InputError(f"starts must be among {', '.join(STARTS)}, got {settings['starts']}")
-    for schedule in settings["schedules"]:
-        if np.shape(schedule) != (3,) or not all(0 <= x <= 1 for x in schedule):
-            raise InputError(
-                f"schedules must each be three numbers in [0, 1], first ε, factor and floor, got {schedule}"
-            )
-    default = settings["default"]
-    if default.get("starts") not in settings["starts"] or default.get("schedule") not in settings["schedules"]:
-        raise InputError(f"default must be a cell of the grid of starts and schedules, got {default}")
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """One maze: every start and schedule, without advice and with that of each kind of experts."""
+    maze = maze_of(settings, cell, seed)
+    advice: dict[str | None, NDArray | None] = {None: None}
+    for experts in settings["experts"]:
+        pooled = GoalModel.pooled(goal_models_of(settings, maze, experts))
+        advice[experts] = exploration_rows(pooled, settings["kappa"])
+    learners = []
+    for starts, schedule, experts in product(settings["starts"], settings["schedules"], advice):
+        tasks, curves = [], []
+        for number, errand in enumerate(errands_of(maze, settings["tasks"])):
+            tables = errand_tables(maze, errand, number, starts)
+            reached = learn_errand(settings, maze, tables, number, schedule, advice[experts])[1].reached
+            tasks.append(summary(settings, reached))
+            curves.append(1000 * reached.astype(float))
+        about = {"starts": starts, "schedule": schedule, "experts": experts}
+        numbers = {key: [task[key] for task in tasks] for key in tasks[0]}
+        learners.append({**about, **numbers, "curve": block_means(np.mean(curves, axis=0))})
+    return {**cell, "learners": learners}
+
+
+def summary(settings: Mapping, reached: NDArray[np.bool_]) -> dict:
+    """A task's numbers: the episode (from 1) that found the goal, the cap if none did; the reward at the end."""
+    found = np.flatnonzero(reached)
+    return {
+        "first": int(found[0]) + 1 if found.size else settings["episodes"],
+        "ever": bool(found.size),
+        "in_ten": bool(found.size and found[0] < HANDFUL),
+        "final": float(1000 * reached[-settings["last"] :].mean()),
+    }

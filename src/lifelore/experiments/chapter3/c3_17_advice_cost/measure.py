@@ -5,16 +5,15 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.advice_estimates import (
-    at,
+from lifelore.experiments.chapter3.advice_mazes import (
+    AGENTS,
     grid_of,
-    is_positive,
+    grid_share,
     maze_estimate,
-    picked,
-    plain,
-    share_of_grid,
+    without_interval,
 )
-from lifelore.experiments.chapter3.advice_grid import AGENTS
+from lifelore.experiments.engine.estimates import is_above
+from lifelore.experiments.engine.results_table import ResultsTable, curve_of
 
 RISE = 5.0
 """Advised steps in 100; a mean that rises by no more does not count as rising."""
@@ -25,41 +24,43 @@ def agents_of(settings: Mapping) -> list[str]:
     return [*AGENTS, *(f"q {episodes}" for episodes in settings["snapshots"])]
 
 
-def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """At the default: advice by agent at κ and at 0, how it falls, Q-learning's two ends, and the ceiling."""
-    default = settings["default"]
-    cells, how = at(results, default["loops"]), {"experts": default["experts"], "heeds": default["heeds"]}
-    at_kappa = settings["kappas"].index(settings["kappa"])
-    amounts = {agent: _per_100(cells, how, agent) for agent in agents_of(settings)}
-    found = {f"advised_{agent.replace(' ', '_')}": maze_estimate(a[:, at_kappa]) for agent, a in amounts.items()}
-    found["advice_at_zero"] = plain(_least_at_zero(settings, cells, how), len(amounts))
-    found["advice_at_zero_all_steps"] = maze_estimate(np.mean([a[:, 0] for a in amounts.values()], axis=0))
-    found["agents_falling"] = share_of_grid([_falls(a) for a in amounts.values()])
-    found["largest_rise"] = plain(max(_rise(a) for a in amounts.values()), len(amounts))
-    first, last = (amounts[f"q {settings['snapshots'][i]}"][:, at_kappa] for i in (0, -1))
-    found["early_minus_random"] = maze_estimate(first - amounts["random"][:, at_kappa])
-    found["late_minus_optimal"] = maze_estimate(last - amounts["optimal"][:, at_kappa])
-    ceilings = [picked(cell["ceilings"], experts=default["experts"]) for cell in cells]
-    found["ceiling_reaches_kappa"] = maze_estimate([c["states"][at_kappa] for c in ceilings])
-    every = [c["above"] for cell in results for c in cell["ceilings"]]
-    found["gains_above_ceiling"] = plain(sum(every), len(every))
-    found["grid_falling"] = share_of_grid(_grid_answers(settings, results))
-    return found
+def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable]:
+    """Advised steps by agent, and the ceilings."""
+    amounts = ResultsTable.nested(results, "amounts", ("experts", "heeds", "agent"), ("loops",))
+    return amounts, ResultsTable.nested(results, "ceilings", ("experts",), ("loops",))
 
 
-def _per_100(cells: Sequence[Mapping], how: Mapping, agent: str, of: str = "steps") -> np.ndarray:
+def _per_100(table: ResultsTable, cell: Mapping, agent: str, of: str = "steps") -> np.ndarray:
     """Advised steps in 100, of all or of those where an expert passed, (mazes, kappas)."""
-    entries = [picked(cell["amounts"], **how, agent=agent) for cell in cells]
-    return np.array([100 * np.array(e["advised"]) / np.maximum(e[of], 1) for e in entries])
+    advised, steps = (table.values(name, agent=agent, **cell) for name in ("advised", of))
+    return 100 * advised / np.maximum(steps, 1)
 
 
-def _least_at_zero(settings: Mapping, cells: Sequence[Mapping], how: Mapping) -> float:
-    return min(_per_100(cells, how, agent, "known")[:, 0].mean() for agent in agents_of(settings))
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """At the default: advice at 0, how it falls, Q-learning's two ends; the ceiling and the grid."""
+    (table, ceilings), default = _tables(results), settings["default"]
+    agents, at_kappa = agents_of(settings), settings["kappas"].index(settings["kappa"])
+    amounts = {agent: _per_100(table, default, agent) for agent in agents}
+    at_zero = min(_per_100(table, default, agent, "known")[:, 0].mean() for agent in agents)
+    first, last, random, optimal = (
+        amounts[agent][:, at_kappa]
+        for agent in (*(f"q {settings['snapshots'][i]}" for i in (0, -1)), "random", "optimal")
+    )
+    above = [row["above"] for row in ceilings.records]
+    return {
+        "advice_at_zero": without_interval(at_zero, len(agents)),
+        "agents_falling": grid_share([_falls(amount) for amount in amounts.values()]),
+        "largest_rise": without_interval(max(map(_rise, amounts.values())), len(agents)),
+        "early_minus_random": maze_estimate(first - random),
+        "late_minus_optimal": maze_estimate(last - optimal),
+        "gains_above_ceiling": without_interval(sum(above), len(above)),
+        "grid_falling": grid_share(_grid_answers(settings, table)),
+    }
 
 
 def _falls(amounts: np.ndarray) -> bool:
     """Whether advice at the greatest κ is less than at 0 for certain."""
-    return is_positive(maze_estimate(amounts[:, 0] - amounts[:, -1]))
+    return is_above(maze_estimate(amounts[:, 0] - amounts[:, -1]), 0.0)
 
 
 def _rise(amounts: np.ndarray) -> float:
@@ -68,28 +69,25 @@ def _rise(amounts: np.ndarray) -> float:
     return float((mean - np.minimum.accumulate(mean)).max())
 
 
-def _grid_answers(settings: Mapping, results: Sequence[Mapping]) -> list[bool]:
+def _grid_answers(settings: Mapping, table: ResultsTable) -> list[bool]:
     answers = []
     for heeds in (True, False):
         for loops, experts in grid_of(settings):
-            how = {"experts": experts, "heeds": heeds}
-            amounts = [_per_100(at(results, loops), how, agent) for agent in agents_of(settings)]
+            cell = {"loops": loops, "experts": experts, "heeds": heeds}
+            amounts = [_per_100(table, cell, agent) for agent in agents_of(settings)]
             answers.append(all(_falls(a) and _rise(a) <= RISE for a in amounts))
     return answers
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Advice by κ for every agent and cell of the grid, with its deviation over mazes; and the ceilings."""
-    found = []
+    (table, ceilings), found = _tables(results), []
     for loops, experts in grid_of(settings):
-        cells = at(results, loops)
         for heeds in (True, False):
+            cell = {"loops": loops, "experts": experts, "heeds": heeds}
             for agent in agents_of(settings):
-                amounts = _per_100(cells, {"experts": experts, "heeds": heeds}, agent)
-                spread = amounts.std(axis=0, ddof=1) if len(amounts) > 1 else np.zeros(amounts.shape[1])
-                row = {"loops": loops, "experts": experts, "heeds": heeds, "agent": agent}
-                mean, deviation = (np.round(of, 1).tolist() for of in (amounts.mean(axis=0), spread))
-                found.append({**row, "mean": mean, "deviation": deviation})
-        states = np.mean([picked(cell["ceilings"], experts=experts)["states"] for cell in cells], axis=0)
+                curve = curve_of(_per_100(table, cell, agent), 1)
+                found.append({**cell, "agent": agent, "mean": curve["mean"], "deviation": curve["deviation"]})
+        states = ceilings.values("states", loops=loops, experts=experts).mean(axis=0)
         found.append({"loops": loops, "experts": experts, "ceiling": np.round(states, 3).tolist()})
     return found

@@ -5,48 +5,57 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, PAPER, VERMILION, house_style, new_figure
+from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures.curves import draw_curves
+from lifelore.figures.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    LIGHT,
+    PAPER,
+    VERMILION,
+    house_style,
+    new_figure,
+    two_rows,
+)
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-
-def draw(result: Mapping):
-    return draw_guided_choices(result)
-
-
-_COLOURS = {"place": BLUE, "percept": GREEN}
-_KINDS = {"place": "places, other goals of the maze", "percept": "percepts, other mazes"}
-_WAYS = {
+COLOURS = {"place": BLUE, "percept": GREEN}
+KINDS = {"place": "places, other goals of the maze", "percept": "percepts, other mazes"}
+WAYS = {
     ("tree and rollouts", "most tried"): ("o", True, "tree and rollouts"),
     ("tree", "most tried"): ("o", False, "tree alone"),
     ("tree and rollouts", "best mean"): ("D", True, "tree and rollouts, move of best mean"),
 }
-_INDICES = {"ucb1": "UCB1", "beta": "Thompson, Beta", "gaussian": "Thompson, normal"}
-_STARTS = {"flat": GREY, "even": VERMILION}
-_START_WORDS = {"flat": "flat start", "even": "pseudo-counts spread evenly"}
+INDICES = {"ucb1": "UCB1", "beta": "Thompson, Beta", "gaussian": "Thompson, normal"}
+STARTS = {"flat": ("flat start", GREY), "even": ("pseudo-counts spread evenly", VERMILION)}
 
 
-def draw_guided_choices(result: Mapping) -> "Figure":
-    """The figure from the result of C5.3."""
-    settings, rows = result["settings"], result["rows"]
-    simulations = settings["simulations"]
+def draw(result: Mapping):
+    """Tree and depth-first search above, bandits below."""
+    settings = result["settings"]
+    table = ResultsTable(
+        result["rows"], ("use", "kind", "form", "guides", "move", "simulations", "search", "index")
+    )
     with house_style():
         figure = new_figure(11.4, 8.6)
-        upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.25, 1.0], hspace=0.03)[:, 0]
-        *searches, ordered = upper.subplots(1, len(simulations) + 1, squeeze=False)[0]
-        for axes, n in zip(searches, simulations, strict=True):
-            _draw_gains(axes, settings, [row for row in rows if row["use"] == "search"], n)
-        _share_limits(searches)
-        _draw_orders(ordered, settings, [row for row in rows if row["use"] == "depth first"])
+        upper, lower = two_rows(figure, (1.25, 1.0))
+        *searches, ordered = upper.subplots(1, len(settings["simulations"]) + 1, squeeze=False)[0]
+        for axes, n in zip(searches, settings["simulations"], strict=True):
+            _draw_gains(axes, settings["forms"], table.select(use="search", simulations=n), n)
+        ends = np.array([axes.get_xlim() for axes in searches])
+        for axes in searches:
+            axes.set_xlim(ends[:, 0].min(), ends[:, 1].max())
         for axes in searches[1:]:
             axes.set_yticklabels([])
+        _draw_orders(ordered, settings["forms"], table.select(use="depth first"))
         upper.legend(*searches[0].get_legend_handles_labels(), loc="outside upper left", ncols=2)
-        panels = lower.subplots(1, len(_INDICES), sharey=True)
-        curves = [row for row in rows if row["use"] == "curve"]
-        for axes, index in zip(panels, _INDICES, strict=True):
-            _draw_regret(axes, settings, [row for row in curves if row["index"] == index], index)
+        panels = lower.subplots(1, len(INDICES), sharey=True)
+        for axes, index in zip(panels, INDICES, strict=True):
+            _draw_regret(axes, settings["pulls"], table.select(use="curve", index=index).records, INDICES[index])
         panels[0].set_ylabel("regret so far")
         lower.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
         lower.supxlabel(
@@ -57,60 +66,51 @@ def draw_guided_choices(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_gains(axes: "Axes", settings: Mapping, rows: Sequence[Mapping], n: int) -> None:
+def _draw_gains(axes: "Axes", forms: Sequence[str], table: ResultsTable, n: int) -> None:
     """Share more than without the prior: forms downwards, a colour a kind, a mark a way of guiding."""
-    rows = [row for row in rows if row["simulations"] == n]
-    plain = {row["move"]: f"{100 * row['success']['value']:.0f} %" for row in rows if row["kind"] is None}
-    ways = [(kind, *way) for kind in _KINDS for way in _WAYS]
-    for nth, (kind, *way) in enumerate(ways):
-        mine = [row for row in rows if [row["kind"], row["guides"], row["move"]] == [kind, *way]]
-        gain_of = {row["form"]: row["gain"] for row in mine}
-        gains = [gain_of[form] for form in settings["forms"]]
-        mark, filled, words = _WAYS[way[0], way[1]]
-        at = np.arange(len(gains)) + 0.13 * (nth - 2.5)
-        label = f"{_KINDS[kind]}: {words}"
-        _draw_points(axes, gains, at, _COLOURS[kind], label, 100.0, mark, filled)
+    ways = [(kind, *way) for kind in KINDS for way in WAYS]
+    for nth, (kind, guides, move) in enumerate(ways):
+        gains = [table.record(kind=kind, form=form, guides=guides, move=move)["gain"] for form in forms]
+        mark, filled, words = WAYS[guides, move]
+        at = np.arange(len(forms)) + 0.13 * (nth - 2.5)
+        label = f"{KINDS[kind]}: {words}"
+        _draw_points(axes, gains, at, COLOURS[kind], label, 100.0, mark, COLOURS[kind] if filled else PAPER)
     axes.axvline(0, color=INK, lw=1.0, zorder=1)
+    tried, mean = (100 * table.record(kind=None, move=m)["success"]["value"] for m in ("most tried", "best mean"))
     axes.set_title(f"Tree search, {n} simulations")
-    without = f"without prior: {plain['most tried']}, by best mean {plain['best mean']}"
+    without = f"without prior: {tried:.0f} %, by best mean {mean:.0f} %"
     axes.set_xlabel(f"more goals reached (points)\n{without}")
-    _name_rows(axes, settings["forms"])
+    _name_rows(axes, forms)
 
 
-def _draw_orders(axes: "Axes", settings: Mapping, rows: Sequence[Mapping]) -> None:
+def _draw_orders(axes: "Axes", forms: Sequence[str], table: ResultsTable) -> None:
     """Nodes expanded as a ratio to a random order's: depth first by form, then deepened and pruned."""
-    forms = [("depth first", form) for form in settings["forms"]]
-    wanted = [*forms, ("deepening", "proportion"), ("pruned", "proportion")]
-    ratio_of = {(row["search"], row["form"], row["kind"]): row for row in rows}
-    for nth, kind in enumerate(_KINDS):
-        found = [ratio_of[*way, kind]["ratio"] for way in wanted]
+    wanted = [("depth first", form) for form in forms] + [("deepening", "proportion"), ("pruned", "proportion")]
+    for nth, kind in enumerate(KINDS):
+        ratios = [table.record(search=search, form=form, kind=kind)["ratio"] for search, form in wanted]
         at = np.arange(len(wanted)) + 0.24 * (nth - 0.5)
-        _draw_points(axes, found, at, _COLOURS[kind], _KINDS[kind], 1.0)
+        _draw_points(axes, ratios, at, COLOURS[kind], KINDS[kind], 1.0, "o", COLOURS[kind])
     axes.axvline(1, color=INK, lw=1.0, zorder=1)
-    axes.set_title("Depth-first search")
-    axes.set_xlabel("nodes expanded / random order's")
-    axes.set_xlim(left=0)
-    shares = [100 * ratio_of["pruned", "proportion", kind]["reached"]["value"] for kind in _KINDS]
-    pruned = f"pruned\n(finds {shares[0]:.0f}, {shares[1]:.0f} %)"
-    _name_rows(axes, [*settings["forms"], "deepening", pruned])
+    axes.set(title="Depth-first search", xlabel="nodes expanded / random order's", xlim=(0, None))
+    place, percept = (100 * table.record(search="pruned", kind=kind)["reached"]["value"] for kind in KINDS)
+    _name_rows(axes, [*forms, "deepening", f"pruned\n(finds {place:.0f}, {percept:.0f} %)"])
     axes.axhline(len(forms) - 0.5, color=LIGHT, lw=1.0)
 
 
 def _draw_points(
     axes: "Axes",
-    found: Sequence[Mapping],
+    numbers: Sequence[Mapping],
     at: np.ndarray,
     colour: str,
     label: str,
     scale: float,
-    mark: str = "o",
-    filled: bool = True,
+    mark: str,
+    face: str,
 ) -> None:
-    values = [scale * number["value"] for number in found]
-    for place, number in zip(at, found, strict=True):
+    for place, number in zip(at, numbers, strict=True):
         if number["ci95"]:
             axes.plot([scale * end for end in number["ci95"]], [place, place], color=colour, lw=1.3, zorder=2)
-    face = colour if filled else PAPER
+    values = [scale * number["value"] for number in numbers]
     axes.plot(values, at, mark, ms=4.5, ls="", color=colour, mfc=face, mew=1.2, label=label, zorder=3)
 
 
@@ -122,21 +122,15 @@ def _name_rows(axes: "Axes", names: Sequence[str]) -> None:
     axes.grid(axis="x", color=LIGHT)
 
 
-def _share_limits(panels: Sequence["Axes"]) -> None:
-    ends = np.array([axes.get_xlim() for axes in panels])
-    for axes in panels:
-        axes.set_xlim(ends[:, 0].min(), ends[:, 1].max())
-
-
-def _draw_regret(axes: "Axes", settings: Mapping, rows: Sequence[Mapping], index: str) -> None:
+def _draw_regret(axes: "Axes", pulls: int, rows: Sequence[Mapping], title: str) -> None:
+    series, looks = {}, {}
     for row in rows:
-        colour = _COLOURS[row["kind"]] if row["kind"] else _STARTS[row["form"]]
-        label = _KINDS[row["kind"]] if row["kind"] else _START_WORDS[row["form"]]
-        mean, half = np.array(row["mean"]), 1.96 * np.array(row["error"])
-        pulls = np.unique(np.linspace(0, settings["pulls"] - 1, len(mean)).astype(int)) + 1
-        axes.fill_between(pulls, mean - half, mean + half, color=colour, alpha=0.18, lw=0)
-        axes.plot(pulls, mean, color=colour, label=label)
-    axes.set_title(_INDICES[index])
-    axes.set_xlabel("pulls")
+        label, colour = (KINDS[row["kind"]], COLOURS[row["kind"]]) if row["kind"] else STARTS[row["form"]]
+        series[label], looks[label] = (
+            {"mean": row["mean"], "error": 1.96 * np.array(row["error"])},
+            {"color": colour},
+        )
+    x = np.unique(np.linspace(0, pulls - 1, len(rows[0]["mean"])).astype(int)) + 1
+    draw_curves(axes, x, series, looks=looks, title=title, xlabel="pulls", legend=False)
     axes.set_ylim(bottom=0)
     axes.grid(axis="y", color=LIGHT)

@@ -1,4 +1,4 @@
-"""Searches and bandits in noise mazes, with an action prior and without.
+"""C5.3: searches and bandits in noise mazes, with an action prior and without.
 
 A cell is one maze with a held-out goal. A prior on *places* comes from other goals of the same maze, one on
 *percepts* from other mazes, a goal in each; neither has met the goal in question. What is compared within a maze
@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.priors.action_prior import FORMS, ActionPrior
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search import bandit
 from lifelore.action.search.depth_first import DepthFirstResult, depth_first, iterative_deepening, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
@@ -23,19 +23,19 @@ from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
-from lifelore.experiments.engine.learning_settings import check_among, check_counts
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
 TREE, BOTH = GUIDES = ("tree", "tree and rollouts")
-"""What the prior guides; without it, rollouts are uniform."""
+"""Parts of the search that the prior guides; without it, rollouts are uniform."""
 MOST, MEAN = "most tried", "best mean"
 WAYS = ((BOTH, MOST), (TREE, MOST), (BOTH, MEAN))
-"""What the prior guides and which move follows a search: the default, and each choice alone made otherwise."""
+"""The guided part and the move that follows a search: the default, and each choice alone made otherwise."""
 PLAIN = "uniform"
 PRUNED = "pruned"
 UCB1, BETA, GAUSSIAN = INDICES = ("ucb1", "beta", "gaussian")
 FLAT, EVEN = "flat", "even"
-"""Bandits without the prior: nothing known, and as many pseudo-counts spread evenly."""
+"""Starts of a bandit without the prior: no pseudo-counts, and as many spread evenly."""
+SEARCH_FORM = "support"
 ORDER_FORM = ARMS_FORM = "proportion"
 """Form whose order is pruned and deepened, and whose arms start at other strengths too."""
 BLOCKS = 20
@@ -195,7 +195,7 @@ def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
 
 
 def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
-    """What is known of the moves at each place before the first pull."""
+    """Starts of the arms: pseudo-counts of the moves at each place before the first pull."""
     shape = (len(maze.starts), maze.best.shape[1])
     flat = np.full(shape, 1 / shape[1])
     strength = settings["strength"]
@@ -203,26 +203,15 @@ def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
     yield {"kind": None, "form": EVEN, "strength": strength}, bandit.prior_arms(flat, strength)
     for (kind, form), probs in maze.probs_of.items():
         other = [s for s in settings["other_strengths"] if form == ARMS_FORM]
-        for worth in (strength, *other):
-            about = {"kind": kind, "form": form, "strength": worth}
-            yield about, bandit.prior_arms(probs[maze.starts], worth)
-
-
-SEARCH_FORM = "support"
+        for pseudo_pulls in (strength, *other):
+            about = {"kind": kind, "form": form, "strength": pseudo_pulls}
+            yield about, bandit.prior_arms(probs[maze.starts], pseudo_pulls)
 
 
 def check(settings: Mapping) -> None:
-    check_counts(settings, ("mazes", "training_tasks", "simulations", "depth", "max_steps", "starts", "pulls"))
-    check_among(settings, "forms", FORMS)
     missing = [form for form in (SEARCH_FORM, ORDER_FORM) if form not in settings["forms"]]
     if missing:
         raise InputError(f"forms must include the defaults, {SEARCH_FORM} and {ORDER_FORM}; add {missing[0]}")
     density = settings["density"]
-    if np.shape(density) != (2,) or not 0 <= density[0] <= density[1] < 1:
-        raise InputError(f"density must be two shares of obstacles, rising, in [0, 1), got {density}")
-    if not 0 <= settings["slip"] < 0.5:
-        raise InputError(f"slip must lie in [0, 0.5), got {settings['slip']}")
-    if not 0 <= settings["prune"] <= 1:
-        raise InputError(f"prune must lie in [0, 1], got {settings['prune']}")
-    if min(settings["strength"], *settings["other_strengths"]) <= 0:
-        raise InputError("strength and other_strengths must be positive: 0 is the flat start, always measured")
+    if density[0] > density[1]:
+        raise InputError(f"density must be two shares of obstacles, rising, got {density}")

@@ -1,0 +1,152 @@
+"""Measures of C3.7 from made-up cells, by hand, and the priors of a few small runs."""
+
+import numpy as np
+import pytest
+
+from lifelore.domains.factory.factory import RAW
+from lifelore.experiments.chapter3.c3_07_feature_sets.measure import measure, rows
+from lifelore.experiments.chapter3.c3_07_feature_sets.run import KEYS, METHODS, cells, grid_of, run_cell
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import (
+    CARDINALS,
+    DIAGONALS,
+    contexts_of,
+    learn_problem,
+    problem_of,
+)
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.7")
+QUICK = dict(claim_of("C3.7").sizes["quick"])
+
+SETTINGS = {
+    **QUICK,
+    "runs": 4,
+    "episodes": 3,
+    "early": 2,
+    "encodings": ["global"],
+    "schedules": [[1.0, 0.95, 0.01]],
+    "alpha0": [0.1],
+    "max_steps": [200],
+    "policies": [3],
+}
+"""A grid of two cells, ties uniform and by the prior."""
+AS_PRINTED = {
+    "uniform": -5000.0,
+    "state": -4000.0,
+    "phi1": -3000.0,
+    "phi2": -1100.0,
+    "phi3": -1000.0,
+    "phi4": -1500.0,
+}
+JITTER = [-3.0, 1.0, -1.0, 3.0]
+
+
+def made_up(means=AS_PRINTED, by_prior=None):
+    """Cells of four runs, every number a bit apart by run and method; `by_prior`: means where the prior ties."""
+
+    def numbers(method, how, run):
+        of_cell = by_prior if by_prior and how["ties"] == "prior" else means
+        place = METHODS.index(method)
+        value = of_cell[method] + JITTER[(run + place) % 4] * (1 + 0.1 * place)
+        return {
+            "method": method,
+            **how,
+            **dict.fromkeys(("early", "all"), value),
+            "mean": [value] * 3,
+        }
+
+    met = [(method, cell) for method in METHODS for cell in grid_of(SETTINGS).cells_of(method)]
+    return [{"run": run, "optimal": 0.0, "found": [numbers(*at, run) for at in met]} for run in range(4)]
+
+
+def plain(measured):
+    return {name: number.to_dict() for name, number in measured.items()}
+
+
+def test_differences_by_hand():
+    found = measure(SETTINGS, made_up())
+    # The jitter cancels over the four runs.
+    assert found["early_phi3"].value == pytest.approx(-1000)
+    assert found["phi3_minus_phi1"].value == pytest.approx(2000)
+    assert found["phi4_minus_phi3"].value == pytest.approx(-500)
+    assert found["state_minus_uniform"].value == pytest.approx(1000)
+    # The optimum lies 5000 above learning without a prior.
+    assert found["phi2_minus_phi3_of_distance"].value == pytest.approx(-100 / 5000)
+    assert rows(SETTINGS, made_up())[0]["closed_phi4"]["value"] == pytest.approx(3500 / 5000)
+    assert found["phi3_minus_phi1"].n == 4
+
+
+def test_shares_of_the_grid_by_hand():
+    assert measure(SETTINGS, made_up())["grid_phi3_best"].value == 1.0
+    other = {**AS_PRINTED, "phi2": -900.0, "state": -5500.0}
+    found = measure(SETTINGS, made_up(by_prior=other))
+    assert found["grid_phi3_best"].value == found["grid_features_above_state_above_uniform"].value == 0.5
+
+
+@pytest.mark.parametrize(
+    ("changed", "verdict"),
+    [
+        ({}, "holds"),
+        ({"phi4": -900.0}, "holds in part"),
+        ({"phi2": -1400.0}, "holds in part"),
+        ({"state": -6000.0}, "holds in part"),
+        ({"state": -500.0, "uniform": -400.0}, "does not hold"),
+    ],
+)
+def test_verdicts(changed, verdict):
+    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up({**AS_PRINTED, **changed})))) == verdict
+
+
+def test_every_condition_asks_of_something_measured():
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
+
+
+def test_the_figure_is_drawn_from_rows_alone():
+    results = made_up()
+    result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, results)), "rows": rows(SETTINGS, results)}
+    curves, grid = CLAIM.draw(result).axes
+    assert len(curves.lines) == len(METHODS) + 1
+    assert [text.get_text() for text in grid.texts][:5] == ["20", "40", "78", "80", "70"]
+
+
+@pytest.fixture(scope="module")
+def small():
+    settings = {**QUICK, "episodes": 4, "early": 2, "test_tasks": 1, "max_steps": [50, 60]}
+    settings["default"] = {**QUICK["default"], "max_steps": 60}
+    return settings, run_cell(settings, cells(settings)[0], 3)
+
+
+def test_every_method_is_met_once_in_each_cell_it_reads(small):
+    _, result = small
+    met = [(f["method"], str([f[key] for key in KEYS])) for f in result["found"]]
+    assert len(set(met)) == len(met)
+    by_method = {method: sum(name == method for name, _ in met) for method in METHODS}
+    # ε × ties, α⁰, cap, policies; states have three codings more; no prior has ε and the cap alone.
+    assert by_method == {"uniform": 3, "state": 10, **dict.fromkeys(("phi1", "phi2", "phi3", "phi4"), 7)}
+
+
+def test_without_a_prior_it_is_plain_q_learning(small):
+    settings, result = small
+    problem = problem_of(settings, (3, "C3.7", 0, "testing", 0))
+    schedule = schedule_of({**settings, "max_steps": 60}, [1.0, 0.95, 0.01])
+    rewards = learn_problem(problem, None, schedule)[0].rewards
+    default = next(
+        f for f in result["found"] if f["method"] == "uniform" and "mean" in f and f["schedule"][0] == 1.0
+    )
+    np.testing.assert_allclose(default["mean"], rewards, atol=0.006)
+    assert result["optimal"] == problem.optimal
+
+
+def test_a_problem_is_solved_from_start_to_end():
+    problem = problem_of({"discount": 0.99, "components": 2}, (5, "C3.7"))
+    n_cells = problem.task.factory.n_cells
+    assert problem.way[0] == problem.tables.starts[0] == problem.task.factory.start
+    assert (problem.task.stages[problem.way[0] // n_cells] == RAW).all()
+    # Two items procured and assembled pay 40 and completion 100; every other step of the way costs 2.
+    assert problem.optimal == 140 - 2 * (len(problem.way) - 4)
+    assert not problem.best[problem.task.completed].any()
+    assert problem.best[~problem.task.completed].any(axis=1).all()
+    # φ2 is four of the 3×3 cells, each of four kinds.
+    assert contexts_of(problem, "phi2").max() < 4**4
+    assert not set(CARDINALS) & set(DIAGONALS)

@@ -1,0 +1,128 @@
+"""Measures of C3.9 from made-up tasks, by hand, and a few small tasks."""
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.chapter3.c3_09_online_features.measure import measure, rows
+from lifelore.experiments.chapter3.c3_09_online_features.run import (
+    METHODS,
+    cells,
+    grid_of,
+    run_cell,
+)
+from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.modified_factory_tasks import learn_problem, problem_of
+from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.9")
+QUICK = dict(claim_of("C3.9").sizes["quick"])
+
+SETTINGS = {
+    **QUICK,
+    "runs": 4,
+    "sources": ["learnt", "exact"],
+    "schedules": [[1.0, 0.85, 0.01]],
+    "ties": ["uniform"],
+}
+SETTINGS = {**SETTINGS, "max_steps": [300]}
+"""A grid of two cells: whose policies count."""
+FIRST = {"uniform": -9000.0, "full": -4000.0, "selected": -3500.0}
+LAST = {"uniform": -100.0, "full": -100.0, "selected": -100.0}
+JITTER = [-3.0, 1.0, -1.0, 3.0]
+
+
+def made_up(first=FIRST, last=LAST, learnt_first=None):
+    """Four runs of three tasks; the first task, in which nobody has a prior, is another number altogether."""
+
+    def numbers(method, how, run):
+        of_cell = learnt_first if learnt_first and how["source"] == "learnt" else first
+        place = METHODS.index(method)
+        jitter = JITTER[(run + place) % 4] * (1 + 0.1 * place)
+        firsts = [-8000.0, of_cell[method] + jitter - 10, of_cell[method] + jitter + 10]
+        found = {"first": firsts, "last": [-500.0] + [last[method] + jitter] * 2, "n_features": [10, 5, 4]}
+        return {"method": method, **how, **found}
+
+    met = [(method, cell) for method in METHODS for cell in grid_of(SETTINGS).cells_of(method)]
+    return [
+        {"run": run, "optimal": [7.0, 0.0, 0.0], "found": [numbers(*at, run) for at in met]} for run in range(4)
+    ]
+
+
+def plain(measured):
+    return {name: number.to_dict() for name, number in measured.items()}
+
+
+def test_the_grid_has_a_row_for_each_cell():
+    assert rows(SETTINGS, made_up())[1]["first_uniform"] == pytest.approx(-9000)
+
+
+def test_the_first_task_takes_no_part_in_differences_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["optimal_reward"].value == 0.0
+    assert found["exact_first_selected_minus_full"].value == pytest.approx(500)
+    assert found["learnt_first_full_minus_uniform"].value == pytest.approx(5000)
+    assert found["learnt_last_selected_minus_uniform_of_distance"].value == pytest.approx(0, abs=1e-9)
+    assert found["exact_features_after_last_task"].value == 4.0
+    assert found["grid_order_at_first"].value == 1.0
+
+
+def test_verdicts():
+    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds"
+    # 600 of the 9000 between uniform's first episode and the optimum are more than 5 %.
+    apart = measure(SETTINGS, made_up(last={**LAST, "uniform": -700.0}))
+    assert apart["exact_last_full_minus_uniform_of_distance"].value == pytest.approx(600 / 9000)
+    assert CLAIM.predicate.verdict(plain(apart)) == "holds in part"
+    poor = {**FIRST, "full": -9500.0, "selected": -9400.0}
+    half = measure(SETTINGS, made_up(learnt_first=poor))
+    assert half["grid_order_at_first"].value == 0.5
+    assert CLAIM.predicate.verdict(plain(half)) == "holds in part"
+    assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(first=poor)))) == "does not hold"
+
+
+def test_every_condition_asks_of_something_measured():
+    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
+
+
+def test_the_grid_is_the_default_and_every_other_choice_alone():
+    grid = grid_of(QUICK)
+    assert grid.cells[0] == grid.default == QUICK["default"]
+    assert len(grid.cells) == 1 + 2 + 1 + 1 + 1
+
+
+def test_a_small_run_agrees_with_an_agent_of_its_own():
+    settings = {**QUICK, "tasks": 2, "episodes": 4}
+    result = run_cell(settings, cells(settings)[0], 8)
+    found = {
+        (f["method"], f["source"]): f
+        for f in result["found"]
+        if f["schedule"] == [1.0, 0.85, 0.01] and f["max_steps"] == 300 and f["ties"] != "prior"
+    }
+    assert set(found) == {("uniform", None), *((m, s) for m in METHODS[1:] for s in settings["sources"])}
+    schedule = schedule_of({**settings, "max_steps": 300}, [1.0, 0.85, 0.01])
+    agent = OnlineAgent(True, Counting("learnt", "tried"), 0.1, "uniform")
+    for i in range(2):
+        problem = problem_of(settings, (8, "C3.9", 0, i))
+        rewards = agent.learn(problem, schedule).rewards
+        ours, uniform = found["selected", "learnt"], learn_problem(problem, None, schedule)[0].rewards
+        assert [ours["first"][i], ours["last"][i]] == [rewards[0], rewards[-1]]
+        assert [found["uniform", None][part][i] for part in ("first", "last")] == [uniform[0], uniform[-1]]
+        assert ours["n_features"][i] == len(agent.chosen)
+        assert result["optimal"][i] == problem.optimal
+    # Nobody has a prior in the first task.
+    assert len({str((f["first"][0], f["last"][0])) for f in found.values()}) == 1
+
+
+def test_the_figure_is_drawn_from_rows_alone():
+    results = made_up()
+    result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, results)), "rows": rows(SETTINGS, results)}
+    learnt, exact, first, last = CLAIM.draw(result).axes
+    assert learnt.get_title(loc="left") == "policies counted: learnt"
+    assert len(exact.lines) == 2 * len(METHODS) + 1
+    assert [text.get_text() for text in first.texts] == ["−9.0", "−4.0", "−3.5"] * 2
+    assert [text.get_text() for text in last.texts] == ["−0.1"] * 6
+
+
+def test_settings_without_a_source_that_the_claim_asks_about():
+    with pytest.raises(InputError, match="sources must hold exact and learnt"):
+        CLAIM.settings("quick", {"sources": ["learnt"]})

@@ -1,0 +1,114 @@
+"""Measures of C3.15 from made-up cells, by hand."""
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.experiments.chapter3.advice_mazes import AGENTS
+from lifelore.experiments.chapter3.c3_15_advice_table.figure import PRINTED
+from lifelore.experiments.chapter3.c3_15_advice_table.measure import measure, rows
+from lifelore.experiments.engine.registry import claim_of
+
+CLAIM = claim_of("C3.15")
+FULL = dict(claim_of("C3.15").sizes["full"])
+QUICK = dict(claim_of("C3.15").sizes["quick"])
+
+SETTINGS = {**QUICK, "tasks": 4, "loops": [0.1, 0.4]}
+ARRIVED = {"none": 1, "thesis": 3, "better": 4, "uniform only": 2, "goal unknown": 1}
+"""Of four tasks, by who advises; one less in maze 0, and at loops 0.4 the thesis's advisor does not help."""
+
+
+def arrived(agent, way, loops, maze):
+    if agent == "optimal":
+        return 4
+    if way == "thesis" and loops == 0.4:
+        way = "none"
+    return ARRIVED[way] - (maze == 0)
+
+
+def entry(agent, way, experts, loops, maze):
+    n = arrived(agent, way, loops, maze)
+    advised = {"none": 0, "thesis": 50, "better": 40 if agent == "bug" else 10}.get(way, 20)
+    steps = [100] * n + [200] * (4 - n)
+    return {
+        "experts": experts,
+        "way": way,
+        "agent": agent,
+        "reached": [1] * n + [0] * (4 - n),
+        "steps": steps,
+        "advised": [advised if s == 100 else 0 for s in steps],
+    }
+
+
+def made_up():
+    cells = []
+    for loops in SETTINGS["loops"]:
+        for maze in range(3):
+            walks = [entry(agent, "none", None, loops, maze) for agent in AGENTS]
+            for experts in SETTINGS["experts"]:
+                ways = ["thesis", "better", "uniform only"]
+                if (loops, experts) == (0.1, "walks"):
+                    ways.append("goal unknown")
+                walks += [entry(agent, way, experts, loops, maze) for way in ways for agent in AGENTS]
+            learners = [{"experts": None, "final": [0.0, 100.0 * maze]}]
+            learners += [{"experts": e, "final": [1000.0, 900.0]} for e in SETTINGS["experts"]]
+            cells.append({"loops": loops, "maze": maze, "walks": walks, "learners": learners})
+    return cells
+
+
+def test_headline_by_hand():
+    found = measure(SETTINGS, made_up())
+    # Without advice 0, 1, 1 of 4 tasks in the three mazes; with the thesis's 2, 3, 3.
+    assert found["optimal_thesis"].value == 1000.0
+    assert found["explorers_raised"].value == 4
+    assert found["thesis_least"].value == pytest.approx(1000 * 8 / 12)
+    assert found["better_least"].value == pytest.approx(1000 * 11 / 12)
+    assert found["uniform_only_least"].value == pytest.approx(1000 * 5 / 12)
+    assert found["goal_unknown_least"].value == pytest.approx(1000 * 2 / 12)
+
+
+def test_advised_shares_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["better_most_advised"].value == 40
+
+
+def test_learning_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["q_learning_thesis"].value == 950.0
+    assert found["q_learning_gain"].value == 900.0
+
+
+def test_shares_of_the_grid_by_hand():
+    found = measure(SETTINGS, made_up())
+    # Of 2 loop densities × 2 kinds of experts.
+    assert (found["grid_all_raised"].value, found["grid_all_raised"].n) == (0.5, 4)
+
+
+def test_rows_hold_the_whole_grid():
+    found = rows(SETTINGS, made_up())
+    assert len(found) == 4 * (4 * len(AGENTS) + 2)
+    first = next(r for r in found if r["way"] == "thesis" and r["agent"] == "avoid")
+    assert (first["gain"], first["gain_is_certain"], first["reward"]) == (500.0, True, 666.7)
+    # Half of each walk that arrives is advised, 2, 3 and 3 of 4 walks.
+    assert (first["advised"], first["median_steps"]) == (33.3, 100.0)
+    assert found[0]["reward"] == 166.7
+    learning = [row for row in found if row["agent"] == "q-learning"][:2]
+    assert [row["reward"] for row in learning] == [50.0, 950.0]
+    assert all("gain" not in r for r in found if r["way"] == "none")
+
+
+def test_printed_table_and_full_size_are_the_thesiss():
+    assert set(PRINTED) == {*AGENTS, "q-learning"}
+    assert (FULL["size"], FULL["kappa"], FULL["window"], FULL["max_steps"]) == (30, 0.5, 300, 5000)
+    assert (FULL["q_learning"]["episodes"], FULL["q_learning"]["max_episode_steps"]) == (5000, 200)
+    assert FULL["tasks"] >= 20
+
+
+@pytest.mark.parametrize(
+    ("overrides", "rule"),
+    [
+        ({"q_learning": '{"tasks": 1}'}, "q_learning must have exactly"),
+    ],
+)
+def test_settings_that_limits_cannot_describe(overrides, rule):
+    with pytest.raises(InputError, match=rule):
+        CLAIM.settings("quick", overrides)
