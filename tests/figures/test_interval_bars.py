@@ -1,0 +1,26 @@
+"""Bars stand at their values, groups side by side, and say their own words where they have some."""
+
+import pytest
+
+from lifelore.figures.interval_bars import draw_interval_bars
+from lifelore.figures.style import new_figure
+
+
+def drawn(groups, **how):
+    axes = new_figure(3, 2).subplots()
+    draw_interval_bars(axes, ["first", "second"], groups, **how)
+    return axes
+
+
+def test_groups_stand_side_by_side_and_none_leaves_its_place_empty():
+    one, other = [{"value": 1.0, "ci95": [0.5, 2.0]}, {"value": 3.0, "ci95": None}], [{"value": 4.0}, None]
+    axes = drawn({"a": one, "b": other}, horizontal=False)
+    assert [bar.get_height() for bar in axes.patches] == [1.0, 3.0, 4.0]
+    middles = [bar.get_x() + bar.get_width() / 2 for bar in axes.patches]
+    assert middles == pytest.approx([-0.2, 0.8, 0.2])
+    assert [list(line.get_ydata()) for line in axes.lines] == [[0.5, 2.0]]
+
+
+def test_words_are_those_of_the_number_or_of_the_function():
+    axes = drawn({"a": [{"value": 0.25, "words": "a quarter"}, {"value": 0.5}]}, words="{:.0%}".format)
+    assert [text.get_text() for text in axes.texts] == ["a quarter", "50%"]
