@@ -62,7 +62,7 @@ def test_the_tutorial_from_a_log_to_its_end(run, tmp_path):
     assert (tmp_path / "report" / "report.png").exists()
     told = run(*TUTORIAL[3])
     assert "columns is retired" in told
-    assert "whole is given to the held-out users" in told
+    assert "whole is given to the control group" in told
     assert "contributions of new 3 forgotten" in told
 
 

@@ -104,7 +104,7 @@ def test_difference_is_the_mean_of_the_pairs_own():
 
 @pytest.mark.parametrize("values", [[], [np.nan, 1.0], [np.inf]])
 def test_values_that_break_a_rule(values):
-    with pytest.raises(InputError, match="values must be finite and at least one"):
+    with pytest.raises(InputError, match="values must be at least one number, all finite"):
         mean_estimate(values)
     with pytest.raises(InputError):
         ratio_estimate(values, [1.0] * len(values))

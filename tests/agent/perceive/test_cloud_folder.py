@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.perceive.cloud_folder import LOOK_EVERY, PATIENCE, SETTLED, new_clouds
+from lifelore.agent.perceive.cloud_folder import LOOK_EVERY, RETRY_AFTER, SETTLED, new_clouds
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.cloud_file import read_cloud
 
@@ -86,8 +86,8 @@ def test_a_writer_that_pauses_is_waited_for(tmp_path):
     save(tmp_path / "whole")
     content, late = (tmp_path / "whole.npy").read_bytes(), tmp_path / "a.npy"
     half = (1, lambda: late.write_bytes(content[:300]))
-    rest = (1 + PATIENCE / 2, lambda: late.write_bytes(content))
-    found = watched(tmp_path, Script(3 * PATIENCE, half, rest))
+    rest = (1 + RETRY_AFTER / 2, lambda: late.write_bytes(content))
+    found = watched(tmp_path, Script(3 * RETRY_AFTER, half, rest))
     assert [(name, n) for _, name, n in found] == [("a.npy", 27)]
 
 
@@ -103,10 +103,10 @@ def test_a_cloud_of_a_file_that_changed_while_it_was_read_does_not_count(tmp_pat
 
 
 def test_what_stays_unreadable_is_given_up_once(tmp_path):
-    found = watched(tmp_path, Script(4 * PATIENCE, (1, lambda: (tmp_path / "a.pcd").write_text("no cloud"))))
+    found = watched(tmp_path, Script(4 * RETRY_AFTER, (1, lambda: (tmp_path / "a.pcd").write_text("no cloud"))))
     assert [name for _, name, _ in found] == ["a.pcd"]
     at, _, error = found[0]
-    assert 1 + PATIENCE <= at <= 1 + PATIENCE + 3 * LOOK_EVERY
+    assert 1 + RETRY_AFTER <= at <= 1 + RETRY_AFTER + 3 * LOOK_EVERY
     assert "a.pcd" in str(error)
 
 

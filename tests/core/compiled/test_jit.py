@@ -156,8 +156,6 @@ import sys
 import numba.core.caching
 del numba.core.caching.CompileResultCacheImpl
 from lifelore.core.compiled.numba_internals import quick_cache
-
-from .fresh_python import run
 assert quick_cache() is None
 """
 
