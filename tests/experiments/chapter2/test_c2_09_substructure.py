@@ -2,11 +2,11 @@
 
 import numpy as np
 import pytest
-from lifelore.experiments.chapter2.c2_09_substructure.skeleton_pairs import HOSTS, found_in, witness_is_right
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, ON
-from lifelore.experiments.chapter2.c2_09_substructure.run import measure
+from lifelore.experiments.chapter2.c2_09_substructure.measure import measure
+from lifelore.experiments.chapter2.c2_09_substructure.run import HOSTS, found_in, witness_is_right
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation

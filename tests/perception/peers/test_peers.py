@@ -103,7 +103,7 @@ def test_a_scene_of_one_object_has_no_pair_of_objects(name, seen, lesson):
 
 @pytest.mark.parametrize("name", LEARNT)
 def test_it_refuses_to_answer_before_it_has_learnt(name, lesson):
-    with pytest.raises(InputError, match="fitted before it is asked"):
+    with pytest.raises(InputError, match="must be fitted before it predicts"):
         PEERS[name]().predict(lesson[0][0])
 
 

@@ -27,7 +27,7 @@ def test_a_steady_stream_passes_after_hold_frames_and_leaves_after_as_many(hold)
 def test_what_alternates_from_frame_to_frame_never_changes_anything(first):
     stream = RelationFilter(hold=2)
     run(stream, [[first]] * 4 if first else [])
-    before = stream.believed
+    before = stream.accepted
     # A label that comes every other frame is neither believed nor, if it was, given up.
     frames = [[ON], [first or UNDER]] * 20
     assert all(after == before for after in run(stream, frames))
@@ -93,7 +93,7 @@ def test_a_pair_has_one_label_and_changes_at_most_once_in_hold_frames(frames, ho
                 assert number - last_change.get(pair, -1) >= hold
                 last_change[pair] = number
         before = now
-    assert stream.believed == (shown if frames else ())
+    assert stream.accepted == (shown if frames else ())
 
 
 def _label(r):
