@@ -8,10 +8,19 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 Places = Callable[[str], str]
+SLOW = ("experiments", "app", "figures")
+"""Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out as a whole."""
 
 # On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    for item in items:
+        folder = item.path.relative_to(item.config.rootpath).parts
+        if folder[:1] == ("tests",) and folder[1] in SLOW:
+            item.add_marker(pytest.mark.slow)
 
 
 @pytest.fixture(scope="session")

@@ -64,6 +64,7 @@ def test_modules_and_files_named_on_a_page_exist(page):
     assert not [name for name in files if not (DOCS.parent / "src" / "lifelore" / name).exists()]
 
 
+@pytest.mark.slow
 def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     said = run([sys.executable, "-W", "error", "-c", SEARCH], tmp_path)
     played, report = said.splitlines()
@@ -72,6 +73,7 @@ def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
 
 
+@pytest.mark.slow
 def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
     (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "start" / "robots.md").read_text("utf-8"), flags=re.S)
     save_cloud(tmp_path / "scene.pcd", sample_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
@@ -80,11 +82,13 @@ def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
     assert "relation='in_front_of'" in said
 
 
+@pytest.mark.slow
 def test_the_moves_that_pass_matter(tmp_path):
     alone, together = run([sys.executable, "-W", "error", "-c", FEATURES], tmp_path).splitlines()
     assert alone == together == "('f0', 'f1', 'f2', 'f3')"
 
 
+@pytest.mark.slow
 def test_advice_comes_line_by_line(tmp_path):
     world = make_world("advice", seed=3)
     best = best_actions(optimal_q(world.task(world.n_states - 1).tables(), 0.95)).argmax(axis=1)
@@ -99,6 +103,7 @@ def test_advice_comes_line_by_line(tmp_path):
     assert set(answers[0]) == {"agent", "advise", "theta", "p_normal", "gain"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("keys", ["w\na\ns\nd\n" * 2, ""])
 def test_a_lesson_ends_with_its_keys(tmp_path, keys):
     assert "tasks shown" in lifelore(TEACH, tmp_path, keys)
@@ -120,6 +125,7 @@ def test_ratios_are_those_of_the_benchmark(number, digits):
     assert f"{float(number.split()[0]):.{digits}f}" in {f"{goal['measured']:.{digits}f}" for goal in goals}
 
 
+@pytest.mark.slow
 def test_transfer_over_lifetimes_is_what_the_page_says(tmp_path):
     (code,) = re.findall(r"```python\n(.*?)```", COURIER, flags=re.S)
     said = dict(

@@ -41,6 +41,7 @@ HOLDS = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("example", EXAMPLES, ids=lambda path: path.stem)
 def test_an_example_runs_and_shows_its_point(example, tmp_path):
     command = [sys.executable, "-W", "error", str(example)]

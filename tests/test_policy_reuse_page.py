@@ -49,6 +49,7 @@ def test_each_piece_alone(place, said, run):
     assert re.fullmatch(said, run(*ALONE[place]))
 
 
+@pytest.mark.slow
 def test_the_tutorial_from_a_log_to_its_end(run, tmp_path):
     kinds = [kind for kind, _ in TUTORIAL]
     assert kinds == ["python", "sh", "python", "sh"]

@@ -6,6 +6,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
 LAKE, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
@@ -19,6 +21,7 @@ def run(code: str, folder: Path) -> str:
     return done.stdout
 
 
+@pytest.mark.slow
 def test_an_own_gymnasium_world(tmp_path):
     shorter = LAKE.replace("tasks=30, episodes=500", "tasks=3, episodes=20")
     assert shorter != LAKE
@@ -27,6 +30,7 @@ def test_an_own_gymnasium_world(tmp_path):
     assert (tmp_path / "lake.db").is_file()
 
 
+@pytest.mark.slow
 def test_a_new_user(tmp_path):
     assert run(USER, tmp_path) == "C [0. 0. 1.]\n"
 

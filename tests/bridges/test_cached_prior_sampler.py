@@ -14,6 +14,7 @@ def counted():
     return prior
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("code", [7, 8])
 def test_the_law_is_the_priors(form, code):

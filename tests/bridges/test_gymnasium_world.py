@@ -202,6 +202,7 @@ def test_order_of_a_dict_does_not_matter(seen, random):
     hash(hashable(seen))
 
 
+@pytest.mark.slow
 def test_states_are_the_same_in_every_process():
     told = (
         "import numpy as np; from lifelore.bridges.gymnasium_world import hashable;"

@@ -113,6 +113,7 @@ def test_an_empty_room_solved_by_hand():
     assert layout.open_directions[layout.passed].tolist() == [0b110, 0b110, 0b100, 0b110, 0b110]
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=4)
 @given(st.integers(0, 10_000))
 @example(75)

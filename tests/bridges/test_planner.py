@@ -67,6 +67,7 @@ def scenes_with_piles():
     return sorted(carried)
 
 
+@pytest.mark.slow
 def test_a_pile_is_turned_over():
     plan = solve(DOMAIN, planning_problem(PILE, goal="(and (on o2 o3) (on o3 o4))"))
     on, table, held, _ = replay(plan, PILE, range(2, 6))
@@ -77,6 +78,7 @@ def test_a_pile_is_turned_over():
     assert str(plan[0]) == "(pick-up o4)"
 
 
+@pytest.mark.slow
 def test_an_object_between_two_is_clear_only_when_both_are_gone():
     rows = [Relation(a, b, "on", 1.0, 0.0) for a, b in ((2, 1), (3, 2), (4, 2))]
     plan = solve(DOMAIN, planning_problem(rows, goal="(holding o2)"))
@@ -86,10 +88,12 @@ def test_an_object_between_two_is_clear_only_when_both_are_gone():
     assert len(plan) == 5
 
 
+@pytest.mark.slow
 def test_a_goal_that_cannot_be_has_no_plan():
     assert solve(DOMAIN, planning_problem(PILE, goal="(and (on o2 o3) (on o3 o2))")) is None
 
 
+@pytest.mark.slow
 def test_beside_is_reached_and_left():
     rows = [*PILE, Relation(2, 5, "adjacent", 1.0, 0.0)]
     plan = solve(DOMAIN, planning_problem(rows, goal="(and (adjacent o4 o5) (not (adjacent o2 o5)))"))
@@ -98,6 +102,7 @@ def test_beside_is_reached_and_left():
     assert frozenset(("o2", "o5")) not in beside
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")
 @pytest.mark.parametrize("name", ["learn21", "test47", "test53"])
 def test_a_real_scene_is_planned_in(name):
@@ -115,6 +120,7 @@ def test_a_real_scene_is_planned_in(name):
     assert not any(below == f"o{bottom}" for _, below in after)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")
 @pytest.mark.parametrize("name", ["learn22", "test47"])
 def test_from_the_points_of_a_real_scene_to_a_plan(name):

@@ -54,6 +54,7 @@ def recorded(folder, kind, topics=("/points",)):
     return path
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["bag", "sqlite3", "mcap"])
 def test_clouds_come_back_in_order(tmp_path, kind):
     path = recorded(tmp_path, kind)

@@ -16,6 +16,7 @@ def test_without_the_library_the_extra_is_named(monkeypatch):
         importlib.import_module("lifelore.bridges.sb3")
 
 
+@pytest.mark.slow
 def test_neither_the_benchmark_nor_the_view_of_minigrid_imports_torch():
     code = (
         "import sys, lifelore.bridges.minigrid_view, lifelore.experiments.bench.deep; "

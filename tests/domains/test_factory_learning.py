@@ -1,6 +1,7 @@
 """A factory learnt with the configurations met only: the same as with all; nine components in little room."""
 
 import numpy as np
+import pytest
 
 from lifelore.core.learning.layered_learning import LayeredLearning
 from lifelore.core.learning.q_learner import QLearning
@@ -38,6 +39,7 @@ def test_same_as_on_the_tables_of_the_whole_task():
     assert curve.reached.any()
 
 
+@pytest.mark.slow
 def test_nine_components_are_learnt_among_the_configurations_met():
     task = factory().task(range(9))
     part = LayeredLearning(task.configuration_tables, 3**9, task.factory.n_cells, **streams())

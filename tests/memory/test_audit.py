@@ -32,6 +32,7 @@ CACHE_DAMAGE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", CACHE_DAMAGE)
 def test_a_wrong_cache_is_found_and_rebuilt(lived, damage):
     before = lived.show()

@@ -35,6 +35,7 @@ def naive(parts: list[dict[int, int]], merge: str) -> dict[int, tuple[int, int]]
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("at_a_time", [1, 2, 64])
 @pytest.mark.parametrize("merge", ["add", "union", "newest"])
 @given(parts=st.lists(cells, min_size=1, max_size=6))

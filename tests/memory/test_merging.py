@@ -140,12 +140,14 @@ quick = {"deadline": None, "suppress_health_check": [HealthCheck.too_slow, Healt
 lives = st.lists(steps, min_size=3, max_size=14)
 
 
+@pytest.mark.slow
 @settings(max_examples=30, **quick)
 @given(life=lives, first=orders, second=orders, left_first=st.booleans())
 def test_merging_is_exact_in_any_order_and_grouping(life, first, second, left_first, new_place):
     merging_is_exact(life, first, second, left_first, [new_place("sqlite") for _ in range(6)])
 
 
+@pytest.mark.slow
 @settings(max_examples=8, **quick)
 @given(life=lives, first=orders, second=orders, left_first=st.booleans())
 def test_merging_is_exact_between_back_ends(life, first, second, left_first, new_place):
@@ -313,6 +315,7 @@ with open_memory(sys.argv[1]) as memory:
 """
 
 
+@pytest.mark.slow
 def test_a_kill_in_the_middle_leaves_the_memory_as_it_was(where, new_place):
     """Killed after all contributions and the first key's cells were written, just before the rest."""
     sources = [new_place("sqlite") for _ in range(2)]

@@ -23,6 +23,7 @@ def start(where: str, robot: str, tasks: int, slots: int) -> subprocess.Popen[st
     return subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
 
 
+@pytest.mark.slow
 def test_two_processes_on_one_memory_add_up_exactly(where):
     """Both begin on a place where no memory is yet, so they also race to create it."""
     running = [start(where, robot, 40, 500) for robot in ("a", "b")]
@@ -72,11 +73,13 @@ def kill_loop(where: str, kills: int, longest: float, seed: int) -> None:
 
 # On an idle machine opening takes 10 to 20 ms and a task about 25 ms in SQLite, 100 ms in PostgreSQL, most of it
 # inside the transaction: these times end anywhere between "not yet open" and "some tasks done".
+@pytest.mark.slow
 @pytest.mark.parametrize(("back_end", "kills", "longest"), [("sqlite", 20, 0.15), ("postgresql", 5, 0.6)])
 def test_a_kill_loses_at_most_the_task_in_progress(back_end, kills, longest, new_place):
     kill_loop(new_place(back_end), kills, longest, seed=kills)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_a_kill_while_the_memory_is_created(file, seed):
     kill_once(str(file), random.Random(seed).uniform(0.0, 0.02), 10)

@@ -26,6 +26,7 @@ def records(draw):
                   draw(st.dictionaries(names, st.integers() | names | st.none(), max_size=3)))  # fmt: skip
 
 
+@pytest.mark.slow
 @given(st.lists(records(), max_size=4, unique_by=lambda r: (r.kind, r.key, r.version)))
 def test_what_is_packed_comes_back(given_records):
     found = unpack(decompress(compress(pack(given_records))))

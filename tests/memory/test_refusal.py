@@ -51,6 +51,7 @@ def test_a_full_disk_loses_the_task_in_progress_only(file):
         assert memory.check() == []
 
 
+@pytest.mark.slow
 def test_a_write_that_fails_in_the_file_system(file):
     """A limit on the size of files makes write() itself fail, in the log and in the file."""
     limit = 400_000

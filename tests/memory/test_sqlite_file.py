@@ -64,6 +64,7 @@ def test_another_programs_database(file, journal):
     assert "another program" in refused(file)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kept", [99, 100, 4096, 5000, 0.5, -4096, -1])
 def test_a_file_cut_short(file, kept):
     size = fill(file).stat().st_size
@@ -71,6 +72,7 @@ def test_a_file_cut_short(file, kept):
     assert "damaged" in refused(file)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(6))
 def test_pages_overwritten_at_random(file, seed):
     """All inner nodes of the trees: an overwritten page of a blob's content is found by `check` alone."""
@@ -83,6 +85,7 @@ def test_pages_overwritten_at_random(file, seed):
     assert "damaged" in refused(file)
 
 
+@pytest.mark.slow
 def test_a_newer_file(file):
     fill(file)
     with closing(connect(file, "rw")) as conn:
@@ -102,6 +105,7 @@ def test_a_file_where_a_folder_should_be(file):
     assert "\n" not in str(error.value)
 
 
+@pytest.mark.slow
 def test_an_empty_file_is_a_new_memory(file):
     file.touch()
     assert len(fill(file).read_bytes()) > 0
@@ -118,6 +122,7 @@ def test_a_copy_of_a_file_and_its_log_is_whole(file, tmp_path):
         assert memory.tasks("a") == 1
 
 
+@pytest.mark.slow
 def test_a_memory_is_lived_in_once_opened(file, tmp_path):
     with open_memory(fill(file)) as memory:
         memory.export_to(tmp_path / "export.db")
@@ -146,6 +151,7 @@ except StoreError as error:
 """
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("use", ["file", "folder", "both"])
 def test_read_only_is_refused_in_one_line(file, use, tmp_path):
     for folder in (tmp_path, tmp_path.parent, tmp_path.parent.parent):

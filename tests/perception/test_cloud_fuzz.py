@@ -171,6 +171,7 @@ def check(tmp_path: Path, n: int, seed: int) -> None:
     assert grown < 200_000
 
 
+@pytest.mark.slow
 def test_a_thousand_damaged_files(tmp_path: Path) -> None:
     check(tmp_path, 1000, seed=1)
 

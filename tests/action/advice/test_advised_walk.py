@@ -118,6 +118,7 @@ def test_with_and_without_advice_the_same_numbers_are_drawn():
     assert not one.advised.any()
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
     for name, disabled in (("compiled", "0"), ("plain", "1")):
         done = subprocess.run(

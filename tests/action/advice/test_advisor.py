@@ -180,6 +180,7 @@ OPTIONS = st.builds(
 )
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(st.integers(0, 10**6), st.integers(1, 4), OPTIONS)
 def test_step_by_step_as_the_naive_twin(seed, n_goals, options):

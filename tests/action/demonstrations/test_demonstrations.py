@@ -49,6 +49,7 @@ def test_lines_by_hand():
     ]
 
 
+@pytest.mark.slow
 @given(shown)
 def test_what_is_written_is_read(told):
     demonstrations = [demonstration(*one) for one in told]

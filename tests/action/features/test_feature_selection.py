@@ -62,6 +62,7 @@ def test_entropy_by_hand():
     assert case.entropy([]) == pytest.approx(-3 / 8 * math.log2(3 / 8) - 5 / 8 * math.log2(5 / 8))
 
 
+@pytest.mark.slow
 @given(tables)
 def test_entropy_is_the_printed_sum(rows):
     case = counted(rows)
@@ -101,6 +102,7 @@ def test_with_alpha0_counted_in_a_feature_that_tells_everything_would_seem_to_ha
     assert independent_features(case).names == ("tells",)
 
 
+@pytest.mark.slow
 @given(tables)
 def test_a_feature_more_never_adds_entropy(rows):
     case = counted(rows)
@@ -110,6 +112,7 @@ def test_a_feature_more_never_adds_entropy(rows):
         assert case.entropy() <= math.log2(3) + 1e-9
 
 
+@pytest.mark.slow
 @given(st.lists(st.tuples(st.one_of(st.integers(0, 5), st.integers(0, 2**47 - 1)), count_rows), max_size=20))
 def test_pooled_counts_are_a_dictionary(rows):
     twin: dict[int, list[float]] = {}
@@ -128,6 +131,7 @@ def test_pooled_counts_are_a_dictionary(rows):
 # ---- Eq. 3.12 ----------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @given(tables, st.sampled_from([0.0, 0.05, 0.3]))
 def test_the_best_set_is_the_least_of_all(rows, penalty):
     found = best_feature_set(counted(rows), penalty)
@@ -152,6 +156,7 @@ def test_the_penalty_decides_how_many_features():
     assert len(best_feature_set(case).entropies) == 8
 
 
+@pytest.mark.slow
 def test_fifteen_features_are_searched_and_sixteen_refused():
     rows = [(cell, [1.0, 0.0] if cell[7] else [0.0, 1.0]) for cell in map(tuple, np.eye(15, dtype=int).tolist())]
     found = best_feature_set(counted(rows, (2,) * 15), 1e-3)
@@ -177,6 +182,7 @@ def test_independent_selection_by_hand():
     assert independent_features(counted(rows, (2, 2, 2)), threshold=0.0).names == ("f0", "f1", "f2")
 
 
+@pytest.mark.slow
 @given(tables)
 def test_independent_selection_is_alg_5(rows):
     choice = independent_features(counted(rows))

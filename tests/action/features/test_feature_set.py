@@ -38,6 +38,7 @@ def test_codes_lead_back_to_the_columns(case):
     assert ((codes >= 0) & (codes < features.n_codes)).all()
 
 
+@pytest.mark.slow
 @given(rows(), st.randoms(use_true_random=False))
 def test_coarser_codes_are_the_codes_of_fewer_columns(case, random):
     features, columns = case

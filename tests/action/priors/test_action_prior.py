@@ -98,6 +98,7 @@ def test_nothing_counted_is_uniform_in_every_form():
 # ---- a twin of dictionaries ----------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @given(updates, st.lists(codes, max_size=5))
 def test_batched_reading_is_a_dictionary_of_lists(steps, asked):
     twin: dict[int, list[float]] = {}
@@ -120,6 +121,7 @@ def test_batched_reading_is_a_dictionary_of_lists(steps, asked):
 # ---- merging -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @given(st.lists(updates, min_size=1, max_size=5), st.randoms(use_true_random=False))
 def test_any_order_and_grouping_give_the_same_bits(parts, random):
     priors = [prior_of(steps) for steps in parts]
@@ -158,6 +160,7 @@ def test_strangers_do_not_merge(other):
 # ---- records -------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @given(updates)
 def test_a_record_holds_the_prior(steps):
     prior = prior_of(steps)
@@ -200,6 +203,7 @@ def test_a_foreign_record_is_refused():
 # ---- forms ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @settings(max_examples=50)
 @given(updates, st.sampled_from(FORMS), st.floats(0, 20), st.floats(0, 1))
 def test_rows_sum_to_one_in_every_form(steps, form, beta, escape):
@@ -211,6 +215,7 @@ def test_rows_sum_to_one_in_every_form(steps, form, beta, escape):
     assert (probs >= 0).all()
 
 
+@pytest.mark.slow
 @given(updates, st.floats(1e-6, 1))
 def test_support_with_an_escape_excludes_nothing(steps, escape):
     prior = prior_of(steps)
@@ -220,6 +225,7 @@ def test_support_with_an_escape_excludes_nothing(steps, escape):
     assert ((sharp > 0) == (prior.counts(prior.contexts) > 0)).all()
 
 
+@pytest.mark.slow
 @given(updates)
 def test_tempered_goes_from_uniform_to_proportion(steps):
     prior = prior_of(steps)
@@ -287,6 +293,7 @@ def test_entropy_by_hand():
     assert prior.entropy([0, 7, 99]) == pytest.approx([math.log(2), 0.0, math.log(3)])
 
 
+@pytest.mark.slow
 @given(updates)
 def test_entropy_lies_between_certain_and_uniform(steps):
     prior = prior_of(steps)
@@ -295,6 +302,7 @@ def test_entropy_lies_between_certain_and_uniform(steps):
     assert (entropy <= math.log(N_ACTIONS) + 1e-12).all()
 
 
+@pytest.mark.slow
 @given(updates, st.integers(1, 5))
 def test_coarser_contexts_keep_every_count(steps, modulus):
     prior = prior_of(steps)

@@ -42,6 +42,7 @@ def test_three_levels_by_hand():
 counts = st.tuples(st.integers(0, 50), st.integers(0, 50))
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.integers(0, 15), counts, max_size=8), st.floats(0.01, 2))
 def test_without_coarser_levels_it_is_the_proportion(counts_by_context, alpha0):
     prior = counted(counts_by_context, alpha0)
@@ -49,6 +50,7 @@ def test_without_coarser_levels_it_is_the_proportion(counts_by_context, alpha0):
     assert posterior_mean(prior, asked) == pytest.approx(prior.probs(asked))
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.integers(0, 15), counts, max_size=8), st.floats(0.1, 50))
 def test_rows_are_probabilities_that_exclude_nothing(counts_by_context, strength):
     theta = posterior_mean(counted(counts_by_context), np.arange(16), [0b0111, 0b0001], strength)

@@ -15,6 +15,7 @@ codes = st.one_of(st.integers(-5, 5), st.integers(-(2**61), 2**61))
 more = st.lists(st.tuples(codes, st.lists(st.integers(0, 9), min_size=3, max_size=3)), min_size=1, max_size=12)
 
 
+@pytest.mark.slow
 @given(st.dictionaries(codes, st.lists(st.integers(0, 9), min_size=3, max_size=3), max_size=8), more)
 def test_merged_rows_are_a_dictionary(known, added):
     twin = {code: list(row) for code, row in known.items()}
@@ -63,6 +64,7 @@ def test_compiled_and_plain_kernels_agree(crowded):
     assert (answers[0][2] < 0).any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("few", [0, context_index.FEW])
 @given(known=st.sets(codes, max_size=30), asked=st.lists(codes, max_size=30))
 def test_places_are_those_of_a_dictionary(few, known, asked):

@@ -117,6 +117,7 @@ def test_costs_by_hand():
     assert try_costs(probs)[0] == pytest.approx([0, 0, TRY_COST, 2.5 * TRY_COST])
 
 
+@pytest.mark.slow
 @given(st.lists(st.lists(st.floats(1e-9, 1), min_size=4, max_size=4), min_size=1, max_size=5))
 def test_costs_are_an_order(rows):
     mass = np.array(rows)

@@ -47,6 +47,7 @@ def packed(about=None, about_text=None, **arrays) -> bytes:
     return stream.getvalue()
 
 
+@pytest.mark.slow
 @given(rows, st.floats(1e-9, 1e9), st.text())
 def test_the_same_bits_come_back(counted, alpha0, key):
     prior = ActionPrior(3, alpha0, key)

@@ -135,6 +135,7 @@ def test_renormalising_would_change_the_dynamics():
     assert repaired.kept_mass[0, 1] == 1.0
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(task_sets())
 def test_the_repaired_domain_is_never_left(case):
@@ -147,6 +148,7 @@ def test_the_repaired_domain_is_never_left(case):
     assert not domain.leading_out.any()
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(task_sets())
 def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
@@ -162,6 +164,7 @@ def test_the_repaired_domain_keeps_each_tasks_optimal_return(case):
             assert q[here] == pytest.approx(whole[here], abs=1e-9)
 
 
+@pytest.mark.slow
 @settings(max_examples=200)
 @given(task_sets())
 def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
@@ -182,6 +185,7 @@ def test_the_closed_domain_is_never_left_and_keeps_every_policy(case):
         assert within[own] == pytest.approx(optimal_q(tables, DISCOUNT)[own], abs=1e-9)
 
 
+@pytest.mark.slow
 @settings(max_examples=300)
 @given(task_sets())
 def test_reach_and_futility_are_the_definitions(case):
@@ -200,6 +204,7 @@ def test_reach_and_futility_are_the_definitions(case):
             assert repaired.pairs[s, a] == own
 
 
+@pytest.mark.slow
 @given(task_sets())
 def test_where_every_state_is_a_start_both_definitions_agree(case):
     tasks, policies = case
@@ -233,6 +238,7 @@ def test_traps_by_hand():
     assert not (trap_states(task, domain.pairs) & domain.states).any()
 
 
+@pytest.mark.slow
 @given(task_sets())
 def test_from_every_state_a_minimised_domain_makes_no_traps(case):
     # Where every state is a start each task keeps its own way from everywhere, so no trap is added.

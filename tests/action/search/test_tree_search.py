@@ -135,6 +135,7 @@ def naive_search(tables, guide, state, settings, random):
     return action, [pulls.get(x, 0) for x in root], [sums.get(x, 0.0) for x in root]
 
 
+@pytest.mark.slow
 @given(
     st.integers(0, 10**6),
     st.integers(1, 3),
@@ -276,6 +277,7 @@ for seed in range(6):
 """
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree():
     def said(disabled):
         command = [sys.executable, "-W", "error", "-c", PLAIN, os.path.dirname(__file__)]

@@ -142,6 +142,7 @@ def walk_of_a_lost_agent(desk, goal, seed, obey, max_steps=5000):
     return False, advised, max_steps
 
 
+@pytest.mark.slow
 def test_lost_agents_find_the_goal_they_never_told(maze, experts):
     goals = maze_goals(maze).tolist()
     better = AdviceSession(AdviseSettings(MAZE, experts))

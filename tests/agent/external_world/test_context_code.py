@@ -57,6 +57,7 @@ def test_codes_by_hand():
     assert len({context_code(value) for value in apart}) == len(apart)
 
 
+@pytest.mark.slow
 def test_codes_are_the_same_in_every_process():
     told = (
         "from lifelore.agent.external_world.context_code import context_code;"

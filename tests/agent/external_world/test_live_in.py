@@ -103,6 +103,7 @@ def test_a_world_without_positive_reward_teaches_nothing():
     assert not any(numbers_of(report, "lore", "reached"))
 
 
+@pytest.mark.slow
 def test_first_choice_follows_the_counts():
     """After t tasks of eight doors the first choice is right with (t + α⁰) / (t + 8 α⁰), scratch's with 1/8.
 
@@ -126,6 +127,7 @@ def test_both_agents_are_given_the_same_episodes():
 # ---- other people's worlds -----------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_lore_of_thirty_lakes_helps_on_the_next_thirty(tmp_path):
     """A sign test: were the prior useless, each would win equally often, and this fail but once in a hundred."""
     path = tmp_path / "lake.db"
@@ -139,6 +141,7 @@ def test_lore_of_thirty_lakes_helps_on_the_next_thirty(tmp_path):
     assert later["summary"]["lore_vs_scratch"]["mean_return_difference"]["value"] > 0
 
 
+@pytest.mark.slow
 def test_slippery_lakes_are_lived_in():
     report = live_in(lakes(slippery=True), tasks=3, episodes=150)
     assert any(numbers_of(report, "lore", "reached"))
@@ -156,6 +159,7 @@ def ahead(seen):
     return tuple(int(kinds[tuple(place + TURN[(seen["direction"] + side) % 4])]) for side in (0, 3, 1))
 
 
+@pytest.mark.slow
 def test_minigrid_is_lived_in():
     """SimpleCrossing at its smallest: a river of wall with one gap through a room of 3 x 3."""
     env = minigrid.wrappers.FullyObsWrapper(CrossingEnv(size=5, num_crossings=1, obstacle_type=Wall))
@@ -167,6 +171,7 @@ def test_minigrid_is_lived_in():
     assert report["n_states"] > report["n_contexts"]
 
 
+@pytest.mark.slow
 def test_blackjack_is_lived_in():
     world = GymnasiumWorld(gymnasium.make("Blackjack-v1"), reset_by="episode")
     report = live_in(world, tasks=2, episodes=400, discount=1)
@@ -187,6 +192,7 @@ def test_dicts_and_actions_that_do_not_start_at_zero():
 # ---- memory --------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_two_lives_on_one_memory_are_one_life(tmp_path):
     path = tmp_path / "m.db"
     whole = live_in(lakes(), tasks=6, episodes=60)

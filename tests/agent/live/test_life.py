@@ -44,6 +44,7 @@ def test_a_life_goes_on_where_it_stopped(tmp_path):
     assert first["tasks"] + second["tasks"] == once.report["tasks"]
 
 
+@pytest.mark.slow
 def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
     place = new_place("postgresql")
     for tasks in (2, 1):
@@ -85,6 +86,7 @@ def test_stopping_before_the_first_task_is_a_life_without_tasks(tmp_path):
     assert (report["tasks"], report["summary"]) == ([], {})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("prior", ["observation", "state", "none"])
 @pytest.mark.parametrize("learner", ["model", "q"])
 def test_the_life_gets_better(tmp_path, learner, prior):
@@ -98,6 +100,7 @@ def test_the_life_gets_better(tmp_path, learner, prior):
         assert 2 * sum(t["collisions"] for t in lore) < sum(t["collisions"] for t in scratch)
 
 
+@pytest.mark.slow
 def test_observation_priors_travel_and_state_priors_do_not(tmp_path):
     office = {"domain": "building", "tasks": 3}
     live(settings(tmp_path, **office, seed=1))
@@ -219,6 +222,7 @@ def test_unknown_agents_and_domains(tmp_path):
         live(settings(tmp_path, domain="moon"))
 
 
+@pytest.mark.slow
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_willow(tmp_path):
     """The goals of the main job, as loose here as a single seed of 30 tasks needs; the numbers are in the docs."""

@@ -42,6 +42,7 @@ def _no_constant(name: str):
     raise AssertionError(f"{name} is not JSON")
 
 
+@pytest.mark.slow
 def test_everything_is_written_and_nothing_else_is_left(folder):
     assert sorted(path.name for path in folder.iterdir()) == sorted(FILES)
     for name in FILES:
@@ -51,6 +52,7 @@ def test_everything_is_written_and_nothing_else_is_left(folder):
             assert 5_000 < len(content) <= 300_000
 
 
+@pytest.mark.slow
 def test_summary_is_the_report_as_strict_json(life, folder):
     text = (folder / "summary.json").read_text(encoding="utf-8")
     assert json.loads(text, parse_constant=_no_constant) == json.loads(json.dumps(life.report))
@@ -76,6 +78,7 @@ def test_the_prior_reads_back_as_a_map(life, folder):
     assert read_occupancy_map(folder / "prior.yaml").state.shape == life.world.shape
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("settings", [{"prior": "none"}, {"agent": "scratch"}])
 def test_without_a_prior_its_files_are_not_there_nor_left_over(tmp_path, settings):
     out = tmp_path / "out"
@@ -87,6 +90,7 @@ def test_without_a_prior_its_files_are_not_there_nor_left_over(tmp_path, setting
     assert written == [str(out / name) for name in FILES if name not in PRIOR_FILES]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "settings",
     [

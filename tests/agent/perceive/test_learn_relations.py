@@ -50,6 +50,7 @@ def folder(tmp_path):
     return tmp_path
 
 
+@pytest.mark.slow
 def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
     lesson = LearnRelationsSettings(str(folder), str(folder / "truth.csv"), "kitchen")
     steps = []
@@ -71,6 +72,7 @@ def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
             recall_relations(memory, "cellar")
 
 
+@pytest.mark.slow
 def test_without_memory_a_file_alone_is_written(folder, monkeypatch):
     monkeypatch.setattr("lifelore.agent.perceive.learn_relations.open_memory", None)
     report = learn_relations(
@@ -94,6 +96,7 @@ def test_a_truth_that_does_not_fit_the_clouds_is_refused(folder, row, said):
         learn_relations(LearnRelationsSettings(str(folder), str(folder / "wrong.csv")), str(folder / "m.db"))
 
 
+@pytest.mark.slow
 def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
     away = cloud((0.25, 0, 0))
     np.savez(folder / "away.npz", points=away.points, labels=away.labels)
@@ -106,6 +109,7 @@ def test_labels_of_things_far_apart_are_not_counted_as_learnt(folder):
     assert report["not_near"] == {"beyond": 1, "none": 1}
 
 
+@pytest.mark.slow
 def test_clouds_in_millimetres_with_parts_and_no_table(folder):
     """What `perceive` reads by an option, this reads by the same option."""
     for name, place in PLACES.items():

@@ -60,6 +60,7 @@ def said(document):
     return {(r["relation"], r["a"], r["b"]) for r in document["relations"] if r["relation"] != "none"}
 
 
+@pytest.mark.slow
 def test_a_box_on_a_slab_and_one_apart(document):
     assert said(document) == {("on", 3, 2), ("on", 2, "table"), ("on", 4, "table")}
     assert [entry["id"] for entry in document["objects"]] == [2, 3, 4]
@@ -68,6 +69,7 @@ def test_a_box_on_a_slab_and_one_apart(document):
     assert json.loads(json.dumps(document, allow_nan=False)) == document
 
 
+@pytest.mark.slow
 def test_the_contact_lies_between_the_two(document):
     upper = document["objects"][1]
     towards = [np.array(c["xyz"]) for c in upper["contact_points"] if c["other"] == 2]
@@ -75,11 +77,13 @@ def test_the_contact_lies_between_the_two(document):
     assert all(abs(at[2] - 0.05) < 0.015 for at in towards)
 
 
+@pytest.mark.slow
 def test_up_makes_no_difference_where_the_table_is_seen(pile, document):
     for up in ("table", (0, 0, 3.0)):
         assert said(perceive(pile, PerceiveSettings(up=up))) == said(document)
 
 
+@pytest.mark.slow
 def test_files_for_planners_and_people(pile, tmp_path):
     problem, graph, picture = (tmp_path / name for name in ("scene.pddl", "scene.dot", "scene.png"))
     perceive(pile, PerceiveSettings(up="z"), pddl=str(problem), dot=str(graph), plot=str(picture))
@@ -89,6 +93,7 @@ def test_files_for_planners_and_people(pile, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+@pytest.mark.slow
 def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
     assert said(perceive(pile, PerceiveSettings(up="z", model=str(SHIPPED)))) == said(document)
     place = str(tmp_path / "lore.db")
@@ -99,6 +104,7 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
         perceive(pile, PerceiveSettings(model="other", memory=place))
 
 
+@pytest.mark.slow
 def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
     from lifelore.agent.perceive import perceive as verb
 
@@ -112,6 +118,7 @@ def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
     assert document == {"made": "late"}
 
 
+@pytest.mark.slow
 def test_each_stage_is_told_as_it_begins(pile):
     told = []
     perceive(pile, PerceiveSettings(up="z"), progress=lambda *step: told.append(step))

@@ -119,6 +119,7 @@ def test_progress_and_notices_name_the_cloud(clouds, tmp_path):
     assert [line.startswith(f"{sources[1]}: the labels were taken") for line in lines] == [True]
 
 
+@pytest.mark.slow
 def test_each_new_cloud_of_a_folder(clouds, tmp_path):
     folder, stop = tmp_path / "in", Event()
     folder.mkdir()
@@ -136,6 +137,7 @@ def test_each_new_cloud_of_a_folder(clouds, tmp_path):
     assert list(entries) == []
 
 
+@pytest.mark.slow
 def test_a_watched_cloud_never_writes_over_the_files_of_another(clouds, tmp_path):
     folder, stop = tmp_path / "in", Event()
     folder.mkdir()

@@ -11,6 +11,7 @@ pytest.importorskip("mujoco", reason="needs the extra sim")
 pytestmark = pytest.mark.sim
 
 
+@pytest.mark.slow
 def test_the_report_counts_what_is_in_the_files(tmp_path):
     seen = []
     mix = {"on": 1, "both": 1}
@@ -27,6 +28,7 @@ def test_the_report_counts_what_is_in_the_files(tmp_path):
     assert [done for done, _, _ in seen] == [1, 2, 3, 4]
 
 
+@pytest.mark.slow
 def test_a_mix_that_scenes_do_not_come_in_is_told(tmp_path):
     """Of a stack of three, two pairs are *on*, and none is *both*."""
     met = make_scenes(3, tmp_path / "met", 1, mix={"on": 2, "none": 1}, arrangement="stack")

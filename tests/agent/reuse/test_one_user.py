@@ -51,6 +51,7 @@ def test_the_probability_said_is_the_rules_own(name, memory):
     assert said["expected"] == pytest.approx({"big": 5.2, "dark": 3.8, "plain": 4.0})
 
 
+@pytest.mark.slow
 def test_policies_are_chosen_as_often_as_said(memory):
     study = study_of(explore=0.3)
     chosen = Counter(choose(memory, study, f"user {i}")["policy"] for i in range(200))
@@ -147,6 +148,7 @@ def test_a_category_never_seen_is_refused_and_the_decision_stays_open(memory, tm
     assert update(memory, study, made, 1.0)["taken"]
 
 
+@pytest.mark.slow
 def test_the_held_out_are_the_share_asked_for_and_the_same_for_ever(memory):
     less, more = study_of(control=0.1), study_of(control=0.3)
     users = [f"user {i}" for i in range(2000)]
@@ -159,6 +161,7 @@ def test_the_held_out_are_the_share_asked_for_and_the_same_for_ever(memory):
     assert held != {user for user in users if study_of("other", control=0.1).holds_out(user)}
 
 
+@pytest.mark.slow
 def test_the_held_out_get_each_policy_alike_or_the_incumbent(memory):
     study = study_of(control=0.9999)
     made = [choose(memory, study, f"user {i}") for i in range(150)]
@@ -266,6 +269,7 @@ with open_memory(sys.argv[1], durable=True) as memory:
 """
 
 
+@pytest.mark.slow
 def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
     path = tmp_path / "m.db"
     with open_memory(path) as memory:

@@ -91,6 +91,7 @@ def test_regret_is_what_the_last_belief_says(memory, study):
     assert document["personal"] is document["uplift"] is document["regret"]["personal"] is None
 
 
+@pytest.mark.slow
 def test_the_folder_and_the_log(memory, study, tmp_path):
     lived(memory, study)
     document = report(memory, study, tmp_path / "a" / "b", tmp_path / "log.csv")
@@ -110,6 +111,7 @@ def test_a_decision_is_a_whole_number_on_the_axis(memory, study):
     assert ticks.tolist() == [round(tick) for tick in ticks]
 
 
+@pytest.mark.slow
 def test_names_are_drawn_as_they_are(memory, tmp_path):
     """Neither a formula, which may be a wrong one, nor a warning about letters that the font has not."""
     names = ["$\\nothing$", "用户"]
@@ -122,6 +124,7 @@ def test_names_are_drawn_as_they_are(memory, tmp_path):
     assert set(names) < set(labels)
 
 
+@pytest.mark.slow
 def test_nobody_yet_and_nothing_that_varies(memory, study, tmp_path):
     empty = report(memory, study, tmp_path / "empty")
     assert empty["uplift"] is None

@@ -34,6 +34,7 @@ def check_all_moves(path: Path) -> None:
             assert {0, 1, 2} <= set(moves[f"{name} events"].tolist())
 
 
+@pytest.mark.slow
 def test_a_simulated_gpu_moves_as_the_processor_does(tmp_path):
     run(RUN, tmp_path / "moves.npz", **SIMULATED)
     check_all_moves(tmp_path / "moves.npz")
@@ -62,6 +63,7 @@ except InputError as error:
 """
 
 
+@pytest.mark.slow
 def test_mistakes_are_refused_before_the_launch():
     states = "states must lie in [0, 21), got "
     uniforms = "uniforms must lie in [0, 1), got "
@@ -91,6 +93,7 @@ except MissingExtraError as error:
 """
 
 
+@pytest.mark.slow
 def test_without_the_library_the_extra_is_named():
     (line,) = run("-c", WITHOUT, **REAL).splitlines()
     assert "pip install 'lifelore[cuda]'" in line

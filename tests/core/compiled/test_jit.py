@@ -38,6 +38,7 @@ print(who.visits[0, 0], who.own_random[0])
 """
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
     run(str(KERNELS_RUN), str(tmp_path / "compiled.npz"), NUMBA_DISABLE_JIT="0")
     run(str(KERNELS_RUN), str(tmp_path / "plain.npz"), NUMBA_DISABLE_JIT="1")
@@ -69,6 +70,7 @@ def edit(path: Path, old: str, new: str) -> None:
     path.write_text(source.replace(old, new))
 
 
+@pytest.mark.slow
 def test_an_edit_elsewhere_is_never_answered_by_an_older_kernel(copied):
     package, draw = copied
     cache = package.parent / "cache"
@@ -160,6 +162,7 @@ assert quick_cache() is None
 """
 
 
+@pytest.mark.slow
 def test_without_the_insides_of_numba_everything_works_the_same(copied):
     package, draw = copied
     plain = draw(NUMBA_DISABLE_JIT="1")
@@ -182,6 +185,7 @@ make(3)
 """
 
 
+@pytest.mark.slow
 def test_a_kernel_that_makes_an_array_is_refused_where_it_must_not(tmp_path):
     """The compiler holds a kernel to ``allocates=False``."""
     (tmp_path / "allocating.py").write_text(ALLOCATING)
@@ -193,6 +197,7 @@ def test_a_kernel_that_makes_an_array_is_refused_where_it_must_not(tmp_path):
     assert "Only accept returning of array passed into the function as argument" in done.stderr
 
 
+@pytest.mark.slow
 def test_compiled_kernels_travel_with_their_folder(copied, tmp_path):
     """Another place, newer files, a folder that cannot be written: the machine code is loaded, not made again."""
     package, draw = copied
@@ -214,6 +219,7 @@ def test_compiled_kernels_travel_with_their_folder(copied, tmp_path):
     assert {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb*")} == kept
 
 
+@pytest.mark.slow
 def test_kernels_run_where_nothing_can_be_kept(copied):
     package, draw = copied
     blocked = package.parent / "blocked"

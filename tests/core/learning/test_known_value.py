@@ -58,6 +58,7 @@ def follow(tables, model, strategy=ExplorationStrategy(), seed=0, chunk=7, chunk
     return known, np.array(values)
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(
     seeds,
@@ -91,6 +92,7 @@ def test_ways_are_found_and_get_better():
     assert (steps > 0).sum() >= 3
 
 
+@pytest.mark.slow
 @settings(max_examples=60)
 @given(seeds)
 def test_any_world_and_any_remembered_model(draw_world, seed):

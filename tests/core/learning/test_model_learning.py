@@ -279,6 +279,7 @@ class Bookkeeper:
         return t
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(
     st.integers(0, 10**6),

@@ -102,6 +102,7 @@ def followed(plan, target, start=0):
     return s, plan[-1]
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(seeds, st.booleans(), st.booleans(), st.sampled_from([2, 3, 4, 8]))
 def test_what_is_planned_is_a_cheapest(seed, goal, exhaustive, n_actions):
@@ -127,6 +128,7 @@ def _extra(kind, end, target, place, cost_row, try_cost) -> float:
     return crumb * crumbs(int(target[s, a]), target, place) if kind == "look" else 0.0
 
 
+@pytest.mark.slow
 def test_equally_cheap_targets_are_equally_likely():
     # From 0 all four moves lead to places not looked at, alike in every way.
     target = np.full((5, 4), UNKNOWN, np.int32)
@@ -140,6 +142,7 @@ def test_equally_cheap_targets_are_equally_likely():
     assert all(abs(count - n / 4) < 110 for count in counts.values())
 
 
+@pytest.mark.slow
 def test_ties_lie_as_far_as_they_are_cheap():
     # Beyond 1 and beyond 2 a place not looked at, two steps off; and here a move that costs 1 + 1 to try.
     target = np.array([[1, 2, UNKNOWN], [3, 1, 1], [4, 2, 2], [3, 3, 3], [4, 4, 4]], np.int32)

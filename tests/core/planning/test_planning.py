@@ -74,6 +74,7 @@ def test_policy_values_solve_the_linear_equations(draw_world, seed, n_outcomes, 
     assert policy_values(tables, policy, discount) == pytest.approx(exact, abs=1e-10)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
 def test_value_iteration_same_as_dense_sweeps(draw_world, seed, n_outcomes, discount):

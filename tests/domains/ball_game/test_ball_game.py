@@ -120,6 +120,7 @@ def naive_slide(clearance, radius, x, y, dx, dy, distance):
     return distance
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(deadline=None, max_examples=150)
 def test_slide_goes_place_by_place(data):
@@ -148,6 +149,7 @@ def test_moves_by_hand():
     assert step(FIELD, 3, 500, 12, EAST, 30, 4.0, NO_SLIP, one, 0.5)[:3] == (530, 11, True)
 
 
+@pytest.mark.slow
 def test_a_blocked_ball_that_stays_by_hand():
     # As above: 69 units of room to the north. Of a move of 70 nothing is made, and it is a collision all the same.
     assert step(STAYS, 3, 500, 80, NORTH, 70, 4.0, NO_SLIP, *NO_PUSH) == (500, 80, True, False)
@@ -168,6 +170,7 @@ def test_a_blocked_ball_that_stays_by_hand():
         assert step(field, 3, 500, 940, SOUTH, 70, 0.0, NO_SLIP, *NO_PUSH) == (500, 989, True, True)
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(deadline=None, max_examples=150)
 def test_a_ball_that_stays_makes_whole_moves_or_none(data):
@@ -189,6 +192,7 @@ def test_the_goal_is_reached_by_passing_over_its_edge():
     assert step(ball_game(bar).field, 0, 180, 100, EAST, 70, 0.0, NO_SLIP, *NO_PUSH)[3]
 
 
+@pytest.mark.slow
 @given(st.data())
 @settings(deadline=None, max_examples=100)
 def test_no_step_ends_in_an_obstacle_and_a_free_one_is_no_collision(data):
@@ -242,6 +246,7 @@ def naive_costs(clearance, radius, goal, care):
     return cost
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("name", "radius", "care"), [("blobs", 20.0, 3.0), ("s-maze 130", 30.0, 0.0)])
 def test_costs_equal_a_plain_dijkstra(name, radius, care):
     game = ball_game(name)
@@ -375,6 +380,7 @@ for blocked in ("slides", "stays"):
 """
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree():
     def said(disabled):
         command = [sys.executable, "-W", "error", "-c", PLAIN]

@@ -339,6 +339,7 @@ def test_nothing_free_and_too_many_states(monkeypatch):
         building_from_map(floor_plan("..\n.."), 0.1, 0.0)
 
 
+@pytest.mark.slow
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 def test_the_willow_building():
     willow = read_occupancy_map(Path(os.environ["LIFELORE_DATA"]) / "maps" / "willow-full.yaml")

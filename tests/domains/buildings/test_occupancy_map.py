@@ -188,6 +188,7 @@ def test_each_broken_rule_is_one_clear_line(tmp_path, changes, words):
     assert words in error_of(write_yaml(tmp_path, **changes))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("content", "words"),
     [
@@ -236,6 +237,7 @@ def error_of(path) -> str:
     return message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["map.png", "map.pgm"])
 def test_spoilt_bytes_give_a_map_or_an_input_error(tmp_path, name):
     rng = np.random.default_rng(0)

@@ -39,6 +39,7 @@ def test_the_same_seed_is_the_same_building():
     assert np.array_equal(office_map(3).state, office_map(3).state)
 
 
+@pytest.mark.slow
 def test_seeds_are_different_buildings():
     free = [office_map(seed).state == FREE for seed in range(8)]
     overlaps = [(a & b).sum() / (a | b).sum() for i, a in enumerate(free) for b in free[:i]]

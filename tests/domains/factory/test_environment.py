@@ -16,6 +16,7 @@ def plain(name, **arguments):
     return gymnasium.make(f"lifelore.domains:{name}", **arguments).unwrapped
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_an_exact_plan_earns_what_it_promises(name):
     env = plain(name, components=3, seed=2)

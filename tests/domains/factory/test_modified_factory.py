@@ -16,6 +16,7 @@ def zones_of(cells) -> list[tuple[int, int]]:
     return [(int(row) // 7, int(column) // 7) for row, column in cells]
 
 
+@pytest.mark.slow
 @given(st.integers(0, 10**6))
 def test_every_layout(seed):
     world = modified_factory(np.random.default_rng(seed))

@@ -1,6 +1,7 @@
 """The pictures of factories, looked at by number."""
 
 import numpy as np
+import pytest
 
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.picture import (
@@ -30,6 +31,7 @@ def test_the_floor_in_the_thesis_colours():
     assert len({middle(picture, *place) for place in ((0, 0), (2, 1), (1, 2))}) == 3
 
 
+@pytest.mark.slow
 def test_what_is_done_pales_and_shows_in_the_strip():
     task = WORLD.task([1])
     n = WORLD.n_cells

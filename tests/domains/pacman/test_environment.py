@@ -25,6 +25,7 @@ def test_gymnasium_finds_nothing_to_say(strategy):
     check_env(made(strategy=strategy, render_mode="rgb_array"))
 
 
+@pytest.mark.slow
 @EVERY
 def test_environment_tables_and_kernel_agree_bit_for_bit(strategy):
     env = made(strategy=strategy, seed=2)

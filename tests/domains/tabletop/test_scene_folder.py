@@ -29,6 +29,7 @@ def rows(folder, name):
         return list(csv.DictReader(file))
 
 
+@pytest.mark.slow
 def test_the_cloud_comes_back_in_the_tables_frame(written):
     from pypcd4.pypcd4 import PointCloud
 

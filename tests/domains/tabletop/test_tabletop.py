@@ -110,6 +110,7 @@ def view_down(distance=0.8):
     return looking_down(0.6, np.radians(45), 0.0, distance)
 
 
+@pytest.mark.slow
 def test_the_camera_measures_a_plane_and_a_ball_exactly():
     radius, centre = 0.05, np.array([0.0, 0.0, 0.05])
     table = Tabletop([ball(radius)], [Pose(centre, np.eye(3))])
@@ -151,6 +152,7 @@ def same(first, second):
     assert np.array_equal(first.cloud.colours, second.cloud.colours)
 
 
+@pytest.mark.slow
 def test_serial_and_parallel_scenes_are_the_same():
     settings = TabletopSettings(n_objects=(2, 4), mix={"on": 1, "both": 1, "adjacent": 1, "none": 1})
     for first, second in zip(
@@ -159,12 +161,14 @@ def test_serial_and_parallel_scenes_are_the_same():
         same(first, second)
 
 
+@pytest.mark.slow
 def test_a_scene_depends_on_its_seed_and_number_alone():
     same(sample_scene(3, 7), sample_scene(3, 7))
     other = sample_scene(4, 7)
     assert other.cloud.points.shape != sample_scene(3, 7).cloud.points.shape
 
 
+@pytest.mark.slow
 def test_pairs_meet_their_quota():
     mix = {"on": 2, "adjacent": 1, "both": 1, "none": 1}
     drawn = list(tabletop_scenes(10, 0, TabletopSettings(arrangement="pair", mix=mix)))
@@ -172,6 +176,7 @@ def test_pairs_meet_their_quota():
     assert [relations.count(relation) for relation in mix] == [4, 2, 2, 2]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", sorted(set(ARRANGEMENTS) - {"mixed", "pair"}))
 def test_every_arrangement_settles_as_named(name):
     scene = sample_scene(1, 0, TabletopSettings(arrangement=name, separation=0.3))
@@ -221,6 +226,7 @@ def test_mistaken_meshes_and_settings_are_refused(tmp_path):
         sample_scene(0, 0, TabletopSettings(arrangement="ring"))
 
 
+@pytest.mark.slow
 def test_without_mujoco_one_line_says_what_to_do():
     code = (
         "import sys; sys.modules['mujoco'] = None\n"

@@ -163,6 +163,7 @@ def test_learning_in_parts_is_learning_at_once():
     assert all(np.array_equal(a, b) for a, b in zip(parts, reuser, strict=True))
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree(tmp_path):
     script = (
         "import sys; sys.path.insert(0, sys.argv[1]); import numpy as np; "

@@ -1,6 +1,7 @@
 """Bayes' rule in NumPy has the bits of its kernel."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
@@ -17,6 +18,7 @@ def same_bits(one, other) -> bool:
     return np.asarray(one, np.float64).tobytes() == np.asarray(other, np.float64).tobytes()
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=300)
 @given(st.data(), st.integers(1, 9))
 def test_bayes_rule(data, n_types):

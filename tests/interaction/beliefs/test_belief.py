@@ -105,6 +105,7 @@ def test_signals_may_come_in_any_order(n_types, order, seed):
         assert np.exp(one) == pytest.approx(np.exp(other), abs=1e-11)
 
 
+@pytest.mark.slow
 def test_a_million_hostile_updates_leave_beliefs():
     random = np.random.default_rng(0)
     beliefs = np.log(random.dirichlet(np.full(5, 0.2), 2000))

@@ -32,6 +32,7 @@ def distance(utilities, i, j):
     return max(abs(a - b) for a, b in zip(utilities[i], utilities[j], strict=True))
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(TABLES, EPSILONS, FORMS)
 def test_the_landmark_never_costs_more_than_two_epsilon(utilities, epsilon, form):
@@ -40,6 +41,7 @@ def test_the_landmark_never_costs_more_than_two_epsilon(utilities, epsilon, form
     assert (landmark_regret(utilities, types) <= landmark_regret_bound(epsilon)).all()
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=100)
 @given(TABLES, EPSILONS)
 def test_nor_does_any_other_member_in_the_landmarks_place(utilities, epsilon):
@@ -70,6 +72,7 @@ def test_epsilon_is_broken_without_ties_too():
     assert regret[1] == pytest.approx(1.8)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(TABLES, EPSILONS)
 def test_any_two_tasks_of_a_type_are_equivalent_as_the_definition_says(utilities, epsilon):
@@ -79,6 +82,7 @@ def test_any_two_tasks_of_a_type_are_equivalent_as_the_definition_says(utilities
             assert distance(utilities, i, j) <= epsilon
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(TABLES, EPSILONS)
 def test_every_task_of_a_ball_is_near_its_landmark(utilities, epsilon):
@@ -87,6 +91,7 @@ def test_every_task_of_a_ball_is_near_its_landmark(utilities, epsilon):
         assert distance(utilities, task, types.landmarks[label]) <= epsilon
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=100)
 @given(TABLES, EPSILONS, FORMS)
 def test_every_task_has_one_type_whose_landmark_is_its_own_and_membership_holds(utilities, epsilon, form):
@@ -169,6 +174,7 @@ def test_a_task_counts_in_every_type_it_could_belong_to_where_types_overlap():
     assert PolicyLibrary.from_samples(shared).n_types == 2
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=100)
 @given(TABLES, EPSILONS, FORMS)
 def test_the_bound_holds_for_every_type_a_task_could_belong_to(utilities, epsilon, form):

@@ -36,6 +36,7 @@ def test_types_that_are_there_are_found_and_counted(family):
     assert (np.diff(found.weights) <= 0).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
 def test_users_all_alike_are_one_type(family):
     rows, _ = drawn(family=family, means=MEANS[:1])
@@ -80,6 +81,7 @@ def test_the_product_is_the_log_likelihood_of_every_outcome(family):
     assert logs == pytest.approx(expected)
 
 
+@pytest.mark.slow
 def test_large_outcomes_are_grouped_as_small_ones_are():
     rows, _ = drawn()
     shifted = rows._replace(values=1e6 + 1e3 * rows.values)

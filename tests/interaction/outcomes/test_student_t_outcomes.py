@@ -20,6 +20,7 @@ def test_against_scipy():
     np.testing.assert_allclose(model.cumulative(0, np.array([0.3]))[:, 0], truth.cdf(0.3)[:, 0], rtol=1e-10)
 
 
+@pytest.mark.slow
 def test_it_is_the_gaussian_with_its_mean_and_variance_integrated_out():
     data = np.array([[[1.0, 3.0, 2.5], [0.0, 4.0, 1.0]]])
     model = StudentTOutcomes.from_samples(data, shrinkage=3.0)

@@ -124,6 +124,7 @@ def test_small_beliefs_are_scored_as_nothing_and_stay():
     assert logs[0, 2] == -600.0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("rule", [BeliefSampling(), Greedy()])
 def test_fast_selection_has_the_probabilities_of_the_rule(rule):
     model, random = library(), np.random.default_rng(0)

@@ -216,6 +216,7 @@ def test_a_library_that_learns_is_taken_anew():
     assert users.select([0], "greedy").tolist() == [agent.expected_utility().argmax()]
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree(tmp_path):
     arrays = {}
     for name, switch in (("compiled", "0"), ("plain", "1")):

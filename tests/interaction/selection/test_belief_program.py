@@ -74,6 +74,7 @@ def test_a_random_rule_by_hand():
     assert value_of_rule(library, EpsilonGreedy(1.0), 2) == pytest.approx(expected)
 
 
+@pytest.mark.slow
 def test_the_value_of_a_rule_is_what_playing_it_earns():
     library = small_library(6)
     exact = value_of_rule(library, KnowledgeGradient(), 3)

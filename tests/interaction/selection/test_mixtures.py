@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -28,6 +29,7 @@ def test_least_kept(seed, n_types, mass, some_impossible):
     assert same_bits(rising_least(probs, mass), information_kernels.least_kept(probs, mass))
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(seeds, st.integers(1, 13), st.sampled_from([np.float64, np.float32]))
 def test_mixtures(seed, n_kept, kind):

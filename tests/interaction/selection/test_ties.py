@@ -17,6 +17,7 @@ def same_bits(one, other) -> bool:
     return np.asarray(one, np.float64).tobytes() == np.asarray(other, np.float64).tobytes()
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(arrays(float, st.integers(1, 9), elements=st.one_of(logs, st.just(np.inf), st.floats(0.999, 1.0))))
 def test_shares_go_to_the_policies_that_the_kernel_may_choose(scores):
@@ -25,6 +26,7 @@ def test_shares_go_to_the_policies_that_the_kernel_may_choose(scores):
     assert tied_shares(scores) == pytest.approx(counts / 2520)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=300)
 @given(
     arrays(

@@ -38,6 +38,7 @@ def test_an_empty_cloud_is_near_nothing(sizes):
 places = st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=1, max_size=30)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(places, places)
 def test_ties_are_broken_as_by_a_k_d_tree(first, second):

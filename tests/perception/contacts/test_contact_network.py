@@ -52,6 +52,7 @@ def edges_of_networkx(positions):
     return sorted(sorted(edge) for edge in nx.minimum_spanning_edges(graph, data=False))
 
 
+@pytest.mark.slow
 @settings(max_examples=200, deadline=None)
 @given(st.lists(st.tuples(*[st.integers(-2, 2)] * 3), min_size=2, max_size=12))
 def test_of_equally_short_edges_those_of_networkx_are_taken(places):

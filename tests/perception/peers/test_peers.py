@@ -41,6 +41,7 @@ def same(label: PairLabel, relation: Relation) -> bool:
     return relation.relation == label.relation and (ordered or label.relation in ("adjacent", "none"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_what_it_learns_holds_on_scenes_it_has_not_seen(name, seen, lesson):
     _, truths = lesson
@@ -52,6 +53,7 @@ def test_what_it_learns_holds_on_scenes_it_has_not_seen(name, seen, lesson):
     assert np.mean(right) >= LEAST_RIGHT[name]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_names_of_the_objects_carry_nothing(name, seen, lesson):
     clouds, truths = lesson
@@ -74,6 +76,7 @@ def test_a_relation_for_every_near_pair_with_confidence(name, seen, lesson):
     assert all(0 < one.confidence <= 1 and one.gap >= 0 for one in said)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_the_same_lesson_gives_the_same_answers(name, seen, lesson):
     _, truths = lesson
@@ -82,6 +85,7 @@ def test_the_same_lesson_gives_the_same_answers(name, seen, lesson):
         assert one.predict_pairs(scene) == other.predict_pairs(scene)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_fit_is_looking_and_learning(name, seen, lesson):
     clouds, truths = lesson

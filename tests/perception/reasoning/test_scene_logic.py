@@ -121,6 +121,7 @@ def perceived(draw, n_things=4, most_pairs=4):
     return said(*((a, b, name, tenth / 20) for (a, b), name, tenth in rows))
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(perceived())
 def test_nothing_likelier_is_consistent(rows):
@@ -130,6 +131,7 @@ def test_nothing_likelier_is_consistent(rows):
     assert scene.loss == pytest.approx(brute_force(rows, things), abs=0.001 * len(rows) + 1e-9)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(perceived(n_things=8, most_pairs=16), st.randoms(use_true_random=False))
 def test_the_answer_is_consistent_whatever_came_and_in_whatever_order(rows, random):

@@ -81,6 +81,7 @@ def test_displacements_tell_on_from_left_and_right(scenes):
     assert not set(on.tolist()) & set(found.labels[truth != "on"].tolist())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", [discover, discover_by_displacement])
 def test_numbers_are_by_size_and_repeat(scenes, method):
     features, _ = scenes

@@ -78,6 +78,7 @@ relations = st.builds(
 runs = st.lists(st.tuples(st.lists(relations, max_size=2), st.integers(1, 4)), max_size=12)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(runs.map(lambda rows: [frame for frame, times in rows for _ in range(times)]), st.integers(1, 4))
 def test_a_pair_has_one_label_and_changes_at_most_once_in_hold_frames(frames, hold):

@@ -69,6 +69,7 @@ def wanted(truth) -> set[tuple[int, int, str]]:
     return {(one.a, one.b, one.relation) for one in truth}
 
 
+@pytest.mark.slow
 def test_blocks_never_seen_are_told_right_with_their_direction(lessons, fitted):
     for scene, truth in zip(lessons[0][24:32], lessons[1][24:32], strict=True):
         assert said(fitted.predict_pairs(scene)) == wanted(truth)
@@ -122,6 +123,7 @@ def renamed(truth, names) -> list[PairLabel]:
     return [PairLabel(one.a, one.b, names[one.relation]) for one in truth if TABLE not in (one.a, one.b)]
 
 
+@pytest.mark.slow
 def test_any_words_do_and_symmetry_is_found(lessons):
     names = {ON: "rests upon", ADJACENT: "next to", NONE: "next to"}
     truths = [renamed(truth, names) for truth in lessons[1][:32]]
@@ -152,6 +154,7 @@ def views(cloud: LabelledCloud) -> list[PairLabel]:
     return found
 
 
+@pytest.mark.slow
 def test_several_words_may_hold_of_one_pair(lessons):
     clouds = [blocks(number)[0] for number in range(64)]
     truths = [views(cloud) for cloud in clouds]
@@ -210,6 +213,7 @@ def test_a_symmetric_word_may_be_written_both_ways(lessons, method):
         RelationClassifier(method, trees=SMALL, symmetric=[]).fit_pairs(lessons[0][:12], truths)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["trees", "displacement"])
 @pytest.mark.parametrize("other", [PairLabel(3, 2, ADJACENT), PairLabel(2, 3, ON)])
 def test_a_pair_with_two_relations_is_refused_by_either_method(lessons, method, other):

@@ -46,6 +46,7 @@ def clouds(box) -> list[LabelledCloud]:
 TRUTHS = [[PairLabel(3, 2, kind), PairLabel(2, TABLE, ON)] for kind in (ON, ADJACENT, NONE)]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "options",
     [{"trees": TreeSettings(10, 10)}, {"method": "displacement"}, {"multi_label": True, "symmetric": ["none"]}],
@@ -129,6 +130,7 @@ def test_a_file_whose_parts_do_not_fit_is_refused(clouds, changes, said):
         classifier_from(rewritten(content, **changes))
 
 
+@pytest.mark.slow
 def test_random_damage_never_comes_through_as_another_error(clouds):
     content = bytearray(file_bytes(RelationClassifier(trees=TreeSettings(3, 3)).fit(clouds, TRUTHS)))
     rng = np.random.default_rng(0)
@@ -153,6 +155,7 @@ def test_the_shipped_model_knows_the_blocks_and_is_small(clouds):
     assert model.predict(clouds[2])[0].relation == NONE
 
 
+@pytest.mark.slow
 def test_asking_a_model_needs_no_scikit_learn():
     ask = (
         "import sys; from lifelore.perception.relations.relation_classifier import shipped_model;"
@@ -217,6 +220,7 @@ ONES = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("kind", "name", "change", "said"), ONES)
 def test_numbers_that_are_none_are_refused_with_the_name_of_the_file(learnt, kind, name, change, said):
     arrays, header = taken_apart(file_bytes(learnt[kind]))
@@ -320,6 +324,7 @@ def spoilt(arrays: dict, header: dict, rng: np.random.Generator) -> bytes:
     return packed_again(arrays, header)
 
 
+@pytest.mark.slow
 @pytest.mark.filterwarnings("ignore:Casting complex:numpy.exceptions.ComplexWarning")
 @pytest.mark.parametrize("kind", ["trees", "displacement", "several"])
 def test_spoilt_files_are_refused_or_answer(learnt, box_clouds, kind):

@@ -129,6 +129,7 @@ def test_identical_points_are_refused_or_one_scene():
     assert len(to_scene(same, up="z").points) == 1000
 
 
+@pytest.mark.slow
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA is not set")
 @pytest.mark.parametrize("scene", ["learn0", "learn25", "learn38", "test47"])
 def test_planes_of_real_scenes(scene):

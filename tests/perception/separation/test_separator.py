@@ -106,6 +106,7 @@ def test_same_as_libsvm(name, n, length, cost):
     assert objective(points, signed(first, second, found), length) == pytest.approx(best, rel=1e-6, abs=1e-6)
 
 
+@pytest.mark.slow
 def test_same_as_libsvm_where_levels_and_expansions_take_part():
     first, second = PAIRS["touching boxes"](4500)
     found = separate(first, second, length=0.06, cost=4.0, tolerance=1e-5)
@@ -115,6 +116,7 @@ def test_same_as_libsvm_where_levels_and_expansions_take_part():
     assert found.decision(some) == pytest.approx(twin.decision_function(some), rel=2e-5, abs=1e-4)
 
 
+@pytest.mark.slow
 @given(
     st.integers(0, 10**6),
     st.integers(1, 400),
@@ -159,6 +161,7 @@ def test_all_points_at_one_place(sizes):
     assert found.alpha_first.sum() == pytest.approx(min(sizes))
 
 
+@pytest.mark.slow
 def test_more_support_vectors_than_a_working_set_holds():
     random = np.random.default_rng(0)
     first, second = random.uniform(0, 0.1, (1600, 3)), random.uniform(0.1, 0.2, (1700, 3))

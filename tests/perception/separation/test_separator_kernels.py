@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 
 import numpy as np
+import pytest
 
 RUN = Path(__file__).with_name("separator_kernels_run.py")
 
@@ -19,6 +20,7 @@ def arrays(path: Path, disable_jit: str):
         return dict(loaded)
 
 
+@pytest.mark.slow
 def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
     compiled, plain = arrays(tmp_path / "compiled.npz", "0"), arrays(tmp_path / "plain.npz", "1")
     assert set(compiled) == set(plain)

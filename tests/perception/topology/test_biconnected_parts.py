@@ -1,6 +1,7 @@
 """Biconnected parts against networkx, on any graph."""
 
 import networkx as nx
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -10,6 +11,7 @@ nodes = st.integers(0, 11)
 pairs = st.tuples(nodes, nodes).filter(lambda pair: pair[0] < pair[1])
 
 
+@pytest.mark.slow
 @settings(max_examples=300, deadline=None)
 @given(st.lists(pairs, max_size=30, unique=True))
 def test_parts_are_those_of_networkx(edges):

@@ -48,18 +48,21 @@ def check(graph):
     return loops, best
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=150)
 @given(weighted_graphs(st.integers(1, 3).map(float)))
 def test_as_short_as_networkx_where_many_ways_are_equally_long(graph):
     check(graph)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=150)
 @given(weighted_graphs(st.floats(1e-3, 1.0)))
 def test_as_short_as_networkx_on_any_lengths(graph):
     check(graph)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=100)
 @given(weighted_graphs(st.sampled_from([0.0, 1.0, 2.0])))
 def test_contacts_in_one_place_are_edges_without_length(graph):
@@ -71,6 +74,7 @@ def test_contacts_in_one_place_are_edges_without_length(graph):
     assert totals[0] == totals[1]
 
 
+@pytest.mark.slow
 def test_the_same_loops_as_networkx_where_only_one_basis_is_shortest():
     rng = np.random.default_rng(0)
     for seed in range(20):

@@ -88,6 +88,7 @@ def scene_with(make_scene, meet):
     return build
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
 @given(small=contacts(3), large=contacts(3), seed=st.integers(0, 9))
 def test_networkx_agrees(scene_with, small, large, seed):
@@ -103,6 +104,7 @@ def test_networkx_agrees(scene_with, small, large, seed):
         assert find_substructure(part, whole, networks="connected").found
 
 
+@pytest.mark.slow
 def test_when_the_bound_runs_out_nothing_is_claimed(scene_with, make_scene, meet):
     # A ring of twelve with chords to every third, in one of fourteen with chords to every fifth: it needs search.
     def ring(n, chord):
