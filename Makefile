@@ -47,7 +47,7 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 test: setup-test ## The tests, on all cores
 	$(BIN)/python -m pytest $(PARALLEL) -m "not soak"
 
-test-fast: setup-test ## The tests that take less than a second each
+test-fast: setup-test ## The quick part of the tests: no claims, processes or pictures
 	$(BIN)/python -m pytest $(PARALLEL) -m "not soak and not slow"
 
 coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
