@@ -1,4 +1,4 @@
-"""Colours of objects, relations and methods, told apart by people with any common colour blindness."""
+"""Colours of objects, relations and methods, distinguishable with every common colour blindness."""
 
 from collections.abc import Iterable
 from itertools import cycle

@@ -107,9 +107,9 @@ def close_up_corner(
     size: int = CLOSE_UP,
 ) -> NDArray[np.int64]:
     """Row and column of the first window of `size` cells a side in which the prior has most to say."""
-    said = np.zeros((max(shape[0], size) + 1, max(shape[1], size) + 1))
-    said[tuple(cells.T + 1)] = np.where(counted, 4.0 - moves, 0.0)
-    total = said.cumsum(axis=0).cumsum(axis=1)
+    counts = np.zeros((max(shape[0], size) + 1, max(shape[1], size) + 1))
+    counts[tuple(cells.T + 1)] = np.where(counted, 4.0 - moves, 0.0)
+    total = counts.cumsum(axis=0).cumsum(axis=1)
     windows = total[size:, size:] - total[:-size, size:] - total[size:, :-size] + total[:-size, :-size]
     return np.array(np.unravel_index(windows.argmax(), windows.shape))
 

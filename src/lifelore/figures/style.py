@@ -57,7 +57,7 @@ COLOURS = {
     "phi3": BLUE,
     "phi4": PURPLE,
 }
-"""Colour by agent or method, told apart by people with any common colour blindness (after Okabe and Ito)."""
+"""Colour by agent or method, distinguishable with every common colour blindness (after Okabe and Ito)."""
 
 _PARAMETERS = {
     "figure.facecolor": PAPER,

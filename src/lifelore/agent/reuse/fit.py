@@ -76,7 +76,7 @@ def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | Non
     -------
     dict
         Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log does
-        not name: their outcomes told it, or did not), ``pending``; ``users``; ``model``; ``types_found``,
+        not name: their outcomes showed it, or did not), ``pending``; ``users``; ``model``; ``types_found``,
         ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy); ``policies``
         (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs without an outcome,
         which got the policy's outcomes on all types); ``contexts``; ``control``, ``incumbent``, ``rule``,

@@ -143,17 +143,17 @@ def replayed(study: Study, history: History) -> BayesianPolicyReuse:
 
 
 def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Decision:
-    said = {field: cells.get(FIELDS * number + field) for field in range(7)}
-    outcome = said[_OUTCOME]
+    stored = {field: cells.get(FIELDS * number + field) for field in range(7)}
+    outcome = stored[_OUTCOME]
     return Decision(
         number,
-        names.get(said[_POLICY] or 0),
-        _number(said[_PROBABILITY] or 0),
-        bool(said[_CONTROL]),
-        said[_CHOSEN] or 0,
-        said[_ATTEMPT] or 0,
+        names.get(stored[_POLICY] or 0),
+        _number(stored[_PROBABILITY] or 0),
+        bool(stored[_CONTROL]),
+        stored[_CHOSEN] or 0,
+        stored[_ATTEMPT] or 0,
         None if outcome is None else _number(outcome),
-        said[_ENDED],
+        stored[_ENDED],
     )
 
 

@@ -10,7 +10,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 
 FEW_VALUES = 10
-"""Outcomes of at most so many different values are categories, not sizes, unless told otherwise."""
+"""Outcomes of at most so many different values are categories, not amounts, unless the settings name a model."""
 
 
 class TypedRows(NamedTuple):

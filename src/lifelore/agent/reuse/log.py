@@ -143,15 +143,15 @@ def _places(header: list[str], name: str) -> dict[str, int]:
 def _row(fields: list[str], header: list[str], places: dict[str, int], where: str) -> _Row:
     if len(fields) != len(header):
         raise InputError(f"{where}: must have {len(header)} fields like the header, got {len(fields)}")
-    said = {column: fields[place].strip() for column, place in places.items()}
+    record = {column: fields[place].strip() for column, place in places.items()}
     for column in ("user", "policy"):
-        check_word(f"{where}: {column}", said[column])
+        check_word(f"{where}: {column}", record[column])
     for column in OPTIONAL:
-        if said.get(column):
-            check_word(f"{where}: {column}", said[column])
+        if record.get(column):
+            check_word(f"{where}: {column}", record[column])
     hint = "; leave it empty if it is not known"
-    outcome = read_outcome(said["outcome"], f"{where}: ", hint) if said["outcome"] else None
-    return said["user"], said["policy"], outcome, said.get("type", ""), said.get("context", "")
+    outcome = read_outcome(record["outcome"], f"{where}: ", hint) if record["outcome"] else None
+    return record["user"], record["policy"], outcome, record.get("type", ""), record.get("context", "")
 
 
 def check_word(what: str, word: str) -> str:

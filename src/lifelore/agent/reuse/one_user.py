@@ -71,12 +71,12 @@ def choose(
     for _ in range(ATTEMPTS):
         known = open_history(memory, study, key, user)
         history = History(known.study, key, user, context or known.context, known.decisions)
-        decision, said = _decided(study, history, attempt, seed)
+        decision, answer = _decided(study, history, attempt, seed)
         offered = [history.record_of(decision)]
         process = _process(decision)
         task = {"study": study.name, "policy": decision.policy}
         if memory.contribute(history.robot, offered, process=process, seq=0, task=task):
-            return said
+            return answer
         # Another process took this number, or a forgotten decision had it.
         again = len(open_history(memory, study, key).decisions) == len(known.decisions)
         attempt = attempt + 1 if again else 0
@@ -93,7 +93,7 @@ def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[D
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     decision = Decision(number, policy, probability, control, int(time.time()), attempt)
     expected = expected_utility(belief, study.choice_of.performance.mean)
-    said = {
+    answer = {
         "user": history.user,
         "policy": policy,
         "decision": history.identifier(decision),
@@ -105,7 +105,7 @@ def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[D
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
         "surprise": agent.surprise,
     }
-    return decision, said
+    return decision, answer
 
 
 def _odds(study: Study, belief: NDArray[np.float64]) -> _Odds:
@@ -234,7 +234,7 @@ def _kept(memory: Memory, study: Study) -> Study:
 def forget(memory: Memory, study: Study, user: str) -> int:
     """Forget a user's decisions, outcomes and belief for good; the number of contributions removed.
 
-    The library keeps what the log said: take the user's lines out of it and fit again.
+    The library still contains the outcomes of the log: remove the user's lines from it and fit again.
 
     Raises
     ------

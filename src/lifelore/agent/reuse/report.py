@@ -1,4 +1,4 @@
-"""The verb `reuse report`: what choosing by belief is worth, against those held out, as numbers, picture and log.
+"""The verb `reuse report`: the gain from choosing by belief over the control group, as numbers, picture and log.
 
 The unit is the user: outcomes of one user hang together, so each user counts once, by the mean of their outcomes.
 Intervals are 95 %: Welch's for the difference of the two groups, bias-corrected bootstrap for means (the normal

@@ -32,11 +32,11 @@ def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.ran
 def _named(log: ReuseLog) -> TypedRows:
     """Rows that name a type, and those of users whose type other rows name."""
     of_user = log.of_users(log.types)
-    said = [name or of_user.get(user, "") for user, name in zip(log.users, log.types, strict=True)]
-    names = sorted(set(said) - {""})
+    named_types = [name or of_user.get(user, "") for user, name in zip(log.users, log.types, strict=True)]
+    names = sorted(set(named_types) - {""})
     place = {name: number for number, name in enumerate(names)}
-    rows = np.array([row for row, name in enumerate(said) if name], np.int64)
-    return TypedRows(rows, np.array([place[said[row]] for row in rows], np.int64), tuple(names))
+    rows = np.array([row for row, name in enumerate(named_types) if name], np.int64)
+    return TypedRows(rows, np.array([place[named_types[row]] for row in rows], np.int64), tuple(names))
 
 
 def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:

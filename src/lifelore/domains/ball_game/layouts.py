@@ -21,7 +21,7 @@ _BLOBS, _CORNERS = 9, 7
 
 @dataclass(frozen=True)
 class Layout:
-    """Where things stand.
+    """Obstacles, start and goal of one layout.
 
     Parameters
     ----------

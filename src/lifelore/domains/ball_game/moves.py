@@ -1,4 +1,4 @@
-"""What can be told of a move of the ball by someone who sees the field but not the ball's size.
+"""Evidence that one move of the ball gives about its size, to an observer of the field.
 
 A signal is the observed (s, a, s') in coarse form, one number: how much room there was where the ball stood and
 along the way that was commanded (the context), what became of the command, and how much room there is where the

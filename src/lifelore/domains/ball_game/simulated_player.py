@@ -22,7 +22,7 @@ from lifelore.domains.ball_game.ball_game import MAX_STEPS, MOVES, BallGame, cro
 from lifelore.domains.ball_game.paths import CELL
 
 STOPPED = 30.0
-"""Units of way that being stopped is worth to her."""
+"""Length of path, in units, that the player accepts to avoid being stopped."""
 
 
 class Balls(NamedTuple):

@@ -8,8 +8,8 @@ With p = (255 - v) / 255 of the averaged colour v (p = v / 255 under `negate`):
 - ``raw``: v itself (255 - v under `negate`) is the occupancy in percent, above 100 unknown; the percent is
   held against the same thresholds.
 
-`map_server` publishes grades between the thresholds in the last two; here they are unknown, for nobody has
-said that a robot fits there.
+`map_server` publishes grades between the thresholds in the last two; here they are unknown: the map does
+not confirm that a robot fits there.
 """
 
 import math

@@ -1,4 +1,4 @@
-"""An invented office floor as an occupancy map: the building to try things in where no map is at hand.
+"""An invented office floor as an occupancy map: the default building where the user has no map.
 
 Seeds give different buildings, not one building redrawn: the corridors may form a spine, a ladder or a comb
 (a floor in the shape of an L, T or U), and rooms, doors and furniture are drawn anew.

@@ -122,7 +122,7 @@ def _washroom(length: float, depth: float, generator) -> Iterator[Piece]:
 
 
 def _open(length: float, depth: float, generator) -> Iterator[Piece]:
-    """Blocks of desks with walkways of more than a metre around, some places left for other things."""
+    """Blocks of desks with walkways of more than a metre around, with some places free for other furniture."""
     columns = int(generator.integers(1, 3))
     pitch_u, pitch_v = 1.6 * columns + 1.5, 1.6 + 1.9
     n_u, n_v = max(1, int((length - 1.0) / pitch_u)), max(1, int((depth - 1.2) / pitch_v))

@@ -61,7 +61,7 @@ def _paler(colour: tuple[int, int, int]) -> tuple[int, int, int]:
 
 def _fill(picture: NDArray[np.uint8], factory: Factory, cell: int, colour, side: int) -> None:
     row, column = factory.floor.cells[cell] * side
-    # A pixel of floor is left around, so that neighbours can be told apart.
+    # A pixel of floor around each symbol separates it from its neighbours.
     picture[row + 1 : row + side - 1, column + 1 : column + side - 1] = colour
 
 

@@ -1,7 +1,8 @@
 """Pacman: collect four items of food in a figure-eight maze, with one ghost that is seen only in line of sight.
 
-The ghost follows one of four strategies; which, is the *type* of the task, and is not told. State and actions are
-the same for all types; what the agent observes is its own cell, the foods left, and the ghost's cell if seen.
+The ghost follows one of four strategies. The strategy is the *type* of the task, and the agent does not know it.
+State and actions are the same for all types. The agent observes its own cell, the foods left, and the ghost's cell
+if it sees the ghost.
 
 The ghost is a small Markov chain over *phases*: back and forth and both ways around are cycles of cells, random
 is a walk. A hidden state is ``(foods left · phases + phase) · cells + own cell``. Thesis: §4.6.3, Figure 4.7.

@@ -1,8 +1,8 @@
-"""Arrangements: what a scene is to show, as a way to place things and a test that, settled, they show it.
+"""Arrangements: what a scene is to show, as a way to place objects and a test that, settled, they show it.
 
-*mixed*: groups side by side; *pair*: two things in a wanted relation; the others are of the thesis's figures:
+*mixed*: groups side by side; *pair*: two objects in a wanted relation; the others are of the thesis's figures:
 a ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, stacks (2.7, 2.10), and two
-things at a given distance. In these the label 2 is the lowest thing, 3 the one on it, and so on.
+objects at a given distance. In these the label 2 is the lowest object, 3 the one on it, and so on.
 """
 
 from collections.abc import Callable, Mapping
@@ -22,7 +22,7 @@ from lifelore.domains.tabletop.shapes import animal, arch, ball, box, cloth, hin
 
 @dataclass(frozen=True)
 class Arrangement:
-    """How things are placed, and the pairs (a, b) of labels that must settle so that a is carried by b.
+    """How objects are placed, and the pairs (a, b) of labels that must settle so that a is carried by b.
 
     `regions` is how many separate regions the first such pair must touch in; `shuffled` whether the labels are
     dealt at random, so that their order tells nothing.
@@ -44,12 +44,12 @@ MIXED: tuple[tuple[Template, float, str], ...] = (
     (nested, 0.03, ON),
     (heap, 0.05, ON),
 )
-"""Templates of a scene of many things, how often each is drawn, and the relation it is there for."""
+"""Templates of a scene of many objects, how often each is drawn, and the relation it is there for."""
 _USUAL = {ON: 0.2, BOTH: 0.15, NONE: 0.65}
 
 
 def place_mixed(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Groups of things, each set down beside an earlier one at a drawn gap."""
+    """Groups of objects, each set down beside an earlier one at a drawn gap."""
     n_objects = int(rng.integers(settings.n_objects[0], settings.n_objects[1] + 1))
     weights = _template_weights(settings.mix)
     scene: list[tuple[float, Group]] = []
@@ -59,7 +59,7 @@ def place_mixed(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, 
         if count + len(group) <= n_objects:
             scene.append(_set_down(rng, scene, group, draw_gap(rng, settings.mix)))
             count += len(group)
-    return [thing for _, group in scene for thing in group]
+    return [item for _, group in scene for item in group]
 
 
 def _template_weights(mix: Mapping[str, float] | None) -> np.ndarray:
@@ -92,7 +92,7 @@ def _set_down(
     """The group turned and moved beside an earlier one, and its yaw; the first stays in the middle."""
     if not scene:
         yaw = float(rng.uniform(0, 2 * np.pi))
-        return yaw, [thing.turned(yaw) for thing in group]
+        return yaw, [item.turned(yaw) for item in group]
     best, best_room = (0.0, group), -np.inf
     for _ in range(8):
         beside, near = scene[int(rng.integers(len(scene)))]
@@ -100,7 +100,7 @@ def _set_down(
             yaw, direction = beside + rng.normal(0, 0.04), beside + np.pi / 2 * rng.integers(4)
         else:
             yaw, direction = rng.uniform(0, 2 * np.pi, 2)
-        placed = put_beside(near, [thing.turned(float(yaw)) for thing in group], float(direction), gap)
+        placed = put_beside(near, [item.turned(float(yaw)) for item in group], float(direction), gap)
         room = min(separation(other, placed) for _, other in scene)
         if room > best_room:
             best, best_room = (float(yaw), placed), room
@@ -110,10 +110,10 @@ def _set_down(
 
 
 def place_pair(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two things that may stand in the `wanted` relation."""
+    """Two objects that may stand in the `wanted` relation."""
     if wanted in (ON, BOTH):
         template = (stacked, nested)[rng.random() < 0.05] if wanted == ON else (lean, step)[rng.random() < 0.25]
-        return [thing.turned(float(rng.uniform(0, 2 * np.pi))) for thing in template(rng, kit)]
+        return [item.turned(float(rng.uniform(0, 2 * np.pi))) for item in template(rng, kit)]
     edge = settings.adjacent_gap
     low, high = (0.0005, edge) if wanted == ADJACENT else (edge, edge + 0.0125 if rng.random() < 0.4 else 0.075)
     first = _set_down(rng, [], single(rng, kit), 0.0)
@@ -121,7 +121,7 @@ def place_pair(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, w
 
 
 def place_apart(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
-    """Two things whose footprints are `settings.separation` metres apart, side by side in the picture."""
+    """Two objects whose footprints are `settings.separation` metres apart, side by side in the picture."""
     first, second = single(rng, kit), single(rng, kit)
     return [*first, *put_beside(first, second, float(rng.normal(0, 0.15)), max(settings.separation, 0.0005))]
 
@@ -132,7 +132,7 @@ def place_apart(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, 
 def _facing(rng: np.random.Generator, group: Group) -> Group:
     """Turned so that what is open along y can be looked into."""
     yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
-    return [thing.turned(yaw) for thing in group]
+    return [item.turned(yaw) for item in group]
 
 
 def place_hole_hinged(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:

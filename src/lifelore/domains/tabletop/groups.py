@@ -1,6 +1,6 @@
-"""Templates: small groups of things placed so that, settled, they often stand in a certain relation.
+"""Templates: small groups of objects placed so that, settled, they often stand in a certain relation.
 
-What a group turns into is for physics to say: of the things dropped on another about four in five stay there.
+What a group turns into is for physics to say: of the objects dropped on another about four in five stay there.
 """
 
 from collections.abc import Callable
@@ -16,23 +16,23 @@ Template = Callable[[np.random.Generator, Kit], Group]
 
 
 def single(rng: np.random.Generator, kit: Kit) -> Group:
-    """One thing on the table."""
+    """One object on the table."""
     shape = kit.draw(rng)
     return [stand(shape, rest(rng, shape))]
 
 
 def stacked(rng: np.random.Generator, kit: Kit) -> Group:
-    """A thing dropped on another."""
+    """An object dropped on another."""
     return _on_top(rng, kit, single(rng, kit))
 
 
 def tower(rng: np.random.Generator, kit: Kit) -> Group:
-    """Three things on one another."""
+    """Three objects on one another."""
     return _on_top(rng, kit, stacked(rng, kit))
 
 
 def _on_top(rng: np.random.Generator, kit: Kit, group: Group) -> Group:
-    """One more thing dropped on a group's last, in four of five cases off its middle."""
+    """One more object dropped on a group's last, in four of five cases off its middle."""
     shape = kit.draw(rng)
     half = np.ptp(group[-1].outline(), axis=0)[:2] / 2
     x, y = middle(group[-1:]) + rng.uniform(-0.7, 0.7, 2) * half * (rng.random() < 0.8)
@@ -40,7 +40,7 @@ def _on_top(rng: np.random.Generator, kit: Kit, group: Group) -> Group:
 
 
 def lean(rng: np.random.Generator, kit: Kit) -> Group:
-    """A long thing put slantwise against another, its foot on the table."""
+    """A long object put slantwise against another, its foot on the table."""
     support = single(rng, kit)[0]
     outline = support.outline()
     angle = rng.uniform(np.radians(12), np.radians(75))
@@ -94,7 +94,7 @@ def nested(rng: np.random.Generator, kit: Kit) -> Group:
 
 
 def heap(rng: np.random.Generator, kit: Kit) -> Group:
-    """Two or three things, the later dropped any way round over the first."""
+    """Two or three objects, the later dropped any way round over the first."""
     group = single(rng, kit)
     for _ in range(int(rng.integers(1, 3))):
         x, y = rng.uniform(-0.06, 0.06, 2)

@@ -32,7 +32,7 @@ class Kit:
 
     `kinds` gives each kind's draw and weight. `plank` draws something long and flat along x, `block` makes
     something of a size with a flat face at −x, `pillar` draws something of a flat top and bottom, `ledge` a step
-    to stand things on, `vessel` something open, and `filler` what goes into a vessel of a radius.
+    to stand objects on, `vessel` something open, and `filler` what goes into a vessel of a radius.
     """
 
     kinds: Mapping[str, tuple[Draw, float]]

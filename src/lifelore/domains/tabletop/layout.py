@@ -1,4 +1,4 @@
-"""Things put on a table before they settle: standing on something, or side by side at a gap."""
+"""Objects put on a table before they settle: standing on something, or side by side at a gap."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -26,11 +26,11 @@ class Placed:
         return self.pose.apply(self.shape.outline())
 
     def moved(self, x: float, y: float, z: float = 0.0) -> "Placed":
-        """The same thing further on."""
+        """The same object further on."""
         return Placed(self.shape, self.pose.moved(np.array([x, y, z])))
 
     def turned(self, yaw: float) -> "Placed":
-        """The same thing carried about the vertical through the origin."""
+        """The same object carried about the vertical through the origin."""
         return Placed(self.shape, self.pose.turned(yaw))
 
 
@@ -39,7 +39,7 @@ Group = list[Placed]
 
 def top(group: Sequence[Placed]) -> float:
     """Height of the highest point, metres."""
-    return max(float(thing.outline()[:, 2].max()) for thing in group)
+    return max(float(item.outline()[:, 2].max()) for item in group)
 
 
 def middle(group: Sequence[Placed]) -> NDArray[np.float64]:
@@ -88,7 +88,7 @@ def put_beside(still: Group, moving: Group, direction: float, gap: float) -> Gro
     room = _rooms(still, moving) + _DIRECTIONS @ start
     distance = float(((gap - room[use]) / ahead[use]).min())
     shift = start + distance * way
-    return [thing.moved(float(shift[0]), float(shift[1])) for thing in moving]
+    return [item.moved(float(shift[0]), float(shift[1])) for item in moving]
 
 
 def separation(first: Group, second: Group) -> float:
@@ -101,4 +101,4 @@ def _rooms(first: Group, second: Group) -> NDArray[np.float64]:
 
 
 def _footprint(group: Sequence[Placed]) -> NDArray[np.float64]:
-    return np.concatenate([thing.outline()[:, :2] for thing in group])
+    return np.concatenate([item.outline()[:, :2] for item in group])

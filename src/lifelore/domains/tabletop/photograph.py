@@ -12,7 +12,7 @@ from lifelore.domains.tabletop.pose import Pose
 
 FIRST_OBJECT = 2
 FEW_POINTS = 400
-"""A thing with fewer seen points is hidden."""
+"""An object with fewer seen points is hidden."""
 _MARGIN = 40
 _FARTHEST = 2.5
 
@@ -49,7 +49,7 @@ def choose_view(outlines: list[NDArray[np.float64]], rng: np.random.Generator, c
 def photograph(
     table: Tabletop, outlines: list[NDArray[np.float64]], view: Pose, camera: Camera, rng: np.random.Generator
 ) -> Photograph | None:
-    """What the camera sees of the things and of the table around them; None where a thing is hidden."""
+    """What the camera sees of the objects and of the table around them; None where an object is hidden."""
     rays = _rays_at(outlines, view, camera)
     world = rays.reshape(-1, 3) @ view.rotation.T
     hits, depth, normals = table.cast(view.position, world)
@@ -68,7 +68,7 @@ def photograph(
 
 
 def _rays_at(outlines: list[NDArray[np.float64]], view: Pose, camera: Camera) -> NDArray[np.float64]:
-    """Rays ``(rows, columns, 3)`` of the part of the picture that holds the things."""
+    """Rays ``(rows, columns, 3)`` of the part of the picture that holds the objects."""
     pixels = camera.project((np.concatenate(outlines) - view.position) @ view.rotation)
     low = np.maximum(np.floor(pixels.min(axis=0)).astype(int) - _MARGIN, 0)
     high = np.minimum(np.ceil(pixels.max(axis=0)).astype(int) + _MARGIN, [camera.width, camera.height])
@@ -78,7 +78,7 @@ def _rays_at(outlines: list[NDArray[np.float64]], view: Pose, camera: Camera) ->
 def _colours(
     labels: NDArray[np.int64], normals: NDArray[np.float64], rng: np.random.Generator
 ) -> NDArray[np.uint8]:
-    """A colour a thing, shaded by a light from above, with a little noise."""
+    """A colour an object, shaded by a light from above, with a little noise."""
     palette = rng.uniform(40, 235, (int(labels.max()) + 1, 3))
     palette[TABLE] = (196, 172, 140)
     light = 0.55 + 0.45 * np.clip(normals @ np.array([0.3, -0.4, 0.866]), 0, 1)

@@ -1,7 +1,7 @@
 """MuJoCo's part of the tabletop: settle placed shapes, read contacts, cast rays. No other file knows MuJoCo.
 
 Since MuJoCo 3.9 a contact is detected where dist < margin + gap and pushes where dist < margin: with margin 0 and
-a gap of `NEAR` things rest on, not above, one another and near misses are still reported.
+a gap of `NEAR` objects rest on, not above, one another and near misses are still reported.
 """
 
 from collections.abc import Sequence
@@ -21,7 +21,7 @@ NEAR = 0.004
 _TYPES = {"box": "box", "cylinder": "cylinder", "ball": "sphere", "ellipsoid": "ellipsoid", "capsule": "capsule"}
 _CHUNK = 25
 _CLOTH_STILL = 5.0
-"""A cloth's knots may tremble so many times faster than a solid thing may move."""
+"""A cloth's knots may tremble so many times faster than a solid object may move."""
 _RAYS_GROUPS = np.array([1, 0, 0, 0, 0, 0], dtype=np.uint8)
 
 _SOLID = (
@@ -105,7 +105,7 @@ class Tabletop:
         return tuple(self._bent(number, shape) for number, shape in enumerate(self._shapes))
 
     def rigid(self) -> "Tabletop":
-        """The same scene with cloths turned to stone, for rays and distances, which see no soft things."""
+        """The same scene with cloths turned to stone, for rays and distances, which see no soft objects."""
         return Tabletop([replace(s, weave=None) for s in self.shapes], self.poses) if self._cloths else self
 
     def _bent(self, number: int, shape: Shape) -> Shape:

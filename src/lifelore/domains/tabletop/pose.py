@@ -1,4 +1,4 @@
-"""`Pose`: where a thing of the tabletop is and how it is turned; rotations as matrices, metres, z up."""
+"""`Pose`: where an object of the tabletop is and how it is turned; rotations as matrices, metres, z up."""
 
 from dataclasses import dataclass
 

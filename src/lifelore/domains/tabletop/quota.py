@@ -70,7 +70,7 @@ def is_missed(counts: ArrayLike, mix: Mapping[str, float]) -> bool:
 
 
 def count_relations(truth: Sequence[PairLabel]) -> NDArray[np.float64]:
-    """How many pairs of things stand in each relation, in the order of `CORE_RELATIONS`; the table left out."""
+    """How many pairs of objects stand in each relation, in the order of `CORE_RELATIONS`; the table left out."""
     labels = [label.relation for label in truth if label.b != TABLE]
     return np.array([labels.count(relation) for relation in CORE_RELATIONS], dtype=float)
 

@@ -22,11 +22,11 @@ class TabletopSettings:
     Parameters
     ----------
     n_objects : (int, int)
-        Fewest and most things of a scene, at least 1; a named arrangement has its own number.
+        Fewest and most objects of a scene, at least 1; a named arrangement has its own number.
     arrangement : str
         A key of `tabletop_arrangements.ARRANGEMENTS`.
     mix : mapping of str to float, optional
-        Wanted shares of *on*, *adjacent*, *both* and *none* among pairs of things, by truth; any positive scale.
+        Wanted shares of *on*, *adjacent*, *both* and *none* among pairs of objects, by truth; any positive scale.
     camera : str
         ``"kinect"`` or ``"stereo"``.
     shapes : str
@@ -36,7 +36,7 @@ class TabletopSettings:
     adjacent_gap, near : float
         Metres: largest visible gap of *adjacent*, and of a pair that gets a label.
     separation : float
-        Metres between the two things of arrangement ``"apart"``, 0 to 1.
+        Metres between the two objects of arrangement ``"apart"``, 0 to 1.
 
     Raises
     ------
@@ -82,9 +82,10 @@ def _check_mix(mix: Mapping[str, float]) -> None:
 class TabletopScene:
     """A settled scene: its cloud in the table's frame, and what is true of it.
 
-    `truth` holds every near pair of things and every thing with the table (label 1); `gaps` the visible and true
-    distance of the near pairs; `shapes` and `poses` thing by thing, whose labels are 2, 3, …; `view` the camera's
-    pose (x right, y down, z forward); `clean` the cloud's points without noise; `attempts` how many draws it took.
+    `truth` holds every near pair of objects and every object with the table (label 1); `gaps` the visible and
+    true distance of the near pairs; `shapes` and `poses` object by object, whose labels are 2, 3, …; `view` the
+    camera's pose (x right, y down, z forward); `clean` the cloud's points without noise; `attempts` the number of
+    draws.
     """
 
     name: str

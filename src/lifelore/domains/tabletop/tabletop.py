@@ -1,4 +1,4 @@
-"""The tabletop: draw things, let them settle, judge what bears on what, photograph them with a depth camera.
+"""The tabletop: draw objects, let them settle, judge what bears on what, photograph them with a depth camera.
 
 Thesis: §2.4.1, whose 128 stereo pictures of pairs are not published; physics settles and labels them here.
 """
@@ -28,7 +28,7 @@ from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, true_
 JAMMED = -0.001
 """Metres: surfaces that overlap more were pressed together, not set down."""
 BALANCE = 0.05
-"""Part of its weight by which a thing's support may be off: more, and it is about to tip."""
+"""Part of its weight by which a object's support may be off: more, and it is about to tip."""
 ATTEMPTS = 400
 BLOCK = 4
 """Scenes that one process draws at a time."""
@@ -41,7 +41,7 @@ def tabletop_scenes(
 ) -> Iterator[TabletopScene]:
     """`n` scenes in order, the same bit for bit for any number of `jobs` (processes).
 
-    With a mix, scenes of many things are those of a longer row that lead to it (`tabletop_quota.to_mix`); pairs
+    With a mix, scenes of many objects are those of a longer row that lead to it (`tabletop_quota.to_mix`); pairs
     are drawn to it one by one.
     """
     settings = settings or TabletopSettings()
@@ -104,7 +104,7 @@ def _name(number: int) -> str:
 def _attempt(
     rng: np.random.Generator, settings: TabletopSettings, arrangement: Arrangement, kit: Kit, wanted: str
 ) -> TabletopScene | None:
-    """One draw; None where it does not settle, jams, shows something else, or a thing cannot be seen."""
+    """One draw; None where it does not settle, jams, shows something else, or an object cannot be seen."""
     aim = wanted or CORE_RELATIONS[int(rng.integers(4))]
     placed = arrangement.place(rng, kit, settings, aim)
     if arrangement.shuffled:
@@ -119,7 +119,7 @@ def settle_scene(
     arrangement: Arrangement | None = None,
     wanted: str = "",
 ) -> TabletopScene | None:
-    """Let things fall from where they were put, judge and photograph them.
+    """Let objects fall from where they were put, judge and photograph them.
 
     Returns
     -------
@@ -127,7 +127,7 @@ def settle_scene(
         None where they do not settle within four seconds, jam, show another arrangement or relation than the
         `wanted` one, or cannot all be seen.
     """
-    table = Tabletop([thing.shape for thing in placed], [thing.pose for thing in placed])
+    table = Tabletop([item.shape for item in placed], [item.pose for item in placed])
     if not table.settle():
         return None
     contacts = table.contacts()
@@ -166,7 +166,7 @@ def settle_scene(
 def _shows(
     arrangement: Arrangement, share: NDArray[np.float64], contacts: Contacts, frame: NDArray[np.float64]
 ) -> bool:
-    """Whether the things that must be carried are, and touch in as many regions as they must."""
+    """Whether the objects that must be carried are, and touch in as many regions as they must."""
     table = len(share) - 1
     for a, b in arrangement.on:
         if share[a - FIRST_OBJECT, b - FIRST_OBJECT] < 0.5 or share[a - FIRST_OBJECT, table] > 0:
@@ -177,12 +177,12 @@ def _shows(
     pressed = (np.linalg.norm(contacts.forces, axis=1) > 0) & (
         np.minimum(contacts.first, contacts.second) == min(pair)
     ) & (np.maximum(contacts.first, contacts.second) == max(pair))  # fmt: skip
-    # Looked at along the lowest thing's y axis, contacts along an edge across it are one region.
+    # Looked at along the lowest object's y axis, contacts along an edge across it are one region.
     return contact_regions(contacts.positions[pressed] @ frame[:, [0, 2]]) == arrangement.regions
 
 
 def _pair_relation(truth: tuple[PairLabel, ...]) -> str:
-    """The relation of the only two things; none where they are too far apart for a label."""
+    """The relation of the only two objects; none where they are too far apart for a label."""
     return next((label.relation for label in truth if label.b >= FIRST_OBJECT), "")
 
 

@@ -1,8 +1,8 @@
 """What is true of a settled scene: who carries whom, from forces and from gaps; labels as a person gives them.
 
 *on*: more than `SHARE` of a's weight comes from b through contacts whose normal lies within 45° of up. *Beside*: a
-contact or near miss with a normal within 45° of horizontal between things that overlap in height, or a visible
-gap of at most `adjacent_gap` between things side by side. *both*: on and beside, or leaning: b carries part of a,
+contact or near miss with a normal within 45° of horizontal between objects that overlap in height, or a visible
+gap of at most `adjacent_gap` between objects side by side. *both*: on and beside, or leaning: b carries part of a,
 and a reaches well below the place where it does. Where forces and the view disagree (neighbours touch, but the gap
 that is seen is wider than `adjacent_gap`) the label is doubtful. Thesis: §2.3.2, §2.4.1: there a person labels.
 """
@@ -18,7 +18,7 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
 
 SHARE = 0.05
-"""Part of its weight that a thing must get from what it rests on."""
+"""Part of its weight that an object must get from what it rests on."""
 DOUBTFUL_SHARE = (0.02, 0.12)
 DOUBTFUL_GAP = 0.005
 PROBABLE_GAP = 0.010
@@ -26,7 +26,7 @@ PROBABLE_GAP = 0.010
 UNSEEN = 0.04
 """Metres of visible gap above which a contact is hidden from whoever looks: probable (2) at most."""
 LEAN_DEPTH = 0.015
-"""Metres that a leaning thing reaches below the place where it is carried."""
+"""Metres that a leaning object reaches below the place where it is carried."""
 OVERLAP = 0.015
 """Metres of height that neighbours share at least: a box's edge on a box pushes sideways, too."""
 _STEEP = np.cos(np.pi / 4)
@@ -45,7 +45,7 @@ class Gap:
 
 @dataclass(frozen=True, eq=False)
 class Bearing:
-    """How n things bear on one another; row a, column b; column n is the table.
+    """How n objects bear on one another; row a, column b; column n is the table.
 
     `share` is the part of a's weight that b gives through contacts with a normal within 45° of up, `lift` through
     all contacts, `side` whether a contact or near miss has a normal within 45° of horizontal, `height` the lowest
@@ -117,7 +117,7 @@ def true_relations(
     adjacent_gap: float = ADJACENT_GAP,
     near: float = 0.08,
 ) -> tuple[PairLabel, ...]:
-    """Labels of every near pair of things, and of every thing with the table.
+    """Labels of every near pair of objects, and of every object with the table.
 
     Parameters
     ----------
@@ -125,9 +125,9 @@ def true_relations(
     gaps : mapping
         `Gap` of each pair of numbers i < j that may be near.
     heights : (n, 2) float64
-        Of each thing's lowest and highest point, metres.
+        Of each object's lowest and highest point, metres.
     labels : sequence of int
-        The label of thing i in the cloud.
+        The label of object i in the cloud.
     adjacent_gap, near : float
         Metres; pairs that do not touch and are seen further apart than `near` get no label.
     """

@@ -9,7 +9,7 @@ A type is the caller's preference, a policy the language model used, one episode
 | B | (1 − ρ) η | ρ | (1 − ρ)(1 − η) |
 
 η = 0.3, and 0 for the preferred model. A caller who is irritated is first frustrated, then annoyed, then angry,
-and an angry one is handed to a human. Success is worth 10 in all, anything else 3. Reading A is the default: of
+and an angry one is handed to a human. Success pays 10 in all, every other end 3. Reading A is the default: of
 the two only it leaves the way to *angry* independent of ρ, as the text says; under B (s, a, s′) tells no more than
 the rewards.
 
