@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.engine.cell_store import canonical
+from lifelore.experiments.engine.estimates import share_of
 
 T = TypeVar("T")
 
@@ -124,8 +125,7 @@ class ResultsTable:
 
     def share(self, measure: str, **where: Any) -> Estimate:
         """Share of records whose measure is true, without an interval: a count of all there are."""
-        answers = self.values(measure, **where)
-        return Estimate(float(answers.mean()), float(np.median(answers)), None, len(answers))
+        return share_of(self.values(measure, **where))
 
     def curve(
         self, measure: str, digits: int | None = None, parts: Sequence[str] = PARTS, **where: Any
