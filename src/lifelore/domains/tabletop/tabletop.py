@@ -1,4 +1,4 @@
-"""The tabletop: draw objects, let them settle, judge what bears on what, photograph them with a depth camera.
+"""The tabletop: draw objects, let them settle, determine their relations, photograph them with a depth camera.
 
 Thesis: §2.4.1, whose 128 stereo pictures of pairs are not published; physics settles and labels them here.
 """
