@@ -8,8 +8,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.bench import relation_learners, relation_scenes, relations
-from lifelore.experiments.bench.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
+from lifelore.experiments.bench.perception import relation_learners, relation_scenes, relations
+from lifelore.experiments.bench.perception.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
 from lifelore.experiments.chapter2 import network_stability
 from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
 from lifelore.experiments.chapter2.real_scenes import RealScene

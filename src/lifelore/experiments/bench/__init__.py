@@ -1,4 +1,8 @@
-"""Speed and worth as ratios, measured side by side: one function a benchmark, plain data out."""
+"""Benchmarks: speed and benefit as ratios, measured side by side; plain data out.
+
+A folder a subject: a benchmark's module has its name, and its peers stand beside it. `rounds` measures them in
+turns.
+"""
 
 from importlib import import_module
 
@@ -8,23 +12,26 @@ from lifelore.core.protocols import Progress
 MOST_REPEATS = 1000
 
 
-BENCHES = (
-    "kernels",
-    "courier",
-    "priors",
-    "separator",
-    "perceive",
-    "relations",
-    "pictures",
-    "factory",
-    "deep",
-    "reuse",
-    "start",
-    "buildings",
-    "merge",
-    "capacity",
-)
-"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
+BENCHES = {
+    "kernels": "learners",
+    "courier": "lives",
+    "priors": "action",
+    "separator": "perception",
+    "perceive": "perception",
+    "relations": "perception",
+    "pictures": "perception",
+    "factory": "action",
+    "deep": "action",
+    "reuse": "interaction",
+    "start": "startup",
+    "buildings": "lives",
+    "merge": "fleet",
+    "capacity": "fleet",
+}
+"""Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name.
+
+``courier`` takes a map too.
+"""
 
 
 def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
@@ -61,7 +68,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         raise InputError(f"repeats must lie in [1, {MOST_REPEATS}], got {repeats}")
     if map is not None and name != "courier":
         raise InputError(f"map applies to bench courier, got {map} for {name}; leave it out")
-    run = getattr(import_module(f"{__name__}.{name}"), f"bench_{name}")
+    run = getattr(import_module(f"{__name__}.{BENCHES[name]}.{name}"), f"bench_{name}")
     options = {"map": map} if name == "courier" else {}
     return {"bench": name, **run(repeats, progress or _silent, **options)}
 

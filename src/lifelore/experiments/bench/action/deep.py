@@ -19,8 +19,15 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.learning.learning_metrics import LearningGain, learning_gain
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
-from lifelore.experiments.bench import deep_learning, deep_speed, deep_worlds
-from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM, crossing_prior, excluded_best, exploring
+from lifelore.experiments.bench.action import deep_learning, deep_speed, deep_worlds
+from lifelore.experiments.bench.action.deep_worlds import (
+    GUIDED,
+    SEVEN,
+    UNIFORM,
+    crossing_prior,
+    excluded_best,
+    exploring,
+)
 from lifelore.experiments.bench.rounds import at_least, at_most, paired_ratio, row
 from lifelore.experiments.engine.cell_store import CellStore
 from lifelore.experiments.engine.source_key import source_key
@@ -215,7 +222,7 @@ def _told(learning: Mapping, gain: LearningGain) -> dict:
 
 
 def _draw(result: Mapping, path: Path) -> None:
-    from lifelore.experiments.bench.figure_deep_curves import draw_deep_curves
+    from lifelore.experiments.bench.action.figure_deep_curves import draw_deep_curves
     from lifelore.figures.style import save_figure
 
     names = {PLAIN: "scratch", PRIOR: "prior", UNIFORM: "scratch", GUIDED: "prior"}

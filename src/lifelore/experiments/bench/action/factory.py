@@ -29,7 +29,7 @@ ROOM = "learning nine components, above the imports"
 _NINE = """
 import resource, sys
 from pathlib import Path
-from lifelore.experiments.bench.factory import learn_all
+from lifelore.experiments.bench.action.factory import learn_all
 
 def held(now):
     # Linux hands a parent's peak down to its children, but keeps a process's own beside it.

@@ -10,7 +10,14 @@ from lifelore.core.learning.curve import TOTAL
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import learn
 from lifelore.core.streams import stream
-from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task, new_case
+from lifelore.experiments.bench.learners.lattice_case import (
+    ALPHA,
+    DISCOUNT,
+    EPSILON,
+    MAX_STEPS,
+    lattice_task,
+    new_case,
+)
 
 LEARNERS, ALONE = 10_000, 200
 STEPS, CHUNK = 5_000, 100

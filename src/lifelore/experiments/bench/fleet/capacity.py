@@ -14,8 +14,15 @@ from pathlib import Path
 from statistics import median
 
 from lifelore.core.protocols import Progress
-from lifelore.experiments.bench.capacity_case import TURN, Contexts, Learners, bytes_of, contributions, move_rate
-from lifelore.experiments.bench.gpu_bound import Gpu
+from lifelore.experiments.bench.fleet.capacity_case import (
+    TURN,
+    Contexts,
+    Learners,
+    bytes_of,
+    contributions,
+    move_rate,
+)
+from lifelore.experiments.bench.fleet.gpu_bound import Gpu
 from lifelore.experiments.bench.rounds import row
 
 LEARNERS = (1, 10, 100, 1_000, 10_000)
@@ -192,7 +199,7 @@ def _gpu_rows(learners: Measured, contexts: Measured, moves: float, cores: int, 
 def _draw(
     learners: Measured, contexts: Measured, stored: Measured, machine: Mapping[str, float], path: Path
 ) -> None:
-    from lifelore.experiments.bench.figure_capacity_curves import draw_capacity_curves
+    from lifelore.experiments.bench.fleet.figure_capacity_curves import draw_capacity_curves
     from lifelore.figures.style import save_figure
 
     kinds = {

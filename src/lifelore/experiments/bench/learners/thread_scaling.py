@@ -7,7 +7,7 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench.lattice_case import Case, new_case, run_kernel
+from lifelore.experiments.bench.learners.lattice_case import Case, new_case, run_kernel
 
 LEARNERS, EPISODES = 8, 1000
 THREADS = max(2, min(4, os.cpu_count() or 1))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.experiments.bench import reuse_loops as loops
+from lifelore.experiments.bench.interaction import reuse_loops as loops
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes

@@ -9,7 +9,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene
-from lifelore.experiments.bench.relation_learners import CONTACTS, SeenScene, seen_scene
+from lifelore.experiments.bench.perception.relation_learners import CONTACTS, SeenScene, seen_scene
 from lifelore.experiments.chapter2.network_stability import Stability, contact_nodes, stability
 from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
 from lifelore.experiments.chapter2.real_scenes import real_scenes

@@ -116,7 +116,7 @@ def _life(size: Sequence[float]) -> dict:
 
 
 def _draw(lives: Sequence[dict[str, float]], out: Path) -> None:
-    from lifelore.experiments.bench.figure_building_growth import draw_building_growth
+    from lifelore.experiments.bench.lives.figure_building_growth import draw_building_growth
     from lifelore.figures.style import save_figure
 
     out.mkdir(parents=True, exist_ok=True)

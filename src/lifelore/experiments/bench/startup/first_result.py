@@ -10,7 +10,7 @@ from lifelore.core.errors import LifeloreError
 _Q = """
 import time
 from lifelore.core.planning.planning import greedy_policy, optimal_q, policy_values
-from lifelore.experiments.bench.lattice_case import lattice_task, new_case, run_kernel
+from lifelore.experiments.bench.learners.lattice_case import lattice_task, new_case, run_kernel
 started = time.perf_counter()
 case = new_case(500)
 optimal_q(case.tables, 0.95)
@@ -27,7 +27,7 @@ from lifelore.core.learning.known_world import unknown_world, known_policy
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
 from lifelore.core.planning.planning import optimal_q, policy_values
 from lifelore.core.streams import stream
-from lifelore.experiments.bench.lattice_case import lattice_task
+from lifelore.experiments.bench.learners.lattice_case import lattice_task
 started = time.perf_counter()
 tables = lattice_task().tables()
 optimal_q(tables, 0.95)

@@ -12,7 +12,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
-from lifelore.experiments.bench.relation_learners import (
+from lifelore.experiments.bench.perception.relation_learners import (
     LEARNERS,
     LOGIC,
     OURS,
@@ -21,7 +21,7 @@ from lifelore.experiments.bench.relation_learners import (
     asked,
     taught,
 )
-from lifelore.experiments.bench.relation_scenes import (
+from lifelore.experiments.bench.perception.relation_scenes import (
     HALF,
     HELD_OUT,
     LABELS,

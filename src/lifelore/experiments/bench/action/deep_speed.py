@@ -9,7 +9,7 @@ from threadpoolctl import threadpool_limits
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import N_MOVES, SymbolicView, open_directions
-from lifelore.experiments.bench.deep_worlds import new_world
+from lifelore.experiments.bench.action.deep_worlds import new_world
 from lifelore.experiments.bench.rounds import Rates, interleaved
 
 WORLD = "SimpleCrossingS9N1"

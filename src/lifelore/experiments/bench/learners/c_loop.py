@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.bench.lattice_case import Case, new_case, run_kernel, timed
+from lifelore.experiments.bench.learners.lattice_case import Case, new_case, run_kernel, timed
 
 SOURCE = Path(__file__).with_name("q_learning.c")
 FLAGS = ("-O3", "-march=native", "-ffp-contract=off", "-shared", "-fPIC")

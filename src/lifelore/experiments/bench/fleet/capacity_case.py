@@ -18,7 +18,7 @@ from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains import make_world
-from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
+from lifelore.experiments.bench.learners.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
 from lifelore.memory import open_memory
 
 TURN = 1000

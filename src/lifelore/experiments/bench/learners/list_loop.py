@@ -3,7 +3,7 @@
 import random
 import time
 
-from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
+from lifelore.experiments.bench.learners.lattice_case import ALPHA, DISCOUNT, EPSILON, MAX_STEPS, lattice_task
 
 STEPS = 200_000
 

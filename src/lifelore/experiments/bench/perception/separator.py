@@ -12,9 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from lifelore.core.protocols import Progress
-from lifelore.experiments.bench.cloud_pairs import Cloud, cloud_pair, names, small_pairs
+from lifelore.experiments.bench.perception.cloud_pairs import Cloud, cloud_pair, names, small_pairs
+from lifelore.experiments.bench.perception.separator_start import separator_start_seconds
 from lifelore.experiments.bench.rounds import at_least, at_most, interleaved, paired_ratio, row
-from lifelore.experiments.bench.separator_start import separator_start_seconds
 from lifelore.perception.separation.separator import separate
 
 

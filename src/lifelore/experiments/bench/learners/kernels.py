@@ -4,13 +4,13 @@ from collections.abc import Callable
 from statistics import median
 
 from lifelore.core.protocols import Progress
-from lifelore.experiments.bench.c_loop import built_c_loop
-from lifelore.experiments.bench.gymnasium_loop import short_textbook_rate, textbook_rate
-from lifelore.experiments.bench.lattice_case import kernel_rate
-from lifelore.experiments.bench.list_loop import short_tuned_rate, tuned_rate
-from lifelore.experiments.bench.many_learners import CHUNK, LEARNERS, alone_rate, many_rate
+from lifelore.experiments.bench.learners.c_loop import built_c_loop
+from lifelore.experiments.bench.learners.gymnasium_loop import short_textbook_rate, textbook_rate
+from lifelore.experiments.bench.learners.lattice_case import kernel_rate
+from lifelore.experiments.bench.learners.list_loop import short_tuned_rate, tuned_rate
+from lifelore.experiments.bench.learners.many_learners import CHUNK, LEARNERS, alone_rate, many_rate
+from lifelore.experiments.bench.learners.thread_scaling import THREADS, check_same_bits, threaded_rate
 from lifelore.experiments.bench.rounds import Rates, at_least, interleaved, paired_ratio, row
-from lifelore.experiments.bench.thread_scaling import THREADS, check_same_bits, threaded_rate
 
 KERNEL, C, TEXTBOOK, TUNED = "kernel", "C -O3 -march=native", "Gymnasium + NumPy", "tuned pure Python"
 SHORT = ", less work: first best action, no visits"

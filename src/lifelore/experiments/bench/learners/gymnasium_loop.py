@@ -5,7 +5,7 @@ import time
 import gymnasium
 import numpy as np
 
-from lifelore.experiments.bench.lattice_case import ALPHA, DISCOUNT, EPSILON, GOAL, MAX_STEPS
+from lifelore.experiments.bench.learners.lattice_case import ALPHA, DISCOUNT, EPSILON, GOAL, MAX_STEPS
 
 SIZE = 23
 N_ACTIONS = 4

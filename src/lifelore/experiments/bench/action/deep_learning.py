@@ -11,7 +11,7 @@ from threadpoolctl import threadpool_limits
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import open_directions, solved_layout
-from lifelore.experiments.bench.deep_worlds import layout_seed, one_layout
+from lifelore.experiments.bench.action.deep_worlds import layout_seed, one_layout
 
 STEPS, EVERY = 15_000, 500
 SETTINGS: dict[str, Any] = {

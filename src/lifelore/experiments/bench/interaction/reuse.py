@@ -15,9 +15,16 @@ import numpy as np
 
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
-from lifelore.experiments.bench import reuse_loops as loops
-from lifelore.experiments.bench.reuse_case import HORIZON, NOISE, LargeReserve, Reserve
-from lifelore.experiments.bench.reuse_peers import BOTORCH, MABWISER, BoTorchUCB, Player, installed, mabwiser_ucb1
+from lifelore.experiments.bench.interaction import reuse_loops as loops
+from lifelore.experiments.bench.interaction.reuse_case import HORIZON, NOISE, LargeReserve, Reserve
+from lifelore.experiments.bench.interaction.reuse_peers import (
+    BOTORCH,
+    MABWISER,
+    BoTorchUCB,
+    Player,
+    installed,
+    mabwiser_ucb1,
+)
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs

@@ -11,10 +11,10 @@ from pathlib import Path
 from statistics import median
 
 from lifelore.core.protocols import Progress
-from lifelore.experiments.bench.first_result import LEARNERS, first_result_seconds
-from lifelore.experiments.bench.process_cost import Cost, installed_environment, process_cost
 from lifelore.experiments.bench.rounds import at_most, row
-from lifelore.experiments.bench.start_cases import clouds_to_perceive, fitted_study
+from lifelore.experiments.bench.startup.first_result import LEARNERS, first_result_seconds
+from lifelore.experiments.bench.startup.process_cost import Cost, installed_environment, process_cost
+from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study
 
 COLD, WARM, AFTER_SETUP = 3.0, 0.15, 3.0
 """Most seconds of a learner's first result with and without compiling, and of a verb's first use after setup."""
