@@ -12,13 +12,17 @@ Figures are made without pyplot, so nothing global is left behind and any thread
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import NotFoundError, StoreError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
+else:
+    # Annotations of modules that draw: matplotlib is loaded when something is drawn, and not before.
+    Axes = Figure = SubFigure = Any
 
 MAX_BYTES = 300_000
 """Largest PNG that `save_figure` writes: figures are committed."""

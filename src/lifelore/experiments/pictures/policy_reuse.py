@@ -20,7 +20,7 @@ from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.domains.surveillance.surveillance import BASE, LAYOUTS, SIDE, Surveillance
-from lifelore.experiments.chapter4.category_bars import draw_category_bars
+from lifelore.experiments.chapter4.golf.category_bars import draw_category_bars
 from lifelore.experiments.pictures.figure_interaction_model import draw_interaction_model
 from lifelore.experiments.pictures.figure_performance_curves import draw_performance_curves
 from lifelore.experiments.pictures.figure_reserve_map import draw_reserve_maps

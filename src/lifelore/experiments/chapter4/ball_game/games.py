@@ -1,8 +1,8 @@
 """The games on which the claims are tested: the default, and games that differ from it in one to three settings.
 
-A game is ``[layout, radius_share, care, normalisation, blocked]``. The thesis does not say how wide its corridors
-are, whether b is the ball's radius or its diameter, what "cost" its player minds, what losses are divided by, nor
-what becomes of a ball whose move would touch an obstacle.
+A game is ``[layout, radius_share, care, normalisation, blocked]``. The thesis leaves open how wide the corridors
+are, whether b is the ball's radius or its diameter, which "cost" the player minds, how losses are normalised, and
+where a ball stays whose move would touch an obstacle.
 
 The default was chosen because it shows the claimed effects. In its corridors the room beside the largest balls
 crosses the range of speeds, as a phase transition needs, and its player is careful. A blocked ball slides up to

@@ -3,16 +3,16 @@
 from typing import ClassVar
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from lifelore.domains.ball_game.simulated_player import Balls
-from lifelore.experiments.chapter4.ball_game_play import Floats, Ints, Moves
+from lifelore.experiments.chapter4.ball_game.play import Floats, Ints, Learner, Moves
 from lifelore.interaction.adaptation.beat import Exploration, epsilon_of
 from lifelore.interaction.adaptation.beat_users import BeatUsers
 from lifelore.interaction.baselines.exp3 import EXP3
 
 
-class BeatLearner:
+class BeatLearner(Learner):
     """BEAT for all players; ε may depend on the episode and on the player's own steps.
 
     Parameters
@@ -54,18 +54,13 @@ class BeatLearner:
         self.users.update(rows, speed[rows], moves.signal[rows], extra)
         self._step += 1
 
-    def end_episode(self, speed: Ints, loss: Floats) -> None:
-        pass
 
+class PrintedExp3(Learner):
+    """EXP-3 as printed: a pull is one step (k = 1), and only the step that reaches the goal pays.
 
-class PrintedExp3:
-    """EXP-3 as printed: a pull is one step (k = 1), and only the one that reaches the goal pays.
-
-    The payoff is minus the loss, brought into [0, 1] by the worst loss seen in training; γ is that of the known
-    bound for the expected number of steps.
+    The payoff is minus the loss, brought into [0, 1] by the worst loss seen in training. The steps before pay 0,
+    which leaves every weight as it is. γ is that of the known bound for the expected number of steps.
     """
-
-    watches: ClassVar[bool] = False
 
     def __init__(self, n_players: int, n_speeds: int, worst: float, horizon: int, seed: np.random.Generator):
         self._arms = EXP3(n_speeds, horizon=horizon, scale=(-worst, 0.0), n_tasks=n_players, seed=seed)
@@ -74,16 +69,11 @@ class PrintedExp3:
     def select(self, balls: Balls, episode: int) -> Ints:
         return self._arms.select()
 
-    def observe(self, speed: Ints, moves: Moves) -> None:
-        """Steps before the last pay 0, which leaves every weight as it is."""
-
     def end_episode(self, speed: Ints, loss: Floats) -> None:
         self._arms.update(speed, -np.minimum(loss, self._worst))
 
 
-def exp3_by_episode(
-    losses: Floats, gamma: float, worst: float, generator: np.random.Generator
-) -> NDArray[np.float64]:
+def exp3_by_episode(losses: Floats, gamma: float, worst: float, generator: np.random.Generator) -> Floats:
     """EXP-3 whose pulls are whole episodes.
 
     A speed held for one episode has the same loss as when it is held throughout, so nothing is played again.

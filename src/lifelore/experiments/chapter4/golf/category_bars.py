@@ -1,15 +1,11 @@
 """Bars of the probability of each category of a shot, by club and hole (Figure 4.3)."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, Figure, house_style, new_figure
 
 CLUB_COLOURS = (BLUE, GREEN, ORANGE, PURPLE)
 _REACH = 80.0
@@ -18,7 +14,7 @@ _REACH = 80.0
 
 def draw_category_bars(
     probs: ArrayLike, edges: Sequence[float], clubs: Sequence[str], holes: Sequence[float]
-) -> "Figure":
+) -> Figure:
     """A panel a club and hole, bars as wide as their category.
 
     Parameters

@@ -23,6 +23,8 @@ Array = NDArray[np.float64]
 Signals = Callable[[int, NDArray[np.int64]], NDArray]
 """``signals(episode, policies)``: the signals of the policies (n_tasks,) in that episode, (n_tasks,)."""
 
+EXACT, LEARNT = "exact", "learnt"
+"""Kinds of models that rules know."""
 SETTLED = 1e-9
 """Regret below this is none."""
 STUCK = 5.0
@@ -83,7 +85,7 @@ def play_baseline(player: Baseline, pays: Signals, n_episodes: int) -> NDArray[n
 
 
 def converged_after(regret: Array) -> NDArray[np.int64]:
-    """First episode, from 1, from which on regret is none; one past the last where it never is; (n_tasks,)."""
+    """First episode, from 1, from which on regret is none, (n_tasks,); the last plus 1 where it never is."""
     n_episodes = regret.shape[1]
     some = regret > SETTLED
     last = n_episodes - some[:, ::-1].argmax(axis=1)

@@ -15,14 +15,13 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CATEGORIES, CLUBS, DEVIATIONS, YARDS, Golf, category_of
-from lifelore.experiments.chapter4.reuse_runs import play_rule
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, play_rule
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.selection import SelectionRule
 from lifelore.interaction.signals.category_signal import CategorySignal
 
 Array = NDArray[np.float64]
-EXACT, LEARNT = "exact", "learnt"
 WOOD, IRON = CLUBS.index("3-wood"), CLUBS.index("3-iron")
 
 

@@ -5,9 +5,8 @@ random numbers of every episode. Thesis: §4.8.5.1.
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import combinations
-from typing import ClassVar, NamedTuple, Protocol
+from typing import ClassVar, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -39,8 +38,8 @@ class Trained(NamedTuple):
     commands: Floats
 
     def scale(self, normalisation: str) -> LossScale:
-        """How losses are normalised: ``"fixed"`` T/400 + C/20, or ``"maxima"`` of these episodes."""
-        return LossScale() if normalisation == "fixed" else LossScale.from_episodes(self.steps, self.hits)
+        """The scale of losses, see `scale_of`."""
+        return scale_of(normalisation, self.steps, self.hits)
 
     def value(self, scale: LossScale) -> Floats:
         """V: minus the mean loss of each type at each speed, (n_types, n_speeds)."""
@@ -53,6 +52,11 @@ class Trained(NamedTuple):
     def command_table(self, pseudo_count: float = PSEUDO_COUNT) -> Floats:
         """Log P(a | place; type), (n_speeds, PLACES, n_types)."""
         return log_shares(self.commands, 4, pseudo_count)
+
+
+def scale_of(normalisation: str, steps: Ints, hits: Ints) -> LossScale:
+    """How losses are normalised: ``"fixed"`` T/400 + C/20, or ``"maxima"`` of these episodes."""
+    return LossScale() if normalisation == "fixed" else LossScale.from_episodes(steps, hits)
 
 
 def log_shares(counts: Floats, group: int, pseudo_count: float) -> Floats:
@@ -70,24 +74,24 @@ class Moves(NamedTuple):
     command: Ints
 
 
-class Learner(Protocol):
-    """Sets speeds: of all players at once, row by row; `observe` is called only if it `watches`."""
+class Learner:
+    """Sets the speeds of all players at once, row by row; `observe` is called only if it `watches`."""
 
-    watches: ClassVar[bool]
+    watches: ClassVar[bool] = False
 
-    def select(self, balls: Balls, episode: int) -> Ints: ...
+    def select(self, balls: Balls, episode: int) -> Ints:
+        raise NotImplementedError
 
-    def observe(self, speed: Ints, moves: Moves) -> None: ...
+    def observe(self, speed: Ints, moves: Moves) -> None:
+        """Learn from a step; by default nothing."""
 
-    def end_episode(self, speed: Ints, loss: Floats) -> None: ...
+    def end_episode(self, speed: Ints, loss: Floats) -> None:
+        """Learn from an episode; by default nothing."""
 
 
-@dataclass(frozen=True)
-class Players:
+class Players(NamedTuple):
     """Players to be judged.
 
-    Parameters
-    ----------
     kinds : (n,) int64
     sigma : (n, episodes) float64
     random : (n, episodes, 2) uint64
@@ -103,9 +107,9 @@ class Players:
         shape = (len(kinds), episodes)
         return cls(np.asarray(kinds, np.int64), draw_sigma(generator, shape), random_states(generator, shape))
 
-    @property
-    def episodes(self) -> int:
-        return self.sigma.shape[1]
+    def between(self, begin: int, end: int | None = None) -> "Players":
+        """The same players in some of their episodes."""
+        return Players(self.kinds, self.sigma[:, begin:end], self.random[:, begin:end])
 
 
 class Played(NamedTuple):
@@ -144,10 +148,10 @@ def play_all(
     watch: Callable[[Balls, Ints, Moves], None] | None = None,
 ) -> Played:
     """All players' episodes under a learner; `watch` sees every step after the learner has."""
-    n = len(players.kinds)
+    n, episodes = players.sigma.shape
     heading, before, signal = np.empty(n, np.int64), np.empty((n, 2), np.int64), np.empty(n, np.int64)
-    steps, hits = np.empty((n, players.episodes), np.int64), np.empty((n, players.episodes), np.int64)
-    for episode in range(players.episodes):
+    steps, hits = np.empty((2, n, episodes), np.int64)
+    for episode in range(episodes):
         balls = new_balls(game, players.kinds, players.sigma[:, episode], players.random[:, episode])
         speed = np.zeros(n, np.int64)
         while balls.playing.any():
@@ -164,10 +168,8 @@ def play_all(
     return Played(steps, hits)
 
 
-class FixedSpeeds:
+class FixedSpeeds(Learner):
     """No learner: every player keeps a speed of her own, (n,) int64."""
-
-    watches: ClassVar[bool] = False
 
     def __init__(self, speeds: Ints) -> None:
         self.speeds = np.asarray(speeds, np.int64)
@@ -175,18 +177,16 @@ class FixedSpeeds:
     def select(self, balls: Balls, episode: int) -> Ints:
         return self.speeds
 
-    def observe(self, speed: Ints, moves: Moves) -> None:
-        pass
 
-    def end_episode(self, speed: Ints, loss: Floats) -> None:
-        pass
+def play_speeds(game: BallGame, players: Players) -> list[Played]:
+    """All players' episodes at each constant speed."""
+    fixed = (FixedSpeeds(np.full(len(players.kinds), z)) for z in range(game.n_speeds))
+    return [play_all(game, players, learner, LossScale()) for learner in fixed]
 
 
 def losses_by_speed(game: BallGame, players: Players, scale: LossScale) -> Floats:
     """Losses of all players' episodes at each constant speed, (n, episodes, n_speeds)."""
-    n = len(players.kinds)
-    every = (play_all(game, players, FixedSpeeds(np.full(n, z)), scale) for z in range(game.n_speeds))
-    return np.stack([scale.loss(*played) for played in every], axis=-1)
+    return np.stack([scale.loss(*played) for played in play_speeds(game, players)], axis=-1)
 
 
 def populations(n_types: int) -> list[tuple[int, ...]]:

@@ -1,14 +1,15 @@
 """Policy reuse and its peers in the surveillance reserve, for C4.5 to C4.8.
 
 Tasks come in groups of the thesis's number, ten. A group has tasks and noise of its own and, where models are
-learnt, a library of its own; whoever is compared meets the same groups. Regret is expected library regret;
+learnt, a library of its own; all methods of a comparison meet the same groups. Regret is expected library regret;
 `realised` is the regret of one draw of the chosen policy's pay against another draw of the best policy's.
 
 Rules know exact models, or models learnt from `samples` deployments a pair, and observe the pay of each
-deployment; `surveillance_peers.GIVEN` states what peers know. No method knows where the poachers are.
+deployment; `peers.GIVEN` states what peers know. No method knows where the poachers are.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -18,24 +19,15 @@ from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import NOISES, Surveillance
-from lifelore.experiments.chapter4.reuse_rules import NEAR_GREEDY, RULES_SHOWN
-from lifelore.experiments.chapter4.reuse_runs import (
-    STUCK,
-    converged_after,
-    curve,
-    grouped_mean,
-    grouped_quantile,
-    late_regret,
-    play_baseline,
-    play_rule,
-)
-from lifelore.experiments.chapter4.surveillance_peers import kernel_of, make_peer, tuning_grid
+from lifelore.experiments.chapter4.reuse import many_tasks
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, grouped_mean, grouped_quantile
+from lifelore.experiments.chapter4.reuse.rules import NEAR_GREEDY, RULES_SHOWN
+from lifelore.experiments.chapter4.surveillance.peers import kernel_of, make_peer, tuning_grid
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.regret import library_regret
 
 Array = NDArray[np.float64]
-EXACT, LEARNT = "exact", "learnt"
 SEEN, MIXED = "seen", "with unseen"
 CASES = {
     "headline": {"model": LEARNT, "tasks": MIXED},
@@ -45,8 +37,6 @@ CASES = {
 }
 """The models and the tasks of a case: `MIXED` puts every second task's poachers at a cell that is no target."""
 DEFAULT_WORLD = {"layout": "X", "metric": "chebyshev", "noise": "deviation 20"}
-
-
 RULES = RULES_SHOWN | NEAR_GREEDY
 
 
@@ -74,35 +64,18 @@ def check_reserves(settings: Mapping) -> None:
 
 def worlds(settings: Mapping) -> list[dict[str, str]]:
     """Every reserve of the grid."""
-    return [
-        {"layout": layout, "metric": metric, "noise": noise}
-        for layout in settings["layouts"]
-        for metric in settings["metrics"]
-        for noise in settings["noises"]
-    ]
+    every = product(*(settings[f"{key}s"] for key in DEFAULT_WORLD))
+    return [dict(zip(DEFAULT_WORLD, choices, strict=True)) for choices in every]
 
 
 def reserve_cells(
     settings: Mapping, cases: Iterable[str], methods: Iterable[str], in_grid: Iterable[str]
 ) -> list[dict]:
     """`methods` in all `cases` of the default reserve; `in_grid`, with exact models on targets, in every other."""
-    default = [
-        {"method": name, "case": case, **DEFAULT_WORLD, "groups": settings["groups"]}
-        for case in cases
-        for name in methods
-    ]
-    grid = [
-        {"method": name, "case": "exact", **world, "groups": settings["grid_groups"]}
-        for world in worlds(settings)
-        if world != DEFAULT_WORLD
-        for name in in_grid
-    ]
-    return default + grid
-
-
-def world_of(cell: Mapping) -> Surveillance:
-    """The reserve of a cell: its layout, metric and reading of the noise."""
-    return Surveillance(cell["layout"], cell["metric"], NOISES[cell["noise"]])
+    cells = [(name, case, DEFAULT_WORLD, settings["groups"]) for case, name in product(cases, methods)]
+    others = [world for world in worlds(settings) if world != DEFAULT_WORLD]
+    cells += [(name, "exact", world, settings["grid_groups"]) for world, name in product(others, in_grid)]
+    return [{"method": name, "case": case, **world, "groups": groups} for name, case, world, groups in cells]
 
 
 def draw_tasks(world: Surveillance, kind: str, n: int, n_episodes: int, seed: int, group: int) -> Tasks:
@@ -144,63 +117,57 @@ def play(
         return tasks.mean[every, policies] + world.deviation * tasks.noise[:, episode]
 
     if name in RULES:
-        played = play_rule(RULES[name], library, pays, n_tasks, n_episodes, generator)
+        played = many_tasks.play_rule(RULES[name], library, pays, n_tasks, n_episodes, generator)
         return played.policies, played.entropy
     peer = make_peer(name, library, world, n_tasks, n_episodes, generator, kernel, **(tuned or {}))
-    return play_baseline(peer, pays, n_episodes), None
-
-
-def joined(parts: Sequence[Tasks]) -> Tasks:
-    """Several groups as one."""
-    return Tasks(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+    return many_tasks.play_baseline(peer, pays, n_episodes), None
 
 
 def run_method(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One rule or peer on all groups of one case and reserve.
+    """A rule or peer on all groups of one case and reserve.
 
     `cell`: ``method``, ``case``, ``layout``, ``metric``, ``noise``, ``groups``. Returns ``curve`` and
     ``entropy`` by episode; of every task ``sums``, ``ended`` and ``late``; ``at``, ``against_mean`` and
     ``realised`` regret after the episodes of ``settings["after"]``; ``seen``; and ``tuned``, the settings of
     least regret where there were some to choose.
     """
-    world, case = world_of(cell), CASES[cell["case"]]
-    size, n_episodes = settings["tasks"], settings["episodes"]
-    groups = [draw_tasks(world, case["tasks"], size, n_episodes, seed, g) for g in range(cell["groups"])]
-    batches = [joined(groups)] if case["model"] == EXACT else groups
+    name, case = cell["method"], CASES[cell["case"]]
+    world = Surveillance(cell["layout"], cell["metric"], NOISES[cell["noise"]])
+    size = (settings["tasks"], settings["episodes"])
+    groups = [draw_tasks(world, case["tasks"], *size, seed, group) for group in range(cell["groups"])]
+    tasks = Tasks(*(np.concatenate(arrays) for arrays in zip(*groups, strict=True)))
+    batches = [tasks] if case["model"] == EXACT else groups
     libraries = [library_of(world, case["model"], settings["samples"], seed, g) for g in range(len(batches))]
-    kernels = [kernel_of(cell["method"], library) for library in libraries]
+    kernels = [kernel_of(name, library) for library in libraries]
     best: dict = {}
-    for tuned in tuning_grid(cell["method"]):
-        chosen, entropies = [], []
-        for group, (library, batch) in enumerate(zip(libraries, batches, strict=True)):
-            generator = stream(seed, "chooser", cell["method"], group)
-            policies, entropy = play(cell["method"], library, world, batch, generator, tuned, kernels[group])
-            chosen.append(policies)
-            entropies.append(entropy)
-        found = _found(settings, world, joined(groups), np.concatenate(chosen), entropies)
+    for tuned in tuning_grid(name):
+        played = [
+            play(name, library, world, batch, stream(seed, "chooser", name, group), tuned, kernel)
+            for group, (library, batch, kernel) in enumerate(zip(libraries, batches, kernels, strict=True))
+        ]
+        found = _regrets(settings, world, tasks, np.concatenate([policies for policies, _ in played]))
+        entropies = [entropy for _, entropy in played if entropy is not None]
+        if entropies:
+            found["entropy"] = np.concatenate(entropies).mean(axis=0).round(4).tolist()
         if not best or np.mean(found["sums"]) < np.mean(best["sums"]):
             best = {**found, "tuned": tuned}
     return {**cell, **best}
 
 
-def _found(settings: Mapping, world: Surveillance, tasks: Tasks, policies: NDArray, entropies: list) -> dict:
-    regret = library_regret(tasks.mean, policies)
-    paid_less = regret - world.deviation * tasks.noise
-    realised = paid_less + world.deviation * tasks.other_noise
-    after = [k for k in settings["after"] if k <= regret.shape[1]]
-    found = {
-        "curve": curve(regret),
-        "sums": regret.sum(axis=1).round(2).tolist(),
-        "ended": converged_after(regret).tolist(),
-        "late": late_regret(regret).round(3).tolist(),
-        "at": {str(k): regret[:, k - 1].round(2).tolist() for k in after},
-        "against_mean": {str(k): paid_less[:, k - 1].round(2).tolist() for k in after},
-        "realised": {str(k): realised[:, k - 1].round(2).tolist() for k in after},
+def _regrets(settings: Mapping, world: Surveillance, tasks: Tasks, policies: NDArray) -> dict:
+    expected = library_regret(tasks.mean, policies)
+    against_mean = expected - world.deviation * tasks.noise
+    realised = against_mean + world.deviation * tasks.other_noise
+    readings = {"at": expected, "against_mean": against_mean, "realised": realised}
+    after = [k for k in settings["after"] if k <= expected.shape[1]]
+    return {
+        "curve": many_tasks.curve(expected),
+        "sums": expected.sum(axis=1).round(2).tolist(),
+        "ended": many_tasks.converged_after(expected).tolist(),
+        "late": many_tasks.late_regret(expected).round(3).tolist(),
         "seen": tasks.seen.astype(int).tolist(),
+        **{key: {str(k): regret[:, k - 1].round(2).tolist() for k in after} for key, regret in readings.items()},
     }
-    if entropies[0] is not None:
-        found["entropy"] = np.concatenate(entropies).mean(axis=0).round(4).tolist()
-    return found
 
 
 def by_group(result: Mapping, key: str) -> Array:
@@ -211,7 +178,7 @@ def by_group(result: Mapping, key: str) -> Array:
 def summary(result: Mapping) -> dict[str, Estimate]:
     """Sum of regret, when it ended (median and p90), regret late on (median), and the share of stuck tasks."""
     ended, late = by_group(result, "ended"), by_group(result, "late")
-    stuck = late > STUCK
+    stuck = late > many_tasks.STUCK
     own_models = CASES[result["case"]]["model"] == EXACT
     return {
         "cumulative": grouped_mean(by_group(result, "sums")),
@@ -222,10 +189,20 @@ def summary(result: Mapping) -> dict[str, Estimate]:
     }
 
 
+def row_of(result: Mapping) -> dict:
+    """The keys of a cell and its summary, as rows hold them."""
+    return {key: result[key] for key in ("method", "case", *DEFAULT_WORLD)} | many_tasks.plain(summary(result))
+
+
+def is_default(row: Mapping) -> bool:
+    """Whether a row is of the default reserve."""
+    return DEFAULT_WORLD.items() <= row.items()
+
+
 def find(results: Sequence[Mapping], method: str, case: str, **world: str) -> Mapping:
-    """The result of one method in one case and reserve, by default the default reserve."""
+    """The result of a method in a case and reserve, by default the default reserve."""
     wanted = {"method": method, "case": case, **DEFAULT_WORLD, **world}
-    return next(r for r in results if wanted.items() <= r.items())
+    return next(result for result in results if wanted.items() <= result.items())
 
 
 def name_of(method: str, case: str) -> str:

@@ -31,6 +31,6 @@ PRINTED: dict[str, SelectionRule] = {
 }
 RULES_SHOWN = STANDARD | PRINTED
 NEAR_GREEDY: dict[str, SelectionRule] = {"BE, κ 30": BeliefEntropy(kappa=30.0)}
-"""The thesis names no κ: in the surveillance reserve, where pays reach 210, this one is near greedy selection."""
+"""The thesis names no κ. In the surveillance reserve, where pays reach 210, this κ is near greedy selection."""
 OF_THESIS = ("eps-greedy", "sampling", "PI", "EI", "BE", "KG")
 """The six of Figure 4.10."""
