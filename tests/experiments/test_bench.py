@@ -17,6 +17,8 @@ from lifelore.experiments.bench.learners.thread_scaling import check_same_bits, 
 from lifelore.experiments.bench.rounds import at_least, at_most, interleaved, paired_ratio, row
 from lifelore.experiments.bench.startup import first_result
 
+FOLDER = Path(c_loop.__file__).parents[1]
+
 
 @pytest.fixture
 def small(monkeypatch):
@@ -153,6 +155,12 @@ def test_what_cannot_be_run():
         with pytest.raises(InputError, match=rf"repeats must lie in \[1, 1000\], got {repeats}"):
             bench("kernels", repeats=repeats)
     assert "kernels" in BENCHES
+
+
+def test_every_benchmark_stands_in_its_folder():
+    for name, folder in BENCHES.items():
+        source = FOLDER / folder / f"{name}.py"
+        assert f"def bench_{name}(" in source.read_text(encoding="utf-8")
 
 
 def test_courier_lives_at_home_and_abroad(monkeypatch):
