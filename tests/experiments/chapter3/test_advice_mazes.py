@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
     EXPERTS,
     errands_of,

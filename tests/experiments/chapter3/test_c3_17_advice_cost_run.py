@@ -8,7 +8,7 @@ import pytest
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import GoalModel
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     errands_of,
     goal_models_of,
     maze_of,

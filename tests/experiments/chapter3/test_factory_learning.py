@@ -6,8 +6,8 @@ import pytest
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.layout import factory
-from lifelore.experiments.chapter3 import factory_learning
-from lifelore.experiments.chapter3.factory_learning import (
+from lifelore.experiments.chapter3.factory import learning
+from lifelore.experiments.chapter3.factory.learning import (
     Problem,
     exact_prior,
     greedy_return,
@@ -34,7 +34,7 @@ THREE_CELLS = """
 def corridor(monkeypatch):
     """The only task of a corridor: start, procurement point, assembly point."""
     small = factory(THREE_CELLS, discount=0.9)
-    monkeypatch.setattr(factory_learning, "floor", lambda discount: small)
+    monkeypatch.setattr(learning, "floor", lambda discount: small)
     return solved.__wrapped__((0,), 0.9)
 
 

@@ -1,6 +1,6 @@
 """Curves of returns and the episodes to 80 %: what is drawn is what was given."""
 
-from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
+from lifelore.experiments.chapter3.figures.reward_curves import MethodCurve, draw_return_curves
 from lifelore.figures.style import new_figure
 
 RESULT = {

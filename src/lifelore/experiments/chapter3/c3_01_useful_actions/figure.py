@@ -1,20 +1,15 @@
 """Figure of claim C3.1: two mazes with their useful actions, and the useful shares of all mazes."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
 from lifelore.figures.prior_arrows import draw_prior
-from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, house_style, new_figure
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result: examples that its rows hold, then the spread of shares."""
     examples = [row for row in result["rows"] if "example" in row]
     with house_style():
@@ -29,7 +24,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_shares(axes: "Axes", result: Mapping) -> None:
+def _draw_shares(axes: Axes, result: Mapping) -> None:
     """Shares of mazes by useful share, bars for each generator; a line for each printed share."""
     from matplotlib.ticker import MaxNLocator
 

@@ -1,16 +1,12 @@
 """Figure of claim C3.2: learning curves under each schedule of ε, and the grid of choices left open."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter3.c3_02_lattice_prior.run import KEYS
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
+from lifelore.experiments.chapter3.figures.choice_grid import draw_choice_grid
+from lifelore.experiments.chapter3.figures.reward_curves import MethodCurve, draw_return_curves
 from lifelore.experiments.engine.results_table import ResultsTable
-from lifelore.figures.style import GREY, colour_of, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, Figure, colour_of, house_style, new_figure
 
 LABELS = {
     None: ("Q-learning", "q-learning"),
@@ -20,7 +16,7 @@ LABELS = {
 """Label and style of a learner by its ties."""
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     schedules = result["settings"]["schedules"]
     with house_style():

@@ -1,14 +1,10 @@
 """Figure of claim C3.3: learning curves in noise mazes under each schedule of ε, and the grid of open choices."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
-from lifelore.figures.style import GREY, colour_of, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lifelore.experiments.chapter3.figures.choice_grid import draw_choice_grid
+from lifelore.experiments.chapter3.figures.reward_curves import MethodCurve, draw_return_curves
+from lifelore.figures.style import GREY, Figure, colour_of, house_style, new_figure
 
 LABELS = {
     "q_learning": ("Q-learning", "q-learning"),
@@ -26,7 +22,7 @@ PAIRS = (
 )
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     schedules = result["settings"]["schedules"]
     with house_style():

@@ -1,24 +1,20 @@
 """Figure of claim C3.4: learning with each prior, the invariances that the learnt prior has, and the grid."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.c3_04_factory_priors.factory_floor import draw_factory_prior
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.factory_learning import ENCODINGS, LEARNT, PLAIN
-from lifelore.experiments.chapter3.reward_curves import curve_edges, schedule_in_words
+from lifelore.experiments.chapter3.factory.learning import ENCODINGS, LEARNT, PLAIN
+from lifelore.experiments.chapter3.figures.choice_grid import draw_choice_grid
+from lifelore.experiments.chapter3.figures.reward_curves import curve_edges
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words
 from lifelore.experiments.engine.curve_blocks import block_centres
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure, width_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, colour_of, house_style, new_figure, width_of
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
     with house_style():
@@ -61,7 +57,7 @@ def _caption(settings: Mapping) -> str:
     )
 
 
-def _draw_curves(axes: "Axes", result: Mapping) -> None:
+def _draw_curves(axes: Axes, result: Mapping) -> None:
     rows = [row for row in result["rows"] if "curve_of" in row]
     names = [row["encoding"] or ("q-learning" if row["curve_of"] == PLAIN else row["curve_of"]) for row in rows]
     labels = [
@@ -91,7 +87,7 @@ def _draw_curves(axes: "Axes", result: Mapping) -> None:
     axes.set_ylim(top=2.5 * optimal)
 
 
-def _draw_masses(axes: "Axes", result: Mapping) -> None:
+def _draw_masses(axes: Axes, result: Mapping) -> None:
     """A line for each invariance, a mark for each prior."""
     found = {(row["mass_on"], row["of"]): row["mass"] for row in result["rows"] if "mass_on" in row}
     names = list(dict.fromkeys(name for name, _ in found))

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE
-from lifelore.experiments.chapter3.factory_learning import KEYS, LEARNT, PLAIN, grid_of
+from lifelore.experiments.chapter3.factory.learning import KEYS, LEARNT, PLAIN, grid_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.estimates import interval_or_value, share_of
 from lifelore.experiments.engine.results_table import BAND, ResultsTable

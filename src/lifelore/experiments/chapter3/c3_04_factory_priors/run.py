@@ -12,7 +12,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.knowledge import expert_actions, incorrect_actions, invariances
-from lifelore.experiments.chapter3.factory_learning import (
+from lifelore.experiments.chapter3.factory.learning import (
     KEYS,
     LEARNT,
     N_ACTIONS,
@@ -31,7 +31,7 @@ from lifelore.experiments.chapter3.factory_learning import (
     tasks_of,
     with_pseudo_count,
 )
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.experiments.engine.grid import run_grid
 
@@ -39,11 +39,6 @@ ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
 """Actions that a person advises, by name of the hand-made prior."""
 DRAWN = 0
 """The run whose learnt prior the figure shows."""
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """One cell a run."""
-    return [{"run": run} for run in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -1,5 +1,5 @@
 """Measures and rows of claim C3.5."""
 
-from lifelore.experiments.chapter3.factory_gains import measure, rows
+from lifelore.experiments.chapter3.factory.gains import measure, rows
 
 __all__ = ["measure", "rows"]

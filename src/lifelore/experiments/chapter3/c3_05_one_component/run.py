@@ -3,6 +3,6 @@
 There are only nine such tasks, so that at the end all have been met. Thesis: §3.4.3, Figure 3.8.
 """
 
-from lifelore.experiments.chapter3.factory_series import cells, check, run_cell
+from lifelore.experiments.chapter3.factory.series import cells, check, run_cell
 
 __all__ = ["cells", "check", "run_cell"]

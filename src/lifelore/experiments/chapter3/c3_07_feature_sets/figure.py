@@ -1,15 +1,11 @@
 """Figure of claim C3.7: rewards with priors over features, over states and without a prior; the grid."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import GREY, VERMILION, colour_of, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, VERMILION, Axes, Figure, colour_of, house_style, new_figure, two_rows
 
 LABELS = {
     "uniform": "no prior",
@@ -24,7 +20,7 @@ BANDED = ("uniform", "state", "phi3")
 """Methods whose deviation is shaded; six bands would hide one another."""
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
     with house_style():
@@ -44,7 +40,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     default, methods = result["settings"]["default"], list(LABELS)[1:]
     cells = [row for row in result["rows"] if "closed_phi1" in row]
     is_default = [all(row[key] == value for key, value in default.items()) for row in cells]

@@ -13,14 +13,14 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.learning.q_learning import Rows
 from lifelore.domains.factory.contexts import PHI
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     N_ACTIONS,
     Problem,
     contexts_of,
     learn_problem,
     problem_of,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid, run_grid
 
 PLAIN, STATE = "uniform", "state"
@@ -36,11 +36,6 @@ def grid_of(settings: Mapping) -> Grid:
     singly = {"encoding": "encodings", "alpha0": "alpha0", "max_steps": "max_steps", "policies": "policies"}
     reads = {PLAIN: READ_WITHOUT_PRIOR, **dict.fromkeys(PHI, KEYS[1:])}
     return Grid.crossed(settings, KEYS, {"schedule": "schedules", "ties": "ties"}, singly, reads)
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

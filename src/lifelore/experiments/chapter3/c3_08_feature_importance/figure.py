@@ -1,24 +1,19 @@
 """Figure of claim C3.8: how much entropy each feature saves in each set, and over the choices left open."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
+from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, colour_of, house_style, new_figure
 
 OVER = {"all": "all states", "way": "states of an optimal way"}
 ACTIONS = {"tied": "all best actions", "first": "the first best action"}
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     with house_style():
         figure = new_figure(10.2, 7.6)
@@ -37,7 +32,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_bars(axes: "Axes", increase: Mapping[str, Mapping]) -> None:
+def _draw_bars(axes: Axes, increase: Mapping[str, Mapping]) -> None:
     groups = {
         phi.replace("phi", "φ"): [of_feature.get(name) for name in FEATURES]
         for phi, of_feature in increase.items()
@@ -53,7 +48,7 @@ def _draw_bars(axes: "Axes", increase: Mapping[str, Mapping]) -> None:
     axes.legend(loc="upper right", ncols=4)
 
 
-def _draw_grid(axes: "Axes", cells: list[Mapping], at: int) -> None:
+def _draw_grid(axes: Axes, cells: list[Mapping], at: int) -> None:
     values = [[1000 * row["increase"]["phi4"][f]["value"] for f in FEATURES] for row in cells]
     selected = [[row["selected"][f] >= 0.95 for f in FEATURES] for row in cells]
     sides = [f"{row['policies']} policies, {OVER[row['over']]},\n{ACTIONS[row['actions']]}" for row in cells]

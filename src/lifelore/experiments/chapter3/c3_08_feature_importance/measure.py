@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_08_feature_importance.run import KEYS, grid_of
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, DIAGONALS, ITEMS, OWN_CELL
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, DIAGONALS, ITEMS, OWN_CELL
 from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 

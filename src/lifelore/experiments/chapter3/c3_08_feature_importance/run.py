@@ -15,7 +15,7 @@ from lifelore.action.features.counted_features import CountedFeatures
 from lifelore.action.features.feature_selection import independent_features
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     FULL_SET,
     N_ACTIONS,
     Problem,
@@ -31,11 +31,6 @@ KEYS = ("policies", "over", "actions")
 def grid_of(settings: Mapping) -> Grid:
     """The grid: number of policies × states that count × actions that count."""
     return Grid.crossed(settings, KEYS, {key: key for key in KEYS})
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -1,18 +1,13 @@
 """Figure of claim C3.9: first and last episode of each task, with selected features, with all ten and without."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import BLUE, GREY, PURPLE, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREY, PURPLE, Axes, Figure, house_style, new_figure, two_rows
 
 METHODS = {
     "uniform": ("no prior", GREY),
@@ -23,7 +18,7 @@ METHODS = {
 DASHES = {"first": "-", "last": (0, (4, 2))}
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
     with house_style():
@@ -44,7 +39,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_source(axes: "Axes", result: Mapping, source: str) -> None:
+def _draw_source(axes: Axes, result: Mapping, source: str) -> None:
     series, looks = {}, {}
     for row in result["rows"]:
         if row.get("of_source") == source:
@@ -58,7 +53,7 @@ def _draw_source(axes: "Axes", result: Mapping, source: str) -> None:
     )  # fmt: skip
 
 
-def _draw_grid(axes: "Axes", result: Mapping, part: str) -> None:
+def _draw_grid(axes: Axes, result: Mapping, part: str) -> None:
     default = result["settings"]["default"]
     cells = [row for row in result["rows"] if "of_source" not in row]
     is_default = [all(row[key] == value for key, value in default.items()) for row in cells]

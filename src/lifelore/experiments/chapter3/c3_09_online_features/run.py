@@ -8,15 +8,15 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import Problem, learn_problem, problem_of
-from lifelore.experiments.chapter3.online_selection import (
+from lifelore.experiments.chapter3.factory.modified_tasks import Problem, learn_problem, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import (
     FULL,
     SELECTED,
     UNIFORM,
     Counting,
     OnlineAgent,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid
 
 METHODS = (UNIFORM, FULL, SELECTED)
@@ -36,11 +36,6 @@ def grid_of(settings: Mapping) -> Grid:
     """The default, then every other choice one at a time."""
     singly = {"source": "sources", "schedule": "schedules", "ties": "ties", "max_steps": "max_steps"}
     return Grid.crossed(settings, KEYS, {}, singly, {UNIFORM: READ_WITHOUT_PRIOR})
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

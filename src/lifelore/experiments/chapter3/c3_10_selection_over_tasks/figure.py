@@ -1,15 +1,11 @@
 """Figure of claim C3.10: the share of runs in which each feature is chosen, after each task."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
-from lifelore.figures.style import BLUE, GREY, PAPER, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.figures.style import BLUE, GREY, PAPER, Axes, house_style, new_figure
 
 COLUMNS = 4
 TITLES = {
@@ -43,7 +39,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_series(axes: "Axes", row: Mapping):
+def _draw_series(axes: Axes, row: Mapping):
     from matplotlib.colors import LinearSegmentedColormap
 
     shares = np.array([row["shares"][feature] for feature in FEATURES])

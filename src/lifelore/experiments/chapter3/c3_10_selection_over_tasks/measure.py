@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, mask_of
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
 from lifelore.experiments.engine.estimates import exact_share
 
 GOAL = mask_of(CARDINALS)

@@ -6,9 +6,9 @@ Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.14.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import FULL_SET, Problem, problem_of
-from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.factory.modified_tasks import FULL_SET, Problem, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 
 
 class Series(NamedTuple):
@@ -33,11 +33,6 @@ SERIES = {
     "learnt, explored uniformly": Series(Counting("learnt", "tried"), explores=False),
 }
 """The conditions read the first two."""
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -3,7 +3,8 @@
 from collections.abc import Mapping
 
 from lifelore.experiments.chapter3.c3_11_forms_of_prior.measure import key_of
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
 from lifelore.figures.style import (
     BLUE,

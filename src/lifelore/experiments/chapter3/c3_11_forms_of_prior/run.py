@@ -19,14 +19,14 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.learning.q_learning import Rows
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     N_ACTIONS,
     Problem,
     contexts_of,
     learn_problem,
     problem_of,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import Grid, run_grid
 
 WITHOUT_PRIOR, PROPORTION, DIRICHLET, AS_PRINTED = "uniform", "proportion", "dirichlet", "softmax of counts"
@@ -47,11 +47,6 @@ def grid_of(settings: Mapping) -> Grid:
     """Features × ε × ties, and every other α⁰, cap of steps and number of policies, one at a time."""
     crossed = {"features": "features", "schedule": "schedules", "ties": "ties"}
     return Grid.crossed(settings, KEYS, crossed, {key: key for key in ("alpha0", "max_steps", "policies")})
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -2,15 +2,12 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import BLUE, GREEN, GREY, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, Axes, house_style, new_figure, two_rows
 
 COLOURS = {"uniform": GREY, "self-trained": BLUE, "shown": GREEN}
 LOOK = {"neutral": 0.0, "spread": 20.0, "scale": 100.0, "words": "{:+.1f}".format}
@@ -40,7 +37,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     settings, default = result["settings"], result["settings"]["default"]
     keys = ("features", "schedule", "ties", "alpha0", "trajectories")
     table = ResultsTable((row for row in result["rows"] if "features" in row), keys)
@@ -62,7 +59,7 @@ def _draw_grid(axes: "Axes", result: Mapping) -> None:
     axes.set_title("The default person, by choices left open")
 
 
-def _draw_people(axes: "Axes", result: Mapping) -> None:
+def _draw_people(axes: Axes, result: Mapping) -> None:
     table = ResultsTable((row for row in result["rows"] if "weight" in row), ("people", "weight"))
     people, weights = table.distinct("people"), table.distinct("weight")
     numbers = [[table.record(people=group, weight=w)["of_distance"] for w in weights] for group in people]

@@ -21,14 +21,14 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     N_ACTIONS,
     Problem,
     contexts_of,
     learn_problem,
     problem_of,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import Grid, run_grid
 
 WITHOUT_PRIOR, SELF, SHOWN = "uniform", "self-trained", "shown"
@@ -104,11 +104,6 @@ def grid_of(settings: Mapping) -> Grid:
     """Features × ε × ties, and every other α⁰ and number of trajectories, one at a time."""
     crossed = {"features": "features", "schedule": "schedules", "ties": "ties"}
     return Grid.crossed(settings, KEYS, crossed, {key: key for key in ("alpha0", "trajectories")})
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

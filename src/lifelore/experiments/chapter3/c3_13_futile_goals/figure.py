@@ -1,16 +1,12 @@
 """Figure of claim C3.13: Eq. 3.6 against what is measured, and how near worlds as found come to it."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, Axes, house_style, new_figure
 
 COLOURS = (BLUE, ORANGE, GREEN)
 NO_TASK = 0.35
@@ -37,7 +33,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_cases(axes: "Axes", table: ResultsTable, key: str, words: str) -> None:
+def _draw_cases(axes: Axes, table: ResultsTable, key: str, words: str) -> None:
     """The formula as a line and the measured frequency as points, for each value of `key`."""
     formulas, looks = {}, {}
     for colour, value in zip(COLOURS, sorted(table.distinct(key)), strict=False):
@@ -55,7 +51,7 @@ def _draw_cases(axes: "Axes", table: ResultsTable, key: str, words: str) -> None
     axes.grid(color=LIGHT)
 
 
-def _draw_found(axes: "Axes", worlds: list[Mapping]) -> None:
+def _draw_found(axes: Axes, worlds: list[Mapping]) -> None:
     """A point for each world: its least probable way into a futile goal, over the bound."""
     for shift, key, colour, label in (
         (-0.17, "least", BLUE, "by states"), (0.17, "least_percepts", ORANGE, "by percepts")

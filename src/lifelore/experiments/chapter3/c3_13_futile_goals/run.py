@@ -194,11 +194,6 @@ def _taken(world: World, probs: NDArray, s: int, a: int, draws: int, names: tupl
     return frequency(tables, uniform_rows(tables, probs), 1.0, draws, (*names, "taken"))
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every constructed case, and some worlds of each kind with each number of tasks."""
     found = [

@@ -2,19 +2,15 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter3.c3_14_minimised_domains.run import WITHIN
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, Axes, house_style, new_figure
 
 KEPT = (
     ("printed", "defined", "printed:\ndefined"),
@@ -56,7 +52,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_walks(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+def _draw_walks(axes: Axes, result: Mapping, table: ResultsTable) -> None:
     """Collisions in 100 steps of pure exploration, in the domain and within it."""
     kinds, schedule = result["settings"]["kinds"], result["settings"]["default"]["schedule"]
 
@@ -76,7 +72,7 @@ def _draw_walks(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncols=3, fontsize=7, columnspacing=1)
 
 
-def _draw_learning(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+def _draw_learning(axes: Axes, result: Mapping, table: ResultsTable) -> None:
     settings = result["settings"]
     columns: list[tuple] = [(*way, schedule) for schedule, way in product(settings["schedules"], WITHIN)]
     numbers = [

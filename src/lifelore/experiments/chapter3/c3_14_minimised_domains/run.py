@@ -36,7 +36,7 @@ from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds impo
     TaskSet,
     task_set,
 )
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 
 WHOLE = "domain"
 WITHIN = (("repaired", "stay"), ("repaired", "free"), ("printed", "stay"), ("closed", "stay"))

@@ -1,24 +1,20 @@
 """Figure of claim C3.15: rewards with and without advice, the printed ones, and the grid of open choices."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import (
+from lifelore.experiments.chapter3.advice.figures import (
     ADVISOR_COLOURS,
     ADVISORS,
     AGENTS,
     EXPLORERS,
     draw_maze_grid,
 )
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, house_style, new_figure, two_rows
 
 PRINTED = {
     "random": (50, 900),
@@ -55,7 +51,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_bars(axes: "Axes", table: ResultsTable) -> None:
+def _draw_bars(axes: Axes, table: ResultsTable) -> None:
     def number(way: str, agent: str) -> Mapping | None:
         rows = table.select(way=way, agent=agent).records
         if not rows:
@@ -84,7 +80,7 @@ def _draw_bars(axes: "Axes", table: ResultsTable) -> None:
 
 
 def _draw_grid(
-    axes: "Axes", result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str
+    axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str
 ) -> None:
     columns = grid_of(result["settings"])
     key, certain = ("gain", "gain_is_certain") if neutral == 0 else ("reward", None)

@@ -7,7 +7,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
     grid_of,
     grid_share,

@@ -15,7 +15,8 @@ from lifelore.action.advice.goal_model import GoalModel, extend_goal_models
 from lifelore.core.errors import InputError
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
     Maze,
     errands_of,
@@ -25,8 +26,7 @@ from lifelore.experiments.chapter3.advice_mazes import (
     thesis_advisor,
     walk,
 )
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 
 __all__ = ["cells", "check", "run_cell"]
 NONE, THESIS, BETTER, UNIFORM_ONLY, GOAL_UNKNOWN = "none", "thesis", "better", "uniform only", "goal unknown"

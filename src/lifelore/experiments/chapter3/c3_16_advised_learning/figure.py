@@ -2,19 +2,15 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import ADVISOR_COLOURS, draw_maze_grid
-from lifelore.experiments.chapter3.advice_mazes import grid_of
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief, schedule_in_words
+from lifelore.experiments.chapter3.advice.figures import ADVISOR_COLOURS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.mazes import grid_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief, schedule_in_words
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, house_style, new_figure, two_rows
 
 METHODS = {"plain": "without advice", "advised": "with advice"}
 LOOKS = {"without advice": {"color": ADVISOR_COLOURS["none"]}, "with advice": {"color": ADVISOR_COLOURS["thesis"]}}
@@ -42,7 +38,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_starts(axes: "Axes", result: Mapping, starts: str) -> None:
+def _draw_starts(axes: Axes, result: Mapping, starts: str) -> None:
     edges = np.array(next(row["curve_edges"] for row in result["rows"] if "curve_edges" in row))
     series = {}
     for row in result["rows"]:
@@ -62,7 +58,7 @@ def _draw_starts(axes: "Axes", result: Mapping, starts: str) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     settings, default = result["settings"], result["settings"]["default"]
     cells = ResultsTable(
         (row for row in result["rows"] if "plain" in row), ("loops", "experts", "starts", "schedule")

@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advisor import exploration_rows
 from lifelore.action.advice.goal_model import GoalModel
-from lifelore.experiments.chapter3.advice_mazes import errands_of, goal_models_of, maze_of
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import errands_of, goal_models_of, maze_of
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 from lifelore.experiments.engine.curve_blocks import block_means
 
 __all__ = ["cells", "run_cell"]

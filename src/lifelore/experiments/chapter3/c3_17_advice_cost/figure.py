@@ -1,12 +1,11 @@
 """Figure of claim C3.17: advice in 100 steps by κ, the ceiling of κ, and how advice falls as Q-learning learns."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import AGENT_COLOURS, AGENTS, EXPLORERS, draw_maze_grid
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, AGENTS, EXPLORERS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import (
@@ -17,13 +16,11 @@ from lifelore.figures.style import (
     LIGHT,
     ORANGE,
     VERMILION,
+    Axes,
     house_style,
     new_figure,
     two_rows,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
 
 FIXED = (*EXPLORERS, "optimal")
 EXPERT_COLOURS = {"walks": BLUE, "few walks": ORANGE, "trips": GREEN, "policies": VERMILION}
@@ -55,7 +52,7 @@ def draw(result: Mapping):
     return figure
 
 
-def _draw_amounts(axes: "Axes", settings: Mapping, table: ResultsTable) -> None:
+def _draw_amounts(axes: Axes, settings: Mapping, table: ResultsTable) -> None:
     kappas = np.array(settings["kappas"])
     for place, agent in enumerate(FIXED):
         row = table.record(agent=agent)
@@ -68,7 +65,7 @@ def _draw_amounts(axes: "Axes", settings: Mapping, table: ResultsTable) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_ceiling(axes: "Axes", result: Mapping) -> None:
+def _draw_ceiling(axes: Axes, result: Mapping) -> None:
     settings = result["settings"]
     rows = [r for r in result["rows"] if "ceiling" in r and r["loops"] == settings["default"]["loops"]]
     series = {row["experts"]: {"mean": 100 * np.array(row["ceiling"])} for row in rows}
@@ -88,7 +85,7 @@ def _draw_ceiling(axes: "Axes", result: Mapping) -> None:
     axes.legend(loc="lower left", bbox_to_anchor=(0, 0.1), title="experts", title_fontsize=8)
 
 
-def _draw_learning(axes: "Axes", settings: Mapping, table: ResultsTable) -> None:
+def _draw_learning(axes: Axes, settings: Mapping, table: ResultsTable) -> None:
     k = settings["kappas"].index(settings["kappa"])
     rows = [table.record(agent=f"q {episodes}") for episodes in settings["snapshots"]]
     mean, deviation = ([row[key][k] for row in rows] for key in ("mean", "deviation"))
@@ -106,7 +103,7 @@ def _draw_learning(axes: "Axes", settings: Mapping, table: ResultsTable) -> None
     axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
 
 
-def _draw_grid(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+def _draw_grid(axes: Axes, result: Mapping, table: ResultsTable) -> None:
     settings, heeds = result["settings"], result["settings"]["default"]["heeds"]
     k = settings["kappas"].index(settings["kappa"])
     learners = {f"q {n}": f"Q-learning, {n} ep." for n in (settings["snapshots"][i] for i in (0, -1))}

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
     Errand,
     Maze,
@@ -29,8 +30,7 @@ from lifelore.experiments.chapter3.advice_mazes import (
     thesis_advisor,
     walk,
 )
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 
 __all__ = ["cells", "check", "run_cell"]
 

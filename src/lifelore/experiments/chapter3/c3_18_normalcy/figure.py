@@ -1,18 +1,14 @@
 """Figure of claim C3.18: P(M₁ | H) and rewards of explorers, advised and not; what advice adds by each reading."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import AGENT_COLOURS, EXPLORERS, draw_maze_grid
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, EXPLORERS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, house_style, new_figure, two_rows
 
 STYLES = {"alone": "-", "told": (0, (1.2, 1.2))}
 READINGS = {"told": "all steps", "own": "own steps", "unadvised": "unadvised steps"}
@@ -48,7 +44,7 @@ def _handles():
     return lines, [*EXPLORERS.values(), "no advice", "advised"]
 
 
-def _draw_lines(axes: "Axes", result: Mapping, key: str, top: float) -> None:
+def _draw_lines(axes: Axes, result: Mapping, key: str, top: float) -> None:
     settings, series, looks = result["settings"], {}, {}
     ends = settings["max_steps"] / settings["blocks"] * np.arange(1, settings["blocks"] + 1)
     for row in (row for row in result["rows"] if "curve_of" in row):
@@ -60,7 +56,7 @@ def _draw_lines(axes: "Axes", result: Mapping, key: str, top: float) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     cells = ResultsTable((row for row in result["rows"] if "gain" in row), ("loops", "experts", "agent"))
     values, certain, sides = [], [], []
     for reading, words in READINGS.items():

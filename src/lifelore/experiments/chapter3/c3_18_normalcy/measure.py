@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import grid_of, grid_share, maze_estimate, without_interval
+from lifelore.experiments.chapter3.advice.mazes import grid_of, grid_share, maze_estimate, without_interval
 from lifelore.experiments.engine.estimates import UNMEASURED, is_above
 from lifelore.experiments.engine.results_table import ResultsTable
 

@@ -14,7 +14,7 @@ from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.errors import InputError
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     errands_of,
     goal_models_of,
     maze_of,
@@ -22,7 +22,7 @@ from lifelore.experiments.chapter3.advice_mazes import (
     thesis_advisor,
     walk,
 )
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 
 __all__ = ["cells", "check", "run_cell"]
 

@@ -22,7 +22,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.domains.factory.factory import ACTION_NAMES
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     FULL_SET,
     N_ACTIONS,
     Problem,

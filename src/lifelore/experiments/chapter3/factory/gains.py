@@ -9,8 +9,8 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.factory.layout import factory
-from lifelore.experiments.chapter3.factory_learning import KEYS, LEARNT, PLAIN, grid_of
-from lifelore.experiments.chapter3.factory_series import SOURCES
+from lifelore.experiments.chapter3.factory.learning import KEYS, LEARNT, PLAIN, grid_of
+from lifelore.experiments.chapter3.factory.series import SOURCES
 from lifelore.experiments.engine.estimates import interval_or_value, share_of
 from lifelore.experiments.engine.results_table import BAND, ResultsTable, curve_of
 

@@ -13,7 +13,7 @@ from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import QLearner, uniform_rows
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.advice_mazes import Errand, Maze
+from lifelore.experiments.chapter3.advice.mazes import Errand, Maze
 
 
 def errand_tables(maze: Maze, found: Errand, number: int, starts: str) -> Tables:

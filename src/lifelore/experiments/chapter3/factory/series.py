@@ -10,7 +10,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.domains.factory.contexts import state_contexts
-from lifelore.experiments.chapter3.factory_learning import (
+from lifelore.experiments.chapter3.factory.learning import (
     LEARNT,
     N_ACTIONS,
     PLAIN,
@@ -23,7 +23,7 @@ from lifelore.experiments.chapter3.factory_learning import (
     tasks_of,
     with_pseudo_count,
 )
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import run_grid
 
 SOURCES = ("exact", "own")

@@ -1,15 +1,13 @@
 """Learning curves in figures of chapter 3: rewards by episode; returns by block with the episodes to 80 %."""
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words
 from lifelore.experiments.engine.curve_blocks import block_centres
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, Axes
 
 DASHES = (0, (4, 2))
 
@@ -25,25 +23,13 @@ class MethodCurve(NamedTuple):
     """Drawn dashed and without a band."""
 
 
-def schedule_in_words(schedule: Sequence[float]) -> str:
-    """A schedule of ε as a panel's title: first ε, factor of each episode, floor."""
-    first, decay, floor = schedule
-    return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"
-
-
-def schedule_in_brief(schedule: Sequence[float]) -> str:
-    """The first ε of a schedule and its factor, as a row or column of a table names it."""
-    first, decay, _ = schedule
-    return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
-
-
 def curve_edges(result: Mapping) -> list[int]:
     """Edges of the blocks of episodes of a result's curves."""
     return next(row["curve_edges"] for row in result["rows"] if "curve_edges" in row)
 
 
 def draw_reward_curves(
-    axes: "Axes",
+    axes: Axes,
     result: Mapping,
     schedule: Sequence[float],
     colours: Mapping[str, str],
@@ -89,7 +75,7 @@ def draw_reward_curves(
 
 
 def draw_return_curves(
-    panels: Sequence["Axes"], result: Mapping, schedule: Sequence[float], methods: Sequence[MethodCurve]
+    panels: Sequence[Axes], result: Mapping, schedule: Sequence[float], methods: Sequence[MethodCurve]
 ) -> None:
     """Curves of returns under a schedule in the first panel, episodes to 80 % of the optimum in the second.
 

@@ -26,7 +26,7 @@ from lifelore.domains.factory.contexts import (
 )
 from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
 from lifelore.domains.factory.modified_factory import modified_factory
-from lifelore.experiments.chapter3.factory_learning import optimal_way
+from lifelore.experiments.chapter3.factory.learning import optimal_way
 from lifelore.experiments.engine.learning_run import learnt
 
 N_ACTIONS = len(ACTION_NAMES)

@@ -1,22 +1,17 @@
 """Figure of claims C3.5 and C3.6: reward against the number of prior tasks, and what is gained over the grid."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.factory_learning import ENCODINGS
-from lifelore.experiments.chapter3.reward_curves import schedule_in_words
+from lifelore.experiments.chapter3.factory.learning import ENCODINGS
+from lifelore.experiments.chapter3.figures.choice_grid import draw_choice_grid
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, colour_of, house_style, new_figure, width_of
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, INK, Axes, Figure, colour_of, house_style, new_figure, width_of
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """The figure from the result of C3.5 or C3.6: a panel for each number of components, and the grid."""
     settings = result["settings"]
     numbers = settings["components"]
@@ -48,7 +43,7 @@ def _caption(settings: Mapping) -> str:
     )
 
 
-def _draw_series(axes: "Axes", result: Mapping, k: int) -> None:
+def _draw_series(axes: Axes, result: Mapping, k: int) -> None:
     settings, bands = result["settings"], {}
     for row in result["rows"]:
         if row.get("components") == k and "series" in row:

@@ -2,17 +2,15 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import Axes
 
 
 def draw_choice_grid(
-    axes: "Axes",
+    axes: Axes,
     settings: Mapping[str, Any],
     rows: Sequence[Mapping[str, Any]],
     measure: str,
