@@ -23,8 +23,12 @@ KEPT = (
     ("closed", "policy_kept", "closed:\npolicy"),
     ("closed", "no_more_traps", "no more\ntraps"),
 )
-EXPLORED = {("domain", ""): ("domain", GREY)}
-EXPLORED |= {("repaired", "stay"): ("repaired, stay", BLUE), ("closed", "stay"): ("closed, stay", GREEN)}
+EXPLORED = {
+    ("domain", ""): ("domain", GREY),
+    ("repaired", "stay"): ("repaired, stay", BLUE),
+    ("closed", "stay"): ("closed, stay", GREEN),
+}
+"""Label and colour by form and by what a state without kept actions does."""
 
 
 def draw(result: Mapping):
