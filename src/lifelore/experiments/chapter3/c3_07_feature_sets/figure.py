@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 
+from lifelore.experiments.chapter3.figures.choice_grid import other_choice, place_of_default
 from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
@@ -26,11 +27,7 @@ def draw(result: Mapping) -> Figure:
     with house_style():
         figure = new_figure(10.6, 8.4)
         upper, lower = two_rows(figure, (1.0, 0.82))
-        panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
-        for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            draw_reward_curves(axes, result, schedule, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
-        panels[0].set_ylabel("reward of an episode")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
+        draw_reward_curves(upper, result, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
         _draw_grid(lower.subplots(), result)
         lower.supxlabel(
             f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
@@ -41,16 +38,15 @@ def draw(result: Mapping) -> Figure:
 
 
 def _draw_grid(axes: Axes, result: Mapping) -> None:
-    default, methods = result["settings"]["default"], list(LABELS)[1:]
+    settings, methods = result["settings"], list(LABELS)[1:]
     cells = [row for row in result["rows"] if "closed_phi1" in row]
-    is_default = [all(row[key] == value for key, value in default.items()) for row in cells]
     draw_estimate_grid(
         axes,
         [[row[f"closed_{method}"] for method in methods] for row in cells],
-        [_name(row, default) for row in cells],
+        [_name(row, settings["default"]) for row in cells],
         [LABELS[method] for method in methods],
         neutral=0.0, scale=100.0, spread=100.0, words="{:.0f}".format,
-        outlined=(is_default.index(True), methods.index("phi3")),
+        outlined=(place_of_default(cells, settings), methods.index("phi3")),
     )  # fmt: skip
     axes.set_title("Distance from no prior to the optimum that is closed, all episodes (%)")
 
@@ -61,5 +57,4 @@ def _name(row: Mapping, default: Mapping) -> str:
         "encoding": "states coded '{}'", "alpha0": "α⁰ {:g}", "max_steps": "cap of {:,} steps",
         "policies": "from {} policies",
     }  # fmt: skip
-    changed = (words.format(row[key]) for key, words in others.items() if row[key] != default[key])
-    return next(changed, f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}")
+    return other_choice(row, default, others) or f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}"

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.experiments.chapter3.figures.choice_grid import place_of_default
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, colour_of, house_style, new_figure
@@ -18,8 +19,7 @@ def draw(result: Mapping) -> Figure:
     with house_style():
         figure = new_figure(10.2, 7.6)
         upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
-        cells, default = result["rows"], result["settings"]["default"]
-        at = [all(row[key] == value for key, value in default.items()) for row in cells].index(True)
+        cells, at = result["rows"], place_of_default(result["rows"], result["settings"])
         _draw_bars(upper, cells[at]["increase"])
         _draw_grid(lower, cells, at)
         for axes in (upper, lower):

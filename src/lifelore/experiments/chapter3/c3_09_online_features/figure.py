@@ -4,6 +4,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from lifelore.experiments.chapter3.figures.choice_grid import other_choice, place_of_default
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
@@ -56,7 +57,6 @@ def _draw_source(axes: Axes, result: Mapping, source: str) -> None:
 def _draw_grid(axes: Axes, result: Mapping, part: str) -> None:
     default = result["settings"]["default"]
     cells = [row for row in result["rows"] if "of_source" not in row]
-    is_default = [all(row[key] == value for key, value in default.items()) for row in cells]
     values = np.array([[row[f"{part}_{method}"] for method in METHODS] for row in cells]) / 1000
     # Shaded by the share of the row's own worst value: rows differ by the cap and ε.
     worst = np.maximum(np.abs(values).max(axis=1, keepdims=True), 1e-9)
@@ -64,17 +64,14 @@ def _draw_grid(axes: Axes, result: Mapping, part: str) -> None:
     draw_heat_grid(
         axes, 1 - np.abs(values) / worst, np.zeros(values.shape, bool), [_name(row, default) for row in cells],
         [label for label, _ in METHODS.values()], neutral=0.0, spread=1.0, words=lambda _: next(words),
-        outlined=(is_default.index(True), 2),
+        outlined=(place_of_default(cells, result["settings"]), 2),
     )  # fmt: skip
     axes.set_title(f"Reward of the {part} episode, thousands")
 
 
 def _name(row: Mapping, default: Mapping) -> str:
     """The choice in which a row of the grid differs from the default."""
-    words = {
-        "source": f"policies {row['source']}",
-        "schedule": schedule_in_brief(row["schedule"]),
-        "ties": f"ties {row['ties']}",
-        "max_steps": f"cap of {row['max_steps']:,} steps",
-    }
-    return next((words[key] for key in words if row[key] != default[key]), f"default: {words['source']}")
+    words = {"source": "policies {}", "ties": "ties {}", "max_steps": "cap of {:,} steps"}
+    if row["schedule"] != default["schedule"]:
+        return schedule_in_brief(row["schedule"])
+    return other_choice(row, default, words) or f"default: policies {row['source']}"

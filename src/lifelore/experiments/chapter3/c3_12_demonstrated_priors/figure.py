@@ -20,11 +20,7 @@ def draw(result: Mapping):
     with house_style():
         figure = new_figure(12.4, 7.6)
         upper, lower = two_rows(figure, (1.0, 1.05))
-        panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
-        for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            draw_reward_curves(axes, result, schedule, COLOURS, labels, banded=COLOURS)
-        panels[0].set_ylabel("reward of an episode")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=8)
+        draw_reward_curves(upper, result, COLOURS, labels, banded=COLOURS)
         grid, people = lower.subplots(1, 2, width_ratios=[1.1, 1.0])
         _draw_grid(grid, result)
         _draw_people(people, result)

@@ -16,7 +16,6 @@ from numpy.typing import NDArray
 
 from lifelore.action.features.feature_selection import OnlineFeatureSelection
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve
@@ -28,6 +27,7 @@ from lifelore.experiments.chapter3.factory.modified_tasks import (
     Problem,
     contexts_of,
     learn_problem,
+    rows_of,
 )
 
 UNIFORM, FULL, SELECTED = "uniform", "full", "selected"
@@ -84,7 +84,7 @@ class OnlineAgent:
     def rows(self, problem: Problem) -> Rows:
         """ε-QPAP's rows with the prior so far (Alg. 4)."""
         probs = (self.selection or self._full).probs
-        return prior_rows(problem.tables, contexts_of(problem, "phi4"), probs, self.ties)
+        return rows_of(problem, "phi4", probs, self.ties)
 
     def learn(self, problem: Problem, schedule: Schedule, *, explores: bool = True) -> Curve:
         """Learn a task, exploring by the prior or uniformly, and count its policy."""

@@ -8,6 +8,21 @@ from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
 from lifelore.figures.style import Axes
 
+RATIO = {"neutral": 1.0, "spread": 4.0, "ratio": True, "good": "low", "words": "{:.2f}".format}
+"""Look of a table of ratios of which small ones are good."""
+
+
+def place_of_default(cells: Sequence[Mapping[str, Any]], settings: Mapping[str, Any]) -> int:
+    """Where the default stands among the cells of a grid."""
+    default = settings["default"].items()
+    return [all(cell[key] == value for key, value in default) for cell in cells].index(True)
+
+
+def other_choice(cell: Mapping[str, Any], default: Mapping[str, Any], words: Mapping[str, str]) -> str | None:
+    """The first choice of `words` (key → format) in which a cell differs from the default; None without any."""
+    changed = (text.format(cell[key]) for key, text in words.items() if cell[key] != default[key])
+    return next(changed, None)
+
 
 def draw_choice_grid(
     axes: Axes,
