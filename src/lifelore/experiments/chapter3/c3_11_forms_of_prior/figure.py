@@ -6,28 +6,18 @@ from lifelore.experiments.chapter3.c3_11_forms_of_prior.measure import key_of
 from lifelore.experiments.chapter3.figures.choice_grid import RATIO, other_choice, place_of_default
 from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
+from lifelore.figures import style
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    PURPLE,
-    SKY,
-    VERMILION,
-    house_style,
-    new_figure,
-    two_rows,
-)
+from lifelore.figures.style import house_style, new_figure, two_rows
 
 COLOURS = {
-    "uniform": GREY,
-    "proportion": BLUE,
-    "dirichlet": GREEN,
-    "softmax of counts": VERMILION,
-    "softmax of counts a policy": ORANGE,
-    "softmax of proportions": PURPLE,
-    "softmax of 10 × proportions": SKY,
+    "uniform": style.GREY,
+    "proportion": style.BLUE,
+    "dirichlet": style.GREEN,
+    "softmax of counts": style.VERMILION,
+    "softmax of counts a policy": style.ORANGE,
+    "softmax of proportions": style.PURPLE,
+    "softmax of 10 × proportions": style.SKY,
 }
 BANDED = ("uniform", "proportion", "softmax of counts")
 """Forms whose deviation is shaded; that of the Dirichlet would hide that of the proportions."""
@@ -47,7 +37,7 @@ def draw(result: Mapping):
             f"Shaded: one standard deviation across the {settings['test_tasks']} tasks of a run (mean over "
             f"{settings['runs']} runs). Bold: the 95 % interval over runs excludes 0, or 1. Framed: the default, "
             "the softmax as printed.",
-            fontsize=8, color=GREY,
+            fontsize=8, color=style.GREY,
         )  # fmt: skip
     return figure
 

@@ -4,13 +4,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice.figures import (
-    ADVISOR_COLOURS,
-    ADVISORS,
-    AGENTS,
-    EXPLORERS,
-    draw_maze_grid,
-)
+from lifelore.experiments.chapter3.advice import figures
+from lifelore.experiments.chapter3.advice.figures import ADVISORS, AGENTS, EXPLORERS
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.interval_bars import draw_interval_bars
@@ -62,16 +57,9 @@ def _draw_bars(axes: Axes, table: ResultsTable) -> None:
         return {"value": rows[0]["reward"], "ci95": rows[0]["ci95"], "words": words}
 
     groups = {label: [number(way, agent) for agent in AGENTS] for way, label in ADVISORS.items()}
-    colours = {label: ADVISOR_COLOURS[way] for way, label in ADVISORS.items()}
-    draw_interval_bars(
-        axes,
-        list(AGENTS.values()),
-        groups,
-        colours=colours,
-        horizontal=False,
-        label="reward, of 1000",
-        legend=False,
-    )
+    colours = {label: figures.ADVISOR_COLOURS[way] for way, label in ADVISORS.items()}
+    look = {"horizontal": False, "label": "reward, of 1000", "legend": False}
+    draw_interval_bars(axes, list(AGENTS.values()), groups, colours=colours, **look)
     places, printed = np.arange(len(AGENTS))[:, None] + [-0.3, -0.1], [PRINTED[agent] for agent in AGENTS]
     axes.hlines(np.ravel(printed), np.ravel(places) - 0.09, np.ravel(places) + 0.09, color=INK, lw=2, zorder=6)
     axes.plot(np.ravel(places), np.ravel(printed), "D", ms=4, color=INK, label="printed in Table 3.1", zorder=6)
@@ -79,9 +67,7 @@ def _draw_bars(axes: Axes, table: ResultsTable) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(
-    axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str
-) -> None:
+def _draw_grid(axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str):
     columns = grid_of(result["settings"])
     key, certain = ("gain", "gain_is_certain") if neutral == 0 else ("reward", None)
     sides, values, bold = [], [], []
@@ -91,9 +77,9 @@ def _draw_grid(
             values.append([row[key] for row in found])
             bold.append([row[certain] if certain else row[key] >= neutral for row in found])
             sides.append(AGENTS[agent] + (" *" if way == "uniform only" else ""))
-    spread = 500.0 if neutral == 0 else 450.0
+    look = {"title": title, "neutral": neutral, "spread": 500.0 if neutral == 0 else 450.0}
 
     def words(value: float) -> str:
         return f"{value:+.0f}" if neutral == 0 and abs(value) >= 0.5 else f"{value:.0f}"
 
-    draw_maze_grid(axes, result, values, bold, sides, title=title, neutral=neutral, spread=spread, words=words)
+    figures.draw_maze_grid(axes, result, values, bold, sides, words=words, **look)

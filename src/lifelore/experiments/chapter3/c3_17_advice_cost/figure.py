@@ -7,23 +7,17 @@ import numpy as np
 from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, AGENTS, EXPLORERS, draw_maze_grid
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.figures import style
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    LIGHT,
-    ORANGE,
-    VERMILION,
-    Axes,
-    house_style,
-    new_figure,
-    two_rows,
-)
+from lifelore.figures.style import Axes, house_style, new_figure, two_rows
 
 FIXED = (*EXPLORERS, "optimal")
-EXPERT_COLOURS = {"walks": BLUE, "few walks": ORANGE, "trips": GREEN, "policies": VERMILION}
+EXPERT_COLOURS = {
+    "walks": style.BLUE,
+    "few walks": style.ORANGE,
+    "trips": style.GREEN,
+    "policies": style.VERMILION,
+}
 
 
 def draw(result: Mapping):
@@ -47,7 +41,7 @@ def draw(result: Mapping):
             f"Bars: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} walks of at most "
             f"{settings['max_steps']:,} steps. Curves: loops {default['loops']:g}, experts "
             f"{default['experts']}. Framed: the default.",
-            fontsize=8, color=GREY,
+            fontsize=8, color=style.GREY,
         )  # fmt: skip
     return figure
 
@@ -60,9 +54,9 @@ def _draw_amounts(axes: Axes, settings: Mapping, table: ResultsTable) -> None:
             kappas + 0.004 * kappas[-1] * (place - 2), row["mean"], row["deviation"], color=AGENT_COLOURS[agent],
             label=AGENTS[agent], lw=1.6, elinewidth=0.8, marker="o", ms=3,
         )  # fmt: skip
-    axes.axvline(settings["kappa"], color=GREY, lw=0.9, ls=(0, (4, 3)))
+    axes.axvline(settings["kappa"], color=style.GREY, lw=0.9, ls=(0, (4, 3)))
     axes.set(xlabel="κ (nats)", ylim=(0, 104))
-    axes.grid(axis="y", color=LIGHT)
+    axes.grid(axis="y", color=style.LIGHT)
 
 
 def _draw_ceiling(axes: Axes, result: Mapping) -> None:
@@ -73,15 +67,15 @@ def _draw_ceiling(axes: Axes, result: Mapping) -> None:
     draw_curves(
         axes, settings["kappas"], series, looks=looks, xlabel="κ (nats)", ylabel="states (%)", legend=False
     )
-    axes.axvline(settings["kappa"], color=GREY, lw=0.9, ls=(0, (4, 3)))
+    axes.axvline(settings["kappa"], color=style.GREY, lw=0.9, ls=(0, (4, 3)))
     for ways in (1, 2, 3):
-        axes.axvline(np.log(4 / ways), color=INK, lw=0.8, ls=(0, (1, 2)))
+        axes.axvline(np.log(4 / ways), color=style.INK, lw=0.8, ls=(0, (1, 2)))
         axes.annotate(
             f"log 4/{ways}", (np.log(4 / ways), 0), (3, 4), xycoords=("data", "axes fraction"),
-            textcoords="offset points", rotation=90, ha="left", va="bottom", fontsize=7, color=GREY,
+            textcoords="offset points", rotation=90, ha="left", va="bottom", fontsize=7, color=style.GREY,
         )  # fmt: skip
     axes.set(title="Ceiling: states where advice is possible at all", ylim=(0, 104))
-    axes.grid(axis="y", color=LIGHT)
+    axes.grid(axis="y", color=style.LIGHT)
     axes.legend(loc="lower left", bbox_to_anchor=(0, 0.1), title="experts", title_fontsize=8)
 
 
@@ -99,7 +93,7 @@ def _draw_learning(axes: Axes, settings: Mapping, table: ResultsTable) -> None:
     axes.set(xscale="log", xlabel="episodes learnt", ylabel="advised steps in 100")
     axes.set(title=f"Q-learning at κ = {settings['kappa']:g}", ylim=(0, None))
     axes.xaxis.set_major_formatter("{x:g}")
-    axes.grid(axis="y", color=LIGHT)
+    axes.grid(axis="y", color=style.LIGHT)
     axes.legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none")
 
 

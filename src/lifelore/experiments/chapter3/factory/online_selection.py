@@ -21,14 +21,8 @@ from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.domains.factory.factory import ACTION_NAMES
-from lifelore.experiments.chapter3.factory.modified_tasks import (
-    FULL_SET,
-    N_ACTIONS,
-    Problem,
-    contexts_of,
-    learn_problem,
-    rows_of,
-)
+from lifelore.experiments.chapter3.factory import modified_tasks
+from lifelore.experiments.chapter3.factory.modified_tasks import FULL_SET, N_ACTIONS, Problem
 
 UNIFORM, FULL, SELECTED = "uniform", "full", "selected"
 SOURCES = ("learnt", "exact")
@@ -59,9 +53,8 @@ def counted(problem: Problem, learner: QLearner | None, how: Counting) -> NDArra
         return actions_to_count(q, over, ended=ended, visits=learner.visits)
     if how.over == "all":
         return problem.best
-    kept = np.zeros_like(problem.best)
-    kept[problem.way] = problem.best[problem.way]
-    return kept
+    on_way = np.isin(np.arange(len(problem.best)), problem.way)
+    return problem.best & on_way[:, None]
 
 
 class OnlineAgent:
@@ -84,17 +77,17 @@ class OnlineAgent:
     def rows(self, problem: Problem) -> Rows:
         """ε-QPAP's rows with the prior so far (Alg. 4)."""
         probs = (self.selection or self._full).probs
-        return rows_of(problem, "phi4", probs, self.ties)
+        return modified_tasks.rows_of(problem, "phi4", probs, self.ties)
 
     def learn(self, problem: Problem, schedule: Schedule, *, explores: bool = True) -> Curve:
         """Learn a task, exploring by the prior or uniformly, and count its policy."""
-        curve, learner = learn_problem(problem, self.rows(problem) if explores else None, schedule)
+        curve, learner = modified_tasks.learn_problem(problem, self.rows(problem) if explores else None, schedule)
         self.count(problem, learner)
         return curve
 
     def count(self, problem: Problem, learner: QLearner | None) -> None:
         """Count a policy; an exact one needs no learner."""
-        codes, best = contexts_of(problem, "phi4"), counted(problem, learner, self.counting)
+        codes, best = modified_tasks.contexts_of(problem, "phi4"), counted(problem, learner, self.counting)
         (self.selection or self._full).update(codes, best)
 
     @property

@@ -5,24 +5,13 @@ Thesis: §3.4.3, Figures 3.8 and 3.9.
 
 from collections.abc import Mapping
 from functools import cache
+from itertools import product
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import learnt_best_actions
-from lifelore.domains.factory.contexts import state_contexts
-from lifelore.experiments.chapter3.factory.learning import (
-    LEARNT,
-    N_ACTIONS,
-    PLAIN,
-    exact_prior,
-    grid_of,
-    learn_task,
-    learnt_rows,
-    problem_of,
-    solved,
-    tasks_of,
-    with_pseudo_count,
-)
+from lifelore.experiments.chapter3.factory import learning
+from lifelore.experiments.chapter3.factory.learning import LEARNT, PLAIN, learn_task, problem_of, tasks_of
 from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import run_grid
 
@@ -48,11 +37,8 @@ def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
     default, k, run = settings["default"], cell["components"], cell["run"]
     schedule = schedule_of(settings, default["schedule"])
     tasks = tasks_of(settings, seed, k, run, settings["prior_tasks"] + 1)
-    priors = {
-        (source, encoding): ActionPrior(N_ACTIONS, default["alpha0"])
-        for source in SOURCES
-        for encoding in settings["encodings"]
-    }
+    keys = product(SOURCES, settings["encodings"])
+    priors = {key: ActionPrior(learning.N_ACTIONS, default["alpha0"]) for key in keys}
     rewards: dict[str, list[float]] = {PLAIN: [], **{" ".join(key): [] for key in priors}}
     optimal, seen = [], []
     for n, components in enumerate(tasks):
@@ -61,11 +47,11 @@ def _series(settings: Mapping, cell: Mapping, seed: int) -> dict:
         optimal.append(problem.solved.optimal_reward)
         seen.append(components in tasks[:n])
         for (source, encoding), prior in priors.items():
-            rows = learnt_rows(problem, prior, encoding, default["ties"])
+            rows = learning.rows_of(problem, prior, encoding, default["ties"])
             curve, learner = learn_task(problem, rows, schedule)
             rewards[f"{source} {encoding}"].append(float(curve.rewards.mean()))
             best = problem.solved.best if source == "exact" else learnt_best_actions(learner.q)
-            prior.update(state_contexts(problem.solved.task, encoding), best)
+            prior.update(learning.contexts_of(problem, encoding), best)
     return {"rewards": rewards, "optimal": optimal, "seen": seen, "met": len(set(tasks[:-1]))}
 
 
@@ -77,29 +63,27 @@ def _grid(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
     @cache
     def prior_of(encoding: str, n: int) -> ActionPrior:
-        return exact_prior([solved(t, settings["discount"]) for t in tasks[:n]], encoding, 1.0)
+        return learning.exact_prior([learning.solved(t, settings["discount"]) for t in tasks[:n]], encoding, 1.0)
 
     def numbers(method: str, choice: Mapping) -> dict:
-        schedule = schedule_of(settings, choice["schedule"])
-        if method == PLAIN:
-            return {"rewards": [float(learn_task(problem, None, schedule)[0].rewards.mean())] * 2}
-        found = []
+        rewards = []
         for n in settings["grid_tasks"]:
-            prior = with_pseudo_count(prior_of(choice["encoding"], n), choice["alpha0"])
-            rows = learnt_rows(problem, prior, choice["encoding"], choice["ties"])
-            found.append(float(learn_task(problem, rows, schedule)[0].rewards.mean()))
-        return {"rewards": found}
+            rows = None
+            if method == LEARNT:
+                prior = learning.with_pseudo_count(prior_of(choice["encoding"], n), choice["alpha0"])
+                rows = learning.rows_of(problem, prior, choice["encoding"], choice["ties"])
+            curve, _ = learn_task(problem, rows, schedule_of(settings, choice["schedule"]))
+            rewards.append(float(curve.rewards.mean()))
+        return {"rewards": rewards}
 
-    found = list(run_grid(grid_of(settings), "prior", PLAIN, (LEARNT,), numbers))
+    found = list(run_grid(learning.grid_of(settings), "prior", PLAIN, (LEARNT,), numbers))
     return {"found": found, "optimal": problem.solved.optimal_reward}
 
 
 def check(settings: Mapping) -> None:
     """Refuse late tasks that overlap the first ones, and numbers of tasks that do not rise."""
-    if 2 * settings["late"] > settings["prior_tasks"]:
-        raise InputError(
-            f"late must be at most half of prior_tasks ({settings['prior_tasks']}), got {settings['late']}"
-        )
-    few, many = settings["grid_tasks"]
+    n_tasks, (few, many) = settings["prior_tasks"], settings["grid_tasks"]
+    if 2 * settings["late"] > n_tasks:
+        raise InputError(f"late must be at most half of prior_tasks ({n_tasks}), got {settings['late']}")
     if few >= many:
         raise InputError(f"grid_tasks must be two numbers, rising, got {settings['grid_tasks']}")
