@@ -3,8 +3,8 @@
 from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter3.factory import gains
-from lifelore.experiments.chapter3.factory.gains import Series, rows
+from lifelore.experiments.chapter3.c3_05_one_component import measure as one_component
+from lifelore.experiments.chapter3.c3_05_one_component.measure import Series, rows
 
 __all__ = ["measure", "rows"]
 
@@ -17,4 +17,4 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         closed, closed_one = (series.closed(f"exact {encoding}", settings["late"]) for series in (many, one))
         found[f"closed_minus_one_component_{encoding}"] = mean_estimate(closed - closed_one)
     default = found[f"closed_minus_one_component_{settings['default']['encoding']}"]
-    return {**gains.measure(settings, results), "closed_minus_one_component": default, **found}
+    return {**one_component.measure(settings, results), "closed_minus_one_component": default, **found}
