@@ -15,15 +15,9 @@ def draw_factory_prior(
 ) -> None:
     """Draw a prior over the cells of one configuration.
 
-    Parameters
-    ----------
-    axes : matplotlib axes
-    factory : Factory
-    probs : (n_cells,) of (n_actions,) floats, or None
-        None where the prior has no counts: such cells are shaded.
-    components : sequence of int
-        The task's; its points are drawn in full colour, the others pale. A dot on a point grows with the mass of
-        the use that belongs there.
+    `probs` has six numbers for each cell, or None where the prior has no counts: such cells are shaded. Points of
+    the task's `components` are drawn in full colour, the others pale. A dot on a point grows with the mass of the
+    use that belongs there.
     """
     counted = np.array([row is not None for row in probs])
     mass = np.array([row if row is not None else [0.0] * 6 for row in probs])

@@ -56,16 +56,12 @@ def _draw_series(axes: Axes, result: Mapping, k: int) -> None:
     shown[f"own, {ENCODINGS[own]}"] = ({"mean": bands[f"own {own}"]["mean"]}, dashed)
     dotted = {"color": INK, "linestyle": (0, (1, 2)), "linewidth": 1.2}
     shown["optimal"] = ({"mean": bands["optimal"]["mean"]}, dotted)
+    curves, looks = ({label: both[i] for label, both in shown.items()} for i in (0, 1))
     draw_curves(
-        axes,
-        np.arange(settings["prior_tasks"] + 1),
-        {label: curve for label, (curve, _) in shown.items()},
-        looks={label: look for label, (_, look) in shown.items()},
-        title=f"{k} component{'s' if k > 1 else ''}",
-        xlabel="tasks behind the prior",
-        ylabel="reward of an episode",
-        legend=False,
-    )
+        axes, np.arange(settings["prior_tasks"] + 1), curves, looks=looks,
+        title=f"{k} component{'s' if k > 1 else ''}", xlabel="tasks behind the prior",
+        ylabel="reward of an episode", legend=False,
+    )  # fmt: skip
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     # Intervals of few runs reach far above what can be earned.
     axes.set_ylim(top=max(bands["optimal"]["mean"]) - 0.06 * min(bands["uniform"]["mean"]))

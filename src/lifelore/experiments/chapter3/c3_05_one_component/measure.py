@@ -1,6 +1,7 @@
 """Measures and rows of C3.5, and of C3.6: what a prior gains over learning each factory task from scratch."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 from math import comb
 from typing import NamedTuple
 
@@ -46,6 +47,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     k, late = settings["components"][0], settings["late"]
     series = Series.of(results, k)
     gain = series.gain(f"exact {settings['default']['encoding']}")
+    ways = list(product(SOURCES, settings["encodings"]))
+    both = [(after[:, 1], after[:, 1] - after[:, 0]) for _, after, _ in _grid(settings, results)]
+    grows = [all(interval_or_value(mean_estimate(gains))[0] > 0 for gains in pair) for pair in both]
     return {
         "gain_after_0": mean_estimate(gain[:, 0]),
         "gain_late": mean_estimate(gain[:, -late:].mean(axis=1)),
@@ -54,17 +58,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "late_tasks_seen": mean_estimate(series.seen[:, -late:].mean(axis=1)),
         "share_of_tasks_met": mean_estimate(series.met / comb(factory().n_components, k)),
         **_by_seen(gain[:, -late:], series.seen[:, -late:]),
-        **{
-            f"closed_late_{source}_{encoding}": mean_estimate(series.closed(f"{source} {encoding}", late))
-            for source in SOURCES
-            for encoding in settings["encodings"]
-        },
-        "grid_gains_and_grows": share_of(
-            [
-                all(_is_positive(g) for g in (gain[:, 1], gain[:, 1] - gain[:, 0]))
-                for _, gain, _ in _grid(settings, results)
-            ]
-        ),
+        **{f"closed_late_{s}_{e}": mean_estimate(series.closed(f"{s} {e}", late)) for s, e in ways},
+        "grid_gains_and_grows": share_of(grows),
     }
 
 
@@ -85,10 +80,6 @@ def _by_seen(gain: NDArray[np.float64], seen: NDArray[np.bool_]) -> dict[str, Es
         if means:
             found[f"gain_late_{name}"] = mean_estimate(means)
     return found
-
-
-def _is_positive(gains: NDArray[np.float64]) -> bool:
-    return interval_or_value(mean_estimate(gains))[0] > 0
 
 
 def _grid(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, NDArray, NDArray]]:

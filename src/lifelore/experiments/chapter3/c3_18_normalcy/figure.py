@@ -16,6 +16,8 @@ READINGS = {"told": "all steps", "own": "own steps", "unadvised": "unadvised ste
 
 def draw(result: Mapping):
     """Curves by steps above, the grid of loop densities and experts below."""
+    from matplotlib.lines import Line2D
+
     settings = result["settings"]
     with house_style():
         figure = new_figure(10.4, 8.0)
@@ -25,7 +27,10 @@ def draw(result: Mapping):
         _draw_lines(right, result, "reward", 1000.0)
         left.set(title="P(M₁ | H), advised steps counted, of those still walking", ylabel="P(M₁ | H)")
         right.set_title("Reward so far, of 1000")
-        upper.legend(*_handles(), loc="outside upper left", ncols=6)
+        lines = [Line2D([], [], color=AGENT_COLOURS[agent], lw=2.2) for agent in EXPLORERS]
+        lines += [Line2D([], [], color=INK, lw=1.6, ls=style) for style in STYLES.values()]
+        labels = [*EXPLORERS.values(), "no advice", "advised"]
+        upper.legend(lines, labels, loc="outside upper left", ncols=6)
         _draw_grid(lower.subplots(), result)
         lower.supxlabel(
             f"{settings['mazes']} mazes × {settings['tasks']} tasks; curves at loops "
@@ -34,14 +39,6 @@ def draw(result: Mapping):
             fontsize=8, color=GREY,
         )  # fmt: skip
     return figure
-
-
-def _handles():
-    from matplotlib.lines import Line2D
-
-    lines = [Line2D([], [], color=AGENT_COLOURS[agent], lw=2.2) for agent in EXPLORERS]
-    lines += [Line2D([], [], color=INK, lw=1.6, ls=style) for style in STYLES.values()]
-    return lines, [*EXPLORERS.values(), "no advice", "advised"]
 
 
 def _draw_lines(axes: Axes, result: Mapping, key: str, top: float) -> None:

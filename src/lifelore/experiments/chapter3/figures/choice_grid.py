@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
+from operator import itemgetter
 from typing import Any
 
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
@@ -35,34 +36,19 @@ def draw_choice_grid(
 ) -> None:
     """Draw an estimate of every cell of the grid; the default is framed.
 
-    Parameters
-    ----------
-    axes : matplotlib axes
-    settings : mapping
-        With ``schedules``, ``ties`` and the ``default``, which has the keys of `side`, too.
-    rows : sequence of mapping
-        A cell each, with ``schedule``, ``ties``, the keys of `side` and an estimate `measure`.
-    measure : str
-    side : sequence of str
-        The keys that make a row of the table, in order of appearance.
-    name : callable
-        ``name(*values)``: the label of a row from its values of `side`.
-    **look
-        See `draw_estimate_grid`.
+    `rows` are cells with ``schedule``, ``ties``, the keys of `side` and an estimate `measure`. The keys of `side`,
+    of which there are two or more, make a row of the table, which ``name(*values)`` labels. `look` is that of
+    `draw_estimate_grid`.
     """
-    default = settings["default"]
+    default, side_of = settings["default"], itemgetter(*side)
     columns = list(product(settings["schedules"], settings["ties"]))
-    cells = {(_side(row, side), tuple(row["schedule"]), row["ties"]): row[measure] for row in rows}
+    cells = {(side_of(row), tuple(row["schedule"]), row["ties"]): row[measure] for row in rows}
     sides = list(dict.fromkeys(key[0] for key in cells))
     draw_estimate_grid(
         axes,
         [[cells.get((values, tuple(schedule), ties)) for schedule, ties in columns] for values in sides],
         [name(*values) for values in sides],
         [f"{schedule_in_brief(schedule).replace(' ×', chr(10) + '×')}\n{ties}" for schedule, ties in columns],
-        outlined=(sides.index(_side(default, side)), columns.index((default["schedule"], default["ties"]))),
+        outlined=(sides.index(side_of(default)), columns.index((default["schedule"], default["ties"]))),
         **look,
     )
-
-
-def _side(cell: Mapping[str, Any], side: Sequence[str]) -> tuple:
-    return tuple(cell[key] for key in side)

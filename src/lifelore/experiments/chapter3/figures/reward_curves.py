@@ -39,17 +39,9 @@ def draw_reward_curves(
 ) -> None:
     """A panel for each schedule, from rows that have ``curve_of``, ``schedule``, ``mean`` and ``deviation``.
 
-    Parameters
-    ----------
-    figure : SubFigure
-    result : mapping
-        With ``episodes`` and ``schedules`` among its settings and ``optimal_reward`` among its measures.
-    colours : mapping of str to str
-        By method, in the order of drawing.
-    labels : mapping of str to str
-        Methods left out go by their name.
-    banded, dashed : collection of str
-        Methods whose deviation is shaded; methods whose line is dashed.
+    `result` has ``episodes`` and ``schedules`` among its settings and ``optimal_reward`` among its measures.
+    `colours` are by method, in the order of drawing; methods without a label go by their name. The deviation of
+    `banded` methods is shaded, the line of `dashed` ones is dashed.
     """
     schedules = result["settings"]["schedules"]
     panels = figure.subplots(1, len(schedules), squeeze=False, sharey=True)[0]
@@ -92,18 +84,9 @@ def draw_return_curves(
 ) -> None:
     """For each schedule curves of returns, and below them the episodes to 80 % of the optimum.
 
-    Parameters
-    ----------
-    figure : SubFigure
-    result : mapping
-        With ``episodes`` and ``schedules`` among its settings, ``optimal_return`` among its measures and
-        ``curve_edges`` in a row.
-    methods_of : callable
-        ``methods_of(schedule)``: what is drawn.
-    bars : float
-        Height of the bars' panel, that of the curves being 1.
-    ncols : int
-        Columns of the legend.
+    `result` has ``episodes`` and ``schedules`` among its settings, ``optimal_return`` among its measures and
+    ``curve_edges`` in a row. `methods_of` gives what is drawn for a schedule; `bars` is the height of the lower
+    panel, that of the curves being 1; the legend has `ncols` columns.
     """
     schedules = result["settings"]["schedules"]
     panels = figure.subplots(2, len(schedules), squeeze=False, height_ratios=[1, bars], sharey="row")
