@@ -9,18 +9,18 @@ from lifelore.figures.prior_arrows import draw_prior
 from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, house_style, new_figure
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result: examples that its rows hold, then the spread of shares."""
     examples = [row for row in result["rows"] if "example" in row]
-    with house_style():
-        figure = new_figure(9.2, 2.9)
-        widths = [1.0] * len(examples) + [1.75]
-        panels = figure.subplots(1, len(widths), squeeze=False, gridspec_kw={"width_ratios": widths})[0]
-        for axes, row in zip(panels, examples, strict=False):
-            draw_prior(axes, row["shape"], row["cells"], row["probs"], row["counted"], negligible=0.0)
-            axes.set_anchor("N")
-            axes.set_title(f"{row['example']} of {4 * len(row['cells'])} actions useful")
-        _draw_shares(panels[-1], result)
+    figure = new_figure(9.2, 2.9)
+    widths = [1.0] * len(examples) + [1.75]
+    panels = figure.subplots(1, len(widths), squeeze=False, gridspec_kw={"width_ratios": widths})[0]
+    for axes, row in zip(panels, examples, strict=False):
+        draw_prior(axes, row["shape"], row["cells"], row["probs"], row["counted"], negligible=0.0)
+        axes.set_anchor("N")
+        axes.set_title(f"{row['example']} of {4 * len(row['cells'])} actions useful")
+    _draw_shares(panels[-1], result)
     return figure
 
 

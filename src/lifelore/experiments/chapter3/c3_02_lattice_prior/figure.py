@@ -16,19 +16,19 @@ LABELS = {
 """Label and style of a learner by its ties."""
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    with house_style():
-        figure = new_figure(10.4, 8.2)
-        upper, lower = two_rows(figure, (1.0, 0.92))
-        draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.26, ncols=4)
-        _draw_grids(lower, result)
-        lower.supxlabel(
-            f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
-            "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
-            "Bars and ratios: runs that never arrive count as the cap.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.2)
+    upper, lower = two_rows(figure, (1.0, 0.92))
+    draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.26, ncols=4)
+    _draw_grids(lower, result)
+    lower.supxlabel(
+        f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
+        "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
+        "Bars and ratios: runs that never arrive count as the cap.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 

@@ -22,20 +22,20 @@ PAIRS = (
 )
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    with house_style():
-        figure = new_figure(12.4, 10.2)
-        upper, lower = two_rows(figure, (0.95, 1.1))
-        draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.34, ncols=6)
-        _draw_grids(lower, result)
-        lower.supxlabel(
-            f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Dashed, pale: trained "
-            "where the other prior was. Columns: ε, and how ties are broken.\n"
-            "Bold: the interval excludes 0, or 1. Framed: the default. Bars and ratios: runs that never "
-            "arrive count as the cap.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(12.4, 10.2)
+    upper, lower = two_rows(figure, (0.95, 1.1))
+    draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.34, ncols=6)
+    _draw_grids(lower, result)
+    lower.supxlabel(
+        f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Dashed, pale: trained "
+        "where the other prior was. Columns: ε, and how ties are broken.\n"
+        "Bold: the interval excludes 0, or 1. Framed: the default. Bars and ratios: runs that never "
+        "arrive count as the cap.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 

@@ -24,30 +24,30 @@ from lifelore.figures.style import (
 )
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(11.6, 9.0)
-        upper, lower = two_rows(figure, (1.0, 0.98))
-        curves, raw, procured = upper.subplots(1, 3, width_ratios=[1.2, 0.95, 0.95])
-        masses, grid = lower.subplots(1, 2, width_ratios=[0.8, 1.5])
-        _draw_curves(curves, result)
-        drawn = next(row["drawn"] for row in result["rows"] if "drawn" in row)
-        for axes, name in ((raw, "raw"), (procured, "procured")):
-            draw_factory_prior(axes, factory(), drawn[name], drawn["components"])
-        raw.set_title("The learnt prior, nothing procured")
-        procured.set_title("… and all procured (grey: no counts)")
-        upper.legend(*curves.get_legend_handles_labels(), loc="outside upper left", ncols=4)
-        _draw_masses(masses, result)
-        cells = [row for row in result["rows"] if "loss_ratio" in row and row["prior"] != PLAIN]
-        draw_choice_grid(
-            grid, {**settings, "default": {**settings["default"], "prior": LEARNT}}, cells, "loss_ratio",
-            ("prior", "encoding", "alpha0"), lambda prior, code, alpha0: f"{code or prior}, α⁰ {alpha0:g}",
-            **{**RATIO, "spread": 8.0},
-        )  # fmt: skip
-        grid.set_title("Loss against optimal in the early episodes, as a ratio to Q-learning's")
-        lower.supxlabel(_caption(settings), fontsize=8, color=GREY)
+    figure = new_figure(11.6, 9.0)
+    upper, lower = two_rows(figure, (1.0, 0.98))
+    curves, raw, procured = upper.subplots(1, 3, width_ratios=[1.2, 0.95, 0.95])
+    masses, grid = lower.subplots(1, 2, width_ratios=[0.8, 1.5])
+    _draw_curves(curves, result)
+    drawn = next(row["drawn"] for row in result["rows"] if "drawn" in row)
+    for axes, name in ((raw, "raw"), (procured, "procured")):
+        draw_factory_prior(axes, factory(), drawn[name], drawn["components"])
+    raw.set_title("The learnt prior, nothing procured")
+    procured.set_title("… and all procured (grey: no counts)")
+    upper.legend(*curves.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    _draw_masses(masses, result)
+    cells = [row for row in result["rows"] if "loss_ratio" in row and row["prior"] != PLAIN]
+    draw_choice_grid(
+        grid, {**settings, "default": {**settings["default"], "prior": LEARNT}}, cells, "loss_ratio",
+        ("prior", "encoding", "alpha0"), lambda prior, code, alpha0: f"{code or prior}, α⁰ {alpha0:g}",
+        **{**RATIO, "spread": 8.0},
+    )  # fmt: skip
+    grid.set_title("Loss against optimal in the early episodes, as a ratio to Q-learning's")
+    lower.supxlabel(_caption(settings), fontsize=8, color=GREY)
     return figure
 
 

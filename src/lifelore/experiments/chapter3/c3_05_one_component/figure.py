@@ -11,22 +11,22 @@ from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, INK, Axes, Figure, colour_of, house_style, new_figure, width_of
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result of C3.5 or C3.6: a panel for each number of components, and the grid."""
     settings = result["settings"]
     numbers = settings["components"]
-    with house_style():
-        figure = new_figure(4.8 + 3.6 * len(numbers), 5.4)
-        *panels, grid = figure.subplots(1, len(numbers) + 1, width_ratios=[*([1.0] * len(numbers)), 1.15])
-        for axes, k in zip(panels, numbers, strict=True):
-            _draw_series(axes, result, k)
-        figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
-        draw_choice_grid(
-            grid, settings, [row for row in result["rows"] if "growth" in row], "many", ("encoding", "alpha0"),
-            "{}, α⁰ {:g}".format, neutral=0.0, spread=100.0, scale=100.0, words="{:.0f}".format,
-        )  # fmt: skip
-        grid.set_title("Gained of the possible gain (%)")
-        figure.supxlabel(_caption(settings), fontsize=8, color=GREY)
+    figure = new_figure(4.8 + 3.6 * len(numbers), 5.4)
+    *panels, grid = figure.subplots(1, len(numbers) + 1, width_ratios=[*([1.0] * len(numbers)), 1.15])
+    for axes, k in zip(panels, numbers, strict=True):
+        _draw_series(axes, result, k)
+    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    draw_choice_grid(
+        grid, settings, [row for row in result["rows"] if "growth" in row], "many", ("encoding", "alpha0"),
+        "{}, α⁰ {:g}".format, neutral=0.0, spread=100.0, scale=100.0, words="{:.0f}".format,
+    )  # fmt: skip
+    grid.set_title("Gained of the possible gain (%)")
+    figure.supxlabel(_caption(settings), fontsize=8, color=GREY)
     return figure
 
 

@@ -21,19 +21,19 @@ BANDED = ("uniform", "state", "phi3")
 """Methods whose deviation is shaded; six bands would hide one another."""
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(10.6, 8.4)
-        upper, lower = two_rows(figure, (1.0, 0.82))
-        draw_reward_curves(upper, result, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
-        _draw_grid(lower.subplots(), result)
-        lower.supxlabel(
-            f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
-            "runs, of three methods. Bold: the 95 % interval over runs excludes 0. Framed, at φ3: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.6, 8.4)
+    upper, lower = two_rows(figure, (1.0, 0.82))
+    draw_reward_curves(upper, result, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
+    _draw_grid(lower.subplots(), result)
+    lower.supxlabel(
+        f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
+        "runs, of three methods. Bold: the 95 % interval over runs excludes 0. Framed, at φ3: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 

@@ -14,30 +14,28 @@ OVER = {"all": "all states", "way": "states of an optimal way"}
 ACTIONS = {"tied": "all best actions", "first": "the first best action"}
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    with house_style():
-        figure = new_figure(10.2, 7.6)
-        upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
-        cells, at = result["rows"], place_of_default(result["rows"], result["settings"])
-        _draw_bars(upper, cells[at]["increase"])
-        _draw_grid(lower, cells, at)
-        for axes in (upper, lower):
-            axes.axvline(3.5, color=GREY, linewidth=0.8)
-        figure.supxlabel(
-            f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
-            "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.2, 7.6)
+    upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
+    cells, at = result["rows"], place_of_default(result["rows"], result["settings"])
+    _draw_bars(upper, cells[at]["increase"])
+    _draw_grid(lower, cells, at)
+    for axes in (upper, lower):
+        axes.axvline(3.5, color=GREY, linewidth=0.8)
+    figure.supxlabel(
+        f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
+        "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
 def _draw_bars(axes: Axes, increase: Mapping[str, Mapping]) -> None:
-    groups = {
-        phi.replace("phi", "φ"): [of_feature.get(name) for name in FEATURES]
-        for phi, of_feature in increase.items()
-    }
-    colours = {phi.replace("phi", "φ"): colour_of(phi) for phi in increase}
+    names = {phi: phi.replace("phi", "φ") for phi in increase}
+    groups = {names[phi]: [of_feature.get(name) for name in FEATURES] for phi, of_feature in increase.items()}
+    colours = {name: colour_of(phi) for phi, name in names.items()}
     draw_interval_bars(
         axes, FEATURES, groups, colours=colours, horizontal=False, words=None,
         title="Importance of each feature in the sets that contain it", label="Δ, bits lost without the feature",

@@ -10,33 +10,30 @@ from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import BLUE, GREY, PURPLE, Axes, Figure, house_style, new_figure, two_rows
 
-METHODS = {
-    "uniform": ("no prior", GREY),
-    "full": ("all ten features", PURPLE),
-    "selected": ("selected features", BLUE),
-}
+METHODS = {"uniform": ("no prior", GREY), "full": ("all ten features", PURPLE)}
+METHODS |= {"selected": ("selected features", BLUE)}
 """Label and colour by method."""
 DASHES = {"first": "-", "last": (0, (4, 2))}
 
 
+@house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(11.0, 6.8)
-        upper, lower = two_rows(figure, (1.0, 0.62))
-        panels = upper.subplots(1, len(settings["sources"]), squeeze=False, sharey=True)[0]
-        for axes, source in zip(panels, settings["sources"], strict=True):
-            _draw_source(axes, result, source)
-        panels[0].set_ylabel("reward of an episode, thousands")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
-        for axes, part in zip(lower.subplots(1, 2, sharey=True), DASHES, strict=True):
-            _draw_grid(axes, result, part)
-        lower.supxlabel(
-            f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
-            f"{settings['episodes']}. Means over the tasks after the first; framed: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(11.0, 6.8)
+    upper, lower = two_rows(figure, (1.0, 0.62))
+    panels = upper.subplots(1, len(settings["sources"]), squeeze=False, sharey=True)[0]
+    for axes, source in zip(panels, settings["sources"], strict=True):
+        _draw_source(axes, result, source)
+    panels[0].set_ylabel("reward of an episode, thousands")
+    upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
+    for axes, part in zip(lower.subplots(1, 2, sharey=True), DASHES, strict=True):
+        _draw_grid(axes, result, part)
+    lower.supxlabel(
+        f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
+        f"{settings['episodes']}. Means over the tasks after the first; framed: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 

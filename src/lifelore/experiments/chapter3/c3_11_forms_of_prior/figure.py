@@ -8,7 +8,7 @@ from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curv
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures import style
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import house_style, new_figure, two_rows
+from lifelore.figures.style import Figure, house_style, new_figure, two_rows
 
 COLOURS = {
     "uniform": style.GREY,
@@ -25,20 +25,20 @@ HEADS = ("dirichlet", "softmax\nof counts", "softmax\nof counts\na policy", "sof
 HEADS += ("softmax\nof 10 ×\nproportions",)
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Learning curves by schedule above, the grid of open choices below."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(11.6, 9.8)
-        upper, lower = two_rows(figure, (0.85, 1.0))
-        draw_reward_curves(upper, result, COLOURS, {}, banded=BANDED, dashed=("dirichlet",))
-        _draw_grids(lower.subplots(1, 2, sharey=True), result)
-        lower.supxlabel(
-            f"Shaded: one standard deviation across the {settings['test_tasks']} tasks of a run (mean over "
-            f"{settings['runs']} runs). Bold: the 95 % interval over runs excludes 0, or 1. Framed: the default, "
-            "the softmax as printed.",
-            fontsize=8, color=style.GREY,
-        )  # fmt: skip
+    figure = new_figure(11.6, 9.8)
+    upper, lower = two_rows(figure, (0.85, 1.0))
+    draw_reward_curves(upper, result, COLOURS, {}, banded=BANDED, dashed=("dirichlet",))
+    _draw_grids(lower.subplots(1, 2, sharey=True), result)
+    lower.supxlabel(
+        f"Shaded: one standard deviation across the {settings['test_tasks']} tasks of a run (mean over "
+        f"{settings['runs']} runs). Bold: the 95 % interval over runs excludes 0, or 1. Framed: the default, "
+        "the softmax as printed.",
+        fontsize=8, color=style.GREY,
+    )  # fmt: skip
     return figure
 
 

@@ -9,7 +9,7 @@ from lifelore.experiments.chapter3.advice.figures import ADVISORS, AGENTS, EXPLO
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, INK, LIGHT, Axes, house_style, new_figure, two_rows
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure, two_rows
 
 PRINTED = {
     "random": (50, 900),
@@ -22,27 +22,27 @@ PRINTED = {
 """Table 3.1: without and with advice."""
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Bars at the default above, the grid of loop densities and experts below."""
     settings = result["settings"]
     table = ResultsTable(result["rows"], ("loops", "experts", "way", "agent"))
-    with house_style():
-        figure = new_figure(10.4, 8.4)
-        upper, lower = two_rows(figure, (1, 1.05))
-        axes = upper.subplots()
-        _draw_bars(axes, table.select(**settings["default"]))
-        upper.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=5)
-        above, below = lower.subplots(2, 1, sharex=True)
-        _draw_grid(above, result, table, {"thesis": AGENTS}, 0.0, "Gain by the thesis's advisor")
-        above.set_xlabel("")
-        better = {"better": [*EXPLORERS, "optimal"], "uniform only": EXPLORERS}
-        title = "Reward with the better advisor (goal: 700), and where Uniform is its only other model (*)"
-        _draw_grid(below, result, table, better, 700.0, title)
-        lower.supxlabel(
-            f"{settings['mazes']} mazes × {settings['tasks']} tasks a cell. Thin lines: 95 % interval over mazes; "
-            "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.4)
+    upper, lower = two_rows(figure, (1, 1.05))
+    axes = upper.subplots()
+    _draw_bars(axes, table.select(**settings["default"]))
+    upper.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=5)
+    above, below = lower.subplots(2, 1, sharex=True)
+    _draw_grid(above, result, table, {"thesis": AGENTS}, 0.0, "Gain by the thesis's advisor")
+    above.set_xlabel("")
+    better = {"better": [*EXPLORERS, "optimal"], "uniform only": EXPLORERS}
+    title = "Reward with the better advisor (goal: 700), and where Uniform is its only other model (*)"
+    _draw_grid(below, result, table, better, 700.0, title)
+    lower.supxlabel(
+        f"{settings['mazes']} mazes × {settings['tasks']} tasks a cell. Thin lines: 95 % interval over mazes; "
+        "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 

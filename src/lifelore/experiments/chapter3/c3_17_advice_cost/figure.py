@@ -9,7 +9,7 @@ from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures import style
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import Axes, house_style, new_figure, two_rows
+from lifelore.figures.style import Axes, Figure, house_style, new_figure, two_rows
 
 FIXED = (*EXPLORERS, "optimal")
 EXPERT_COLOURS = {
@@ -20,29 +20,29 @@ EXPERT_COLOURS = {
 }
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Advice by κ, heeded and not; the ceiling; Q-learning; and the grid at one κ."""
     settings = result["settings"]
     default, keys = settings["default"], ("loops", "experts", "heeds", "agent")
     table = ResultsTable((row for row in result["rows"] if "mean" in row), keys)
-    with house_style():
-        figure = new_figure(10.4, 8.6)
-        upper, lower = two_rows(figure, (1.5, 1))
-        panels = upper.subplots(2, 2)
-        for axes, heeds in zip(panels[0], (True, False), strict=True):
-            _draw_amounts(axes, settings, table.select(**{**default, "heeds": heeds}))
-            axes.set_title("Agents who follow advice" if heeds else "Agents who are only watched")
-        panels[0, 0].set_ylabel("advised steps in 100")
-        upper.legend(*panels[0, 1].get_legend_handles_labels(), loc="outside upper left", ncols=5)
-        _draw_ceiling(panels[1, 0], result)
-        _draw_learning(panels[1, 1], settings, table.select(**default))
-        _draw_grid(lower.subplots(), result, table)
-        lower.supxlabel(
-            f"Bars: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} walks of at most "
-            f"{settings['max_steps']:,} steps. Curves: loops {default['loops']:g}, experts "
-            f"{default['experts']}. Framed: the default.",
-            fontsize=8, color=style.GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.6)
+    upper, lower = two_rows(figure, (1.5, 1))
+    panels = upper.subplots(2, 2)
+    for axes, heeds in zip(panels[0], (True, False), strict=True):
+        _draw_amounts(axes, settings, table.select(**{**default, "heeds": heeds}))
+        axes.set_title("Agents who follow advice" if heeds else "Agents who are only watched")
+    panels[0, 0].set_ylabel("advised steps in 100")
+    upper.legend(*panels[0, 1].get_legend_handles_labels(), loc="outside upper left", ncols=5)
+    _draw_ceiling(panels[1, 0], result)
+    _draw_learning(panels[1, 1], settings, table.select(**default))
+    _draw_grid(lower.subplots(), result, table)
+    lower.supxlabel(
+        f"Bars: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} walks of at most "
+        f"{settings['max_steps']:,} steps. Curves: loops {default['loops']:g}, experts "
+        f"{default['experts']}. Framed: the default.",
+        fontsize=8, color=style.GREY,
+    )  # fmt: skip
     return figure
 
 
