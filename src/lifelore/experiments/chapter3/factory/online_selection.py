@@ -1,12 +1,10 @@
 """Agents that go from one modified factory to the next and count each policy they end with, or the exact one.
 
-One keeps a prior over all ten features of φ4, the other chooses features anew after each task (Alg. 6); the cells
-of C3.9 and C3.10. What of a *learnt* policy may count the thesis does not say: ``tried``, the states where
-something was tried, and of their actions those that were tried; ``visited``, the same in states that promise a
-reward, a value above zero, alone; ``all``, the best and tied-best actions of every state, so all six of one never
-seen. Of an *exact* one: ``all`` states, or ``way``, those on an optimal way from the start.
-
-Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
+One agent has a prior over all ten features of φ4, the other chooses features anew after each task (Alg. 6). The
+thesis does not say which actions of a *learnt* policy count: ``tried``, those tried, in the states where any was;
+``visited``, the same in states alone that promise a reward, a value above zero; ``all``, the best and tied-best
+actions of every state, so all six of a state never seen. Of an *exact* policy ``all`` states count, or those on an
+optimal ``way`` from the start. Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
 """
 
 from typing import NamedTuple
