@@ -25,7 +25,7 @@ def shares(masks: np.ndarray) -> np.ndarray:
 
 def settled_after(masks: np.ndarray) -> list[int]:
     """Number of tasks of each run after which the set is φ2 to the end; n_tasks + 1 where it never is."""
-    return [1 + max(np.flatnonzero(run != GOAL) + 1, default=0) for run in masks]
+    return [1 + max((np.flatnonzero(run != GOAL) + 1).tolist(), default=0) for run in masks]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:

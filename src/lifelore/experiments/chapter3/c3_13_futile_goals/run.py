@@ -170,8 +170,12 @@ def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every constructed case, and some worlds of each kind with each number of tasks."""
-    ways = product(settings["kinds"], settings["found_tasks"], range(settings["worlds"]))
-    found = [found_case(way[0], settings, (seed, "C3.13", cell["run"], *way), way[1]) for way in ways]
+    names = (seed, "C3.13", cell["run"])
+    found = [
+        found_case(kind, settings, (*names, kind, n_tasks, i), n_tasks)
+        for kind, n_tasks in product(settings["kinds"], settings["found_tasks"])
+        for i in range(settings["worlds"])
+    ]
     cases = list(constructed_cases(settings, seed, cell["run"]))
     return {**cell, "constructed": cases, "found": [case for case in found if case]}
 

@@ -96,7 +96,8 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
                 row[form][key] = float(np.mean([t[key] for t in tasks]))
         found.append(row)
     keys = ("explored_collisions", "explored_reached", "to_80", "first_ten", "regret", "collisions")
-    for kind, schedule, way in product(settings["kinds"], settings["schedules"], ((WHOLE, ""), *WITHIN)):
+    ways: list[tuple[str, str]] = [(WHOLE, ""), *WITHIN]
+    for (kind, schedule), way in product(product(settings["kinds"], settings["schedules"]), ways):
         about = {"form": way[0], "dead_ends": way[1], "schedule": schedule}
         of_way = learning.select(kind=kind, **about)
         row = {"learnt_in": kind, **about, **{key: of_way.mean(key).to_dict() for key in keys}}
