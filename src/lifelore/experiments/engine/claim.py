@@ -2,8 +2,8 @@
 
 - ``claim.toml``: title, what the thesis reports, settings with their limits, and the conditions and rules of the
   verdict.
-- ``run.py``: ``cells(settings)`` lists the cells of a run, ``run_cell(settings, cell, seed)`` computes one of
-  them. Cells are independent plain dictionaries, run in any order on any thread.
+- ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
+  seed)`` computes one of them. Cells are independent plain dictionaries, run in any order on any thread.
 - ``measure.py``: ``measure(settings, results)`` gives named estimates, ``rows(settings, results)`` compact rows.
 - ``figure.py``: ``draw(result)`` draws the finished result; it runs nothing again.
 
@@ -119,7 +119,7 @@ class Claim:
             predicate=Predicate.from_data(data),
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
-            cells=run.cells,
+            cells=getattr(run, "cells", each_run),
             run_cell=run.run_cell,
             check=getattr(run, "check", None),
             measure=measure.measure,
@@ -157,6 +157,11 @@ class Claim:
         if self.check:
             self.check(settings)
         return settings
+
+
+def each_run(settings: Settings) -> list[dict]:
+    """The cells of a claim whose module `run` lists none: ``{"run": number}`` for each of its ``runs``."""
+    return [{"run": number} for number in range(settings["runs"])]
 
 
 def _as_type_of(default: Any, value: Any, label: str) -> Any:

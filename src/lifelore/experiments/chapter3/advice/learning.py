@@ -1,4 +1,4 @@
-"""Q-learning on an errand of a maze, with advice in its ε branch and without, for claims C3.15 to C3.17.
+"""Q-learning on the errands of a maze, with advice in its ε branch and without, for claims C3.15 to C3.17.
 
 Episodes have at most 200 steps, so that a goal far away is seldom met by chance. Thesis: §3.7.2.2, Alg. 2.
 """
@@ -13,7 +13,7 @@ from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import QLearner, uniform_rows
 from lifelore.core.mdp import Tables
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.advice_mazes import Errand, Maze
+from lifelore.experiments.chapter3.advice.mazes import Errand, Maze, errands_of
 
 
 def errand_tables(maze: Maze, found: Errand, number: int, starts: str) -> Tables:
@@ -34,15 +34,16 @@ def learn_errand(
     episodes: int | None = None,
 ) -> tuple[QLearner, Curve]:
     """One task learnt; `advice` (n_states, 4) is what its ε branch follows, uniform by default."""
-    first, decay, floor = schedule
-    learning = QLearning(
-        episodes or settings["episodes"],
-        settings["max_episode_steps"],
-        settings["learning_rate"],
-        first,
-        decay,
-        floor,
-    )
+    n_episodes = episodes or settings["episodes"]
+    learning = QLearning(n_episodes, settings["max_episode_steps"], settings["learning_rate"], *schedule)
     world, own = (stream(*maze.names, "learner", number, of) for of in ("world", "own"))
     rows = uniform_rows(tables, advice)
     return learning.learn(tables, maze.world.discount, world=world, own=own, rows=rows)
+
+
+def learn_errands(settings: Mapping, maze: Maze, starts: str, *how) -> list[tuple[QLearner, Curve]]:
+    """All ``tasks`` of a maze learnt; `how` goes on to `learn_errand`."""
+    return [
+        learn_errand(settings, maze, errand_tables(maze, found, number, starts), number, *how)
+        for number, found in enumerate(errands_of(maze, settings["tasks"]))
+    ]

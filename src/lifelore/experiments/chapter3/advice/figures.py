@@ -1,16 +1,13 @@
 """Names and colours of agents and advisors, and the grid of mazes and experts, in the figures on advice."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from numpy.typing import ArrayLike
 
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, Axes
 
 EXPLORERS = {
     "random": "random motion",
@@ -30,7 +27,7 @@ ADVISOR_COLOURS = {"none": GREY, "thesis": VERMILION, "better": BLUE, "uniform o
 
 
 def draw_maze_grid(
-    axes: "Axes",
+    axes: Axes,
     result: Mapping,
     values: ArrayLike,
     certain: ArrayLike,

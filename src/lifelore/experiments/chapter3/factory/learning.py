@@ -118,8 +118,8 @@ def optimal_way(tables: Tables, preference: NDArray) -> tuple[NDArray[np.int64],
 def exact_prior(known: Iterable[Solved], encoding: str, alpha0: float) -> ActionPrior:
     """The prior over states from exact optimal policies, tied actions counted (Eq. 3.1, 3.5)."""
     prior = ActionPrior(N_ACTIONS, alpha0)
-    for one in known:
-        prior.update(state_contexts(one.task, encoding), one.best)
+    for task in known:
+        prior.update(state_contexts(task.task, encoding), task.best)
     return prior
 
 
@@ -138,14 +138,15 @@ def with_pseudo_count(prior: ActionPrior, alpha0: float) -> ActionPrior:
     return ActionPrior.from_fixed_point_counts(*prior.fixed_point_counts(), alpha0, prior.key)
 
 
-def learnt_rows(problem: Problem, prior: ActionPrior, encoding: str, ties: str) -> Rows:
-    """ε-QSAP's rows (Alg. 2) with a prior whose contexts are of `encoding`."""
-    return prior_rows(problem.tables, state_contexts(problem.solved.task, encoding), prior.probs, ties)
+def contexts_of(problem: Problem, encoding: str | None) -> NDArray[np.int64]:
+    """Codes of all states, (n_states,): by an encoding, or the task's own states for a hand-made prior (None)."""
+    known = problem.solved
+    return np.arange(len(known.best)) if encoding is None else state_contexts(known.task, encoding)
 
 
-def hand_made_rows(problem: Problem, prior: ActionPrior, ties: str) -> Rows:
-    """ε-QSAP's rows with a prior over this task's own states."""
-    return prior_rows(problem.tables, np.arange(problem.tables.n_states), prior.probs, ties)
+def rows_of(problem: Problem, prior: ActionPrior, encoding: str | None, ties: str) -> Rows:
+    """ε-QSAP's rows (Alg. 2) with a prior whose contexts are `contexts_of`."""
+    return prior_rows(problem.tables, contexts_of(problem, encoding), prior.probs, ties)
 
 
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:

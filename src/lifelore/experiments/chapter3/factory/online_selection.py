@@ -1,12 +1,10 @@
 """Agents that go from one modified factory to the next and count each policy they end with, or the exact one.
 
-One keeps a prior over all ten features of φ4, the other chooses features anew after each task (Alg. 6); the cells
-of C3.9 and C3.10. What of a *learnt* policy may count the thesis does not say: ``tried``, the states where
-something was tried, and of their actions those that were tried; ``visited``, the same in states that promise a
-reward, a value above zero, alone; ``all``, the best and tied-best actions of every state, so all six of one never
-seen. Of an *exact* one: ``all`` states, or ``way``, those on an optimal way from the start.
-
-Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
+One agent has a prior over all ten features of φ4, the other chooses features anew after each task (Alg. 6). The
+thesis does not say which actions of a *learnt* policy count: ``tried``, those tried, in the states where any was;
+``visited``, the same in states alone that promise a reward, a value above zero; ``all``, the best and tied-best
+actions of every state, so all six of a state never seen. Of an *exact* policy ``all`` states count, or those on an
+optimal ``way`` from the start. Thesis: §3.3.3, Alg. 6, §3.4.6, Figures 3.13 and 3.14.
 """
 
 from typing import NamedTuple
@@ -16,19 +14,13 @@ from numpy.typing import NDArray
 
 from lifelore.action.features.feature_selection import OnlineFeatureSelection
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.exploration import prior_rows
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
 from lifelore.domains.factory.factory import ACTION_NAMES
-from lifelore.experiments.chapter3.modified_factory_tasks import (
-    FULL_SET,
-    N_ACTIONS,
-    Problem,
-    contexts_of,
-    learn_problem,
-)
+from lifelore.experiments.chapter3.factory import modified_tasks
+from lifelore.experiments.chapter3.factory.modified_tasks import FULL_SET, N_ACTIONS, Problem
 
 UNIFORM, FULL, SELECTED = "uniform", "full", "selected"
 SOURCES = ("learnt", "exact")
@@ -59,9 +51,8 @@ def counted(problem: Problem, learner: QLearner | None, how: Counting) -> NDArra
         return actions_to_count(q, over, ended=ended, visits=learner.visits)
     if how.over == "all":
         return problem.best
-    kept = np.zeros_like(problem.best)
-    kept[problem.way] = problem.best[problem.way]
-    return kept
+    on_way = np.isin(np.arange(len(problem.best)), problem.way)
+    return problem.best & on_way[:, None]
 
 
 class OnlineAgent:
@@ -84,17 +75,17 @@ class OnlineAgent:
     def rows(self, problem: Problem) -> Rows:
         """ε-QPAP's rows with the prior so far (Alg. 4)."""
         probs = (self.selection or self._full).probs
-        return prior_rows(problem.tables, contexts_of(problem, "phi4"), probs, self.ties)
+        return modified_tasks.rows_of(problem, "phi4", probs, self.ties)
 
     def learn(self, problem: Problem, schedule: Schedule, *, explores: bool = True) -> Curve:
         """Learn a task, exploring by the prior or uniformly, and count its policy."""
-        curve, learner = learn_problem(problem, self.rows(problem) if explores else None, schedule)
+        curve, learner = modified_tasks.learn_problem(problem, self.rows(problem) if explores else None, schedule)
         self.count(problem, learner)
         return curve
 
     def count(self, problem: Problem, learner: QLearner | None) -> None:
         """Count a policy; an exact one needs no learner."""
-        codes, best = contexts_of(problem, "phi4"), counted(problem, learner, self.counting)
+        codes, best = modified_tasks.contexts_of(problem, "phi4"), counted(problem, learner, self.counting)
         (self.selection or self._full).update(codes, best)
 
     @property

@@ -24,6 +24,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze, errand, maze_goals
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.experiments.engine.estimates import exact_value
 
 EXPERTS = ("walks", "few walks", "trips", "policies")
 """Walks to each goal from anywhere, few of them, walks from other goals; or the best actions of every state."""
@@ -89,19 +90,16 @@ def errands_of(maze: Maze, n: int) -> list[Errand]:
 
 def goal_models_of(settings: Mapping, maze: Maze, experts: str) -> list[GoalModel]:
     """The goal models of experts of a kind, one for each goal."""
-    return [_goal_model(settings, maze, goal, experts) for goal in maze.errands]
-
-
-def _goal_model(settings: Mapping, maze: Maze, goal: int, experts: str) -> GoalModel:
-    found = maze.errands[goal]
     if experts == "policies":
-        return GoalModel.from_best_actions(found.best, [goal], found.steps)
-    random = stream(*maze.names, "experts", experts, goal)
-    others = np.array([g for g in maze.errands if g != goal])
-    starts = others if experts == "trips" else found.tables.starts
-    n = settings["few_walks" if experts == "few walks" else "expert_walks"]
-    walks = [expert_walk(maze.world, found, int(start), random) for start in random.choice(starts, n)]
-    return GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal])
+        return [GoalModel.from_best_actions(e.best, [e.goal], e.steps) for e in maze.errands.values()]
+    n, models = settings["few_walks" if experts == "few walks" else "expert_walks"], []
+    for goal, found in maze.errands.items():
+        random = stream(*maze.names, "experts", experts, goal)
+        others = np.array([other for other in maze.errands if other != goal])
+        starts = others if experts == "trips" else found.tables.starts
+        walks = [expert_walk(maze.world, found, int(start), random) for start in random.choice(starts, n)]
+        models.append(GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal]))
+    return models
 
 
 def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.Generator) -> Trajectory:
@@ -142,6 +140,26 @@ def walk(
     return advised_walk(found.tables, policy, advisor, random, max_steps, follows_advice=heeds)
 
 
+def policies_of(settings: Mapping, maze: Maze, agent: str) -> list[NDArray[np.float64]]:
+    """The action probabilities of one of `AGENTS` on each errand of a maze."""
+    return [policy_of(maze.world, agent, found) for found in errands_of(maze, settings["tasks"])]
+
+
+def walks_of(
+    settings: Mapping,
+    maze: Maze,
+    policies: Sequence[NDArray[np.float64]],
+    advisor: Advisor | Mapping[int, Advisor],
+    heeds: bool = True,
+) -> list[Walk]:
+    """An agent's walks on all errands, with a policy for each; `advisor` is the same for all, or by goal."""
+    walks = []
+    for number, found in enumerate(errands_of(maze, settings["tasks"])):
+        own = advisor[found.goal] if isinstance(advisor, Mapping) else advisor
+        walks.append(walk(maze, found, policies[number], own, number, settings["max_steps"], heeds))
+    return walks
+
+
 def maze_estimate(values: ArrayLike) -> Estimate:
     """Mean over mazes; the interval of three or more equal values is the value itself."""
     values = np.round(np.asarray(values, float), ROUNDING)
@@ -151,11 +169,6 @@ def maze_estimate(values: ArrayLike) -> Estimate:
     return found
 
 
-def without_interval(value: float, n: int) -> Estimate:
-    """A count, a share of a grid or the least of several means."""
-    return Estimate(float(value), float(value), None, n)
-
-
 def grid_share(answers: Sequence[bool]) -> Estimate:
     """Share of true answers among the cells of a grid."""
-    return without_interval(float(np.mean(answers)), len(answers))
+    return exact_value(float(np.mean(answers)), len(answers))
