@@ -20,7 +20,7 @@ from lifelore.experiments.chapter2.c2_05_discarded_points.run import (
     run_cell,
     strong_places,
 )
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
 
 
 def row_of_points() -> LabelledCloud:

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
-from lifelore.experiments.chapter2 import pair_validation
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scoring import pair_validation
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     Reading,
     Votes,
     as_scene,
@@ -19,7 +20,6 @@ from lifelore.experiments.chapter2.pair_validation import (
     votes_of_neighbours,
     votes_on,
 )
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
 from lifelore.perception.pairs.pair_features import column_names
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation import Relation

@@ -6,7 +6,7 @@ from scipy.stats import binomtest
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.relation_scoring import (
+from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
     judged_scene,

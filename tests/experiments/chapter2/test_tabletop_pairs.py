@@ -8,8 +8,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments.chapter2 import tabletop_pairs
-from lifelore.experiments.chapter2.tabletop_pairs import (
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import (
     BESIDE_US,
     KERNELS,
     LOT,

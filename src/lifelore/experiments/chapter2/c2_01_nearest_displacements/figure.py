@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from lifelore.core.relations import CORE_RELATIONS
-from lifelore.experiments.chapter2.method_panels import draw_method_panels
+from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
 from lifelore.figures.style import BLUE, GREY, INK, PAPER, VERMILION, house_style, new_figure
 
 if TYPE_CHECKING:

@@ -9,7 +9,8 @@ import numpy as np
 from lifelore.core.metrics import RESAMPLES, Estimate
 from lifelore.core.relations import BOTH, CORE_RELATIONS, ON, SYMMETRIC
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import BESIDE_US, KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     DROPS,
     WEIGHTS,
     Reading,
@@ -19,8 +20,7 @@ from lifelore.experiments.chapter2.pair_validation import (
     in_given_order,
     votes_of_neighbours,
 )
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, less_rate, score, score_row, share
-from lifelore.experiments.chapter2.tabletop_pairs import BESIDE_US, KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, less_rate, score, score_row, share
 from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier

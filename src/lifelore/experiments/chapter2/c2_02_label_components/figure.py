@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.method_panels import per_cent
+from lifelore.experiments.chapter2.scoring.method_panels import per_cent
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, PAPER, SKY, VERMILION, house_style, new_figure
 

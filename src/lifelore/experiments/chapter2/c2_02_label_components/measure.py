@@ -8,9 +8,9 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import Reading, Votes, displacements, votes_on
-from lifelore.experiments.chapter2.relation_scoring import BESIDE, CARRIED
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, Votes, displacements, votes_on
+from lifelore.experiments.chapter2.scoring.relation_scoring import BESIDE, CARRIED
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
 COMPONENTS = {"on": CARRIED, "adjacent": BESIDE}

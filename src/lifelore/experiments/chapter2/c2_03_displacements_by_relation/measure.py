@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import DROPS, as_scene, displacements
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, as_scene, displacements
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
 from lifelore.experiments.engine.estimates import UNMEASURED
 
 EDGE = 0.2

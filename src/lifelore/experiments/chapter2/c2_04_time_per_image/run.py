@@ -18,8 +18,8 @@ from threadpoolctl import threadpool_limits
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
-from lifelore.experiments.chapter2.tabletop_pairs import MIX
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import MIX
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
 

@@ -7,7 +7,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
 from lifelore.experiments.chapter2.c2_05_discarded_points.run import DISCARDED, WHOLE, key_of
-from lifelore.experiments.chapter2.relation_scoring import (
+from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
     judged_scene,

@@ -19,12 +19,17 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
-from lifelore.experiments.chapter2.tabletop_pairs import without_table
+from lifelore.experiments.chapter2.scenes.perturbation import (
+    fewer_points,
+    grown_masks,
+    noisier_depth,
+    swapped_border,
+)
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import without_table
+from lifelore.experiments.chapter2.scoring.network_stability import contact_nodes, stability
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.contacts.contact_points import contact_clusters
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping
 
-from lifelore.experiments.chapter2.scene_example import draw_examples
+from lifelore.experiments.chapter2.scenes.scene_example import draw_examples
 
 
 def draw(result: Mapping):

@@ -13,10 +13,10 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene
-from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_06_same_hole.passage import passages
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.holes import Hole, contact_loops, find_holes

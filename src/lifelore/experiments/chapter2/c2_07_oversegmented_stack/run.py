@@ -13,11 +13,11 @@ import numpy as np
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ON
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.perturbation import cut_object
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import (
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.perturbation import cut_object
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import (
     NEAR,
     RELATED,
     Three,

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.scene_example import examples_of
+from lifelore.experiments.chapter2.scenes.scene_example import examples_of
 from lifelore.figures.gallery import gallery_above
 from lifelore.figures.stacked_bars import draw_stacked_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, ORANGE, PURPLE, VERMILION, house_style

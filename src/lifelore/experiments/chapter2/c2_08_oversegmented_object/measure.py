@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_08_oversegmented_object.run import TRUE
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import ResultsTable, tally
 

@@ -17,10 +17,10 @@ from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.tabletop import TabletopScene, sample_scene
-from lifelore.experiments.chapter2.perturbation import cut_object
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import perceived, reading
+from lifelore.experiments.chapter2.scenes.perturbation import cut_object
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import perceived, reading
 from lifelore.perception.peers.bounding_box_rule import BoundingBoxRule
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene

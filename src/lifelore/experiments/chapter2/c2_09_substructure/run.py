@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import RELATED, SUPPORT, perceived, reading, real_stacks
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import RELATED, SUPPORT, perceived, reading, real_stacks
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.substructure import find_substructure
 

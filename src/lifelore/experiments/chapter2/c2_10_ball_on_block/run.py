@@ -6,10 +6,10 @@ from dataclasses import replace
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ON
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import (
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import (
     NEAR,
     carried_pairs,
     only,

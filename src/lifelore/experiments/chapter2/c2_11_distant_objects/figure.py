@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.tabletop_pairs import kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import kernel_name
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREEN, LIGHT, ORANGE, VERMILION, house_style, new_figure
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter2.c2_11_distant_objects.run import FAR, kernels
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, kernel_name
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 

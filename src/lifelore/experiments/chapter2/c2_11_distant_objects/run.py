@@ -18,9 +18,9 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS

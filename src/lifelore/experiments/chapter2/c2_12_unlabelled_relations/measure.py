@@ -22,8 +22,8 @@ from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters 
     rand_index_by_scene,
     sighted,
 )
-from lifelore.experiments.chapter2.pair_validation import DROPS, Reading
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, Reading
 from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.experiments.engine.results_table import computed_once
 

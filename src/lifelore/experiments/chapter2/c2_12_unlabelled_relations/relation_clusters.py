@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import Reading, as_scene, displacements
-from lifelore.experiments.chapter2.tabletop_pairs import Row
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import Row
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, as_scene, displacements
 from lifelore.perception.pairs.pair_features import PairFeatures
 from lifelore.perception.relations.discovery import DISPLACEMENT, discover, discover_by_displacement, upright_rows
 from lifelore.perception.relations.x_means import x_means

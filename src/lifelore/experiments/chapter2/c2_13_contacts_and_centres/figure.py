@@ -4,10 +4,10 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import CENTRES, CONTACTS, OURS
-from lifelore.experiments.chapter2.method_panels import draw_method_panels
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.scene_example import examples_of
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scenes.scene_example import examples_of
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.figures.gallery import gallery_above
 from lifelore.figures.object_palette import mixed
 from lifelore.figures.stacked_bars import draw_stacked_bars

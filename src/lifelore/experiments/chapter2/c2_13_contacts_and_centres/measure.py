@@ -9,7 +9,8 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ON, SYMMETRIC
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import LESSON, NODES, SCENE
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     THRESHOLD,
     Reading,
     as_scene,
@@ -19,8 +20,7 @@ from lifelore.experiments.chapter2.pair_validation import (
     votes_of_neighbours,
     votes_on,
 )
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference
 from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier

@@ -8,11 +8,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings
-from lifelore.experiments.chapter2 import tabletop_pairs
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.tabletop_pairs import (
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import (
     STANDARD,
     Row,
     contacts_of,
@@ -20,6 +19,7 @@ from lifelore.experiments.chapter2.tabletop_pairs import (
     pair_rows,
     without_table,
 )
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces
 from lifelore.perception.scene import Scene
 

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes, wilson
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes, wilson
 from lifelore.experiments.chapter5.c5_01_more_relations.run import COMPOUND, HELD_OUT, KINDS, LESSON, labels_of
 from lifelore.experiments.chapter5.c5_01_more_relations.view_words import USER_WORD, VIEW_WORDS, WORDS
 from lifelore.experiments.engine.estimates import UNMEASURED

@@ -21,9 +21,9 @@ from lifelore.domains.tabletop.physics import Tabletop
 from lifelore.domains.tabletop.pose import Pose, about
 from lifelore.domains.tabletop.shapes import ball, box, cup
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.arranged_scenes import Placement, arranged, settled, turned
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
-from lifelore.experiments.chapter2.tabletop_pairs import without_table
+from lifelore.experiments.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import without_table
 from lifelore.experiments.chapter5.c5_01_more_relations.view_words import Points, is_between, is_in, said_of_pair
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import pair_features

@@ -17,9 +17,9 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import Shape, box, cross, cylinder, paddle, prism
-from lifelore.experiments.chapter2.arranged_scenes import Placement, settled, turned
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import NEAR, perceived, reading
+from lifelore.experiments.chapter2.scenes.arranged_scenes import Placement, settled, turned
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import NEAR, perceived, reading
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.functional_similarity import role, shape_distribution
 

@@ -17,7 +17,7 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.pairs.pair_features import pair_features

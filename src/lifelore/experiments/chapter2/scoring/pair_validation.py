@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments.chapter2.relation_scoring import BESIDE, CARRIED, JudgedPair
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, Row
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, Row
+from lifelore.experiments.chapter2.scoring.relation_scoring import BESIDE, CARRIED, JudgedPair
 from lifelore.perception.pairs.pair_features import PairFeatures, column_names
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.peers.peer import DescribedPair

@@ -15,7 +15,7 @@ import numpy as np
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
-from lifelore.experiments.chapter2.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations import relation_model_file
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
