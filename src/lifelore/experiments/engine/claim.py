@@ -7,6 +7,8 @@
 - ``measure.py``: ``measure(settings, results)`` gives named estimates, ``rows(settings, results)`` compact rows.
 - ``figure.py``: ``draw(result)`` draws the finished result; it runs nothing again.
 
+A small claim may leave out one or two of the modules; their functions then stand in a module that is there.
+
 Results of cells are plain data (what JSON can hold), so that a stored cell equals a fresh one.
 """
 
@@ -27,6 +29,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODES = ("quick", "full")
+MODULES = ("run", "measure", "figure")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
 OPTIONAL = {"limits", "named", "timed"}
 """Keys of ``claim.toml``."""
@@ -106,7 +109,11 @@ class Claim:
                 f"missing {', '.join(sorted(missing)) or 'none'}, unknown {', '.join(sorted(unknown)) or 'none'}"
             )
             raise InputError(f"{path} must have the keys of a claim; {keys}")
-        run, measure, figure = (import_module(f"{package}.{name}") for name in ("run", "measure", "figure"))
+        modules = [import_module(f"{package}.{name}") for name in MODULES if (folder / f"{name}.py").is_file()]
+
+        def function(name: str) -> Any:
+            return next((getattr(module, name) for module in modules if hasattr(module, name)), None)
+
         full = data["settings"]["full"]
         return cls(
             id=claim_id,
@@ -119,12 +126,12 @@ class Claim:
             predicate=Predicate.from_data(data),
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
-            cells=run.cells,
-            run_cell=run.run_cell,
-            check=getattr(run, "check", None),
-            measure=measure.measure,
-            rows=measure.rows,
-            draw=figure.draw,
+            cells=function("cells"),
+            run_cell=function("run_cell"),
+            check=function("check"),
+            measure=function("measure"),
+            rows=function("rows"),
+            draw=function("draw"),
             timed=data.get("timed", False),
         )
 
