@@ -30,6 +30,7 @@ if TYPE_CHECKING:
 
 MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
+FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
 OPTIONAL = {"limits", "named", "timed"}
 """Keys of ``claim.toml``."""
@@ -96,7 +97,7 @@ class Claim:
         Raises
         ------
         InputError
-            ``claim.toml`` is no TOML, or a key of it is missing or unknown.
+            ``claim.toml`` is no TOML, a key of it is missing or unknown, or a function is missing.
         """
         path = folder / "claim.toml"
         try:
@@ -110,10 +111,12 @@ class Claim:
             )
             raise InputError(f"{path} must have the keys of a claim; {keys}")
         modules = [import_module(f"{package}.{name}") for name in MODULES if (folder / f"{name}.py").is_file()]
-
-        def function(name: str) -> Any:
-            return next((getattr(module, name) for module in modules if hasattr(module, name)), None)
-
+        found = {name: [vars(m)[name] for m in modules if name in vars(m)] for name in (*FUNCTIONS, "check")}
+        absent = [name for name in FUNCTIONS if not found[name]]
+        if absent:
+            raise InputError(
+                f"modules of {folder} must define {', '.join(FUNCTIONS)}; missing {', '.join(absent)}"
+            )
         full = data["settings"]["full"]
         return cls(
             id=claim_id,
@@ -126,13 +129,8 @@ class Claim:
             predicate=Predicate.from_data(data),
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
-            cells=function("cells"),
-            run_cell=function("run_cell"),
-            check=function("check"),
-            measure=function("measure"),
-            rows=function("rows"),
-            draw=function("draw"),
             timed=data.get("timed", False),
+            **{name: functions[0] for name, functions in found.items() if functions},
         )
 
     def read_measures(self) -> set[str]:

@@ -1,7 +1,6 @@
 """Mean average precision of each role by method, with pictures of a few scenes."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,11 +10,8 @@ from lifelore.figures.gallery import gallery_above
 from lifelore.figures.object_palette import method_palette
 from lifelore.figures.style import INK, LIGHT, house_style
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     table = [row for row in result["rows"] if "role" in row]
     palette = method_palette(METHODS.values())
     figure, below = gallery_above(examples_of(result), 3.0, layers=("cloud", "networks"))
