@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
 
 Cloud = NDArray[np.float64]
 

@@ -17,8 +17,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.experiments.bench.rounds import at_most, row
-from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.relations.relation_classifier import shipped_model
 
 THINGS, POINTS = 15, 100_000

@@ -16,7 +16,7 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.protocols import Progress
 from lifelore.core.relations import NONE, SYMMETRIC, PairLabel
 from lifelore.experiments.bench.rounds import at_most, row
-from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.real_scenes import RealScene, real_scenes, real_scenes_folder
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation import Relation

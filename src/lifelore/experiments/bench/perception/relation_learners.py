@@ -6,7 +6,7 @@ from typing import Any
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, judged_scene
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, judged_scene
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.peers import PEERS
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene

@@ -10,9 +10,14 @@ from lifelore.core.relations import PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene
 from lifelore.experiments.bench.perception.relation_learners import CONTACTS, SeenScene, seen_scene
-from lifelore.experiments.chapter2.network_stability import Stability, contact_nodes, stability
-from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
-from lifelore.experiments.chapter2.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.perturbation import (
+    fewer_points,
+    grown_masks,
+    noisier_depth,
+    swapped_border,
+)
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scoring.network_stability import Stability, contact_nodes, stability
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.scene_pairs import scene_pairs
 

@@ -36,8 +36,8 @@ from lifelore.experiments.bench.perception.relation_scenes import (
     spoilt_simulated,
 )
 from lifelore.experiments.bench.rounds import at_least, at_most, row
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference, score, share
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference, score, share
 from lifelore.perception.relations.relation_classifier import shipped_model
 
 LEARNT_SCENES, JUDGED_SCENES = 60, 40

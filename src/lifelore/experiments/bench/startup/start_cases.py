@@ -7,7 +7,7 @@ from lifelore.agent.reuse.fit import FitSettings, fit
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
 from lifelore.memory import open_memory
 
 REAL = ("learn22", "test47", "test49", "test45")

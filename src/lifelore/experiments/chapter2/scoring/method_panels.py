@@ -1,42 +1,29 @@
 """Bars of several methods with their intervals, a panel for each set of scenes."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.object_palette import method_palette
 from lifelore.figures.style import LIGHT
 
-if TYPE_CHECKING:
-    from matplotlib.figure import FigureBase
-
 
 def draw_method_panels(
-    figure: "FigureBase", panels: Mapping[str, Mapping[str, Mapping]], label: str = "pairs classified exactly (%)"
+    figure, panels: Mapping[str, Mapping[str, Mapping]], label: str = "pairs classified exactly (%)"
 ) -> None:
     """Draw the panels side by side into a figure or a part of a figure, within the house style.
 
-    Parameters
-    ----------
-    figure : matplotlib figure
-    panels : mapping
-        Title → method → ``{"value", "ci95", "n"}``, a share in [0, 1]; methods in the order of the first panel.
-    label : str
-        Of the axis of values.
+    `panels`: title → method → ``{"value", "ci95", "n"}``, a share in [0, 1]; methods in the order of the first
+    panel. `label` is that of the axis of values.
     """
     names = list(dict.fromkeys(name for panel in panels.values() for name in panel))
     palette = method_palette(names)
     every = figure.subplots(1, len(panels), squeeze=False, sharey=True)[0]
     for axes, (title, panel) in zip(every, panels.items(), strict=True):
         sizes = {number["n"] for number in panel.values()}
+        shares, colours = [per_cent(panel.get(name)) for name in names], [palette[name] for name in names]
+        words = f"{title} ({sizes.pop():,} pairs)" if len(sizes) == 1 else title
         draw_interval_bars(
-            axes,
-            names,
-            {title: [per_cent(panel.get(name)) for name in names]},
-            colours=[palette[name] for name in names],
-            words="{:.1f}".format,
-            title=f"{title} ({sizes.pop():,} pairs)" if len(sizes) == 1 else title,
-            label=label,
+            axes, names, {title: shares}, colours=colours, words="{:.1f}".format, title=words, label=label
         )
         axes.set(xlim=(0, 112), xticks=range(0, 101, 20))
         axes.grid(axis="x", color=LIGHT)

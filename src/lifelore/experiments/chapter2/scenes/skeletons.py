@@ -11,24 +11,19 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
-from lifelore.experiments.chapter2.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.perturbation import only
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations import relation_model_file
-from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
+from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 
 NEAR = (ON, BOTH, ADJACENT, NONE)
 RELATED = (ON, BOTH, ADJACENT)
 SUPPORT = (ON, BOTH)
-
-
-@cache
-def _model() -> RelationClassifier:
-    return shipped_model()
+_model = cache(shipped_model)
 
 
 @cache
@@ -45,32 +40,19 @@ def perceived(cloud: LabelledCloud) -> Scene:
 
 
 def reading(scene: Scene, words: Collection[str] = RELATED, *, ground: bool = False) -> Scene:
-    """The same scene with only the contacts of pairs whose predicate is among `words`.
+    """The same scene with only the contacts of pairs whose predicate is among `words`, such as `RELATED`.
 
-    Parameters
-    ----------
-    scene : Scene
-    words : collection of str
-        `NEAR`, `RELATED`, `SUPPORT`, or any other predicates.
-    ground : bool
-        Whether the table's contacts take part.
+    The table's contacts take part only where `ground` is set.
     """
     relation = {frozenset((r.a, r.b)): r.relation for r in scene.relations}
 
     def kept(a: int, b: int) -> bool:
         return (ground or TABLE not in (a, b)) and relation.get(frozenset((a, b)), NONE) in words
 
-    contacts = tuple(one for one in scene.interfaces if kept(one.a, one.b))
+    contacts = tuple(pair for pair in scene.interfaces if kept(pair.a, pair.b))
     # A reader may leave out pairs whose relation is none, so a skeleton of all near pairs has no relations.
     relations = () if NONE in words else tuple(r for r in scene.relations if kept(r.a, r.b))
     return Scene(scene.cloud, contacts, relations)
-
-
-def only(cloud: LabelledCloud, objects: Collection[int]) -> LabelledCloud:
-    """The cloud of some objects and the table."""
-    kept = np.isin(cloud.labels, [TABLE, *objects])
-    colours = None if cloud.colours is None else cloud.colours[kept]
-    return LabelledCloud(cloud.points[kept], cloud.labels[kept], colours, cloud.camera)
 
 
 def predicates(scene: Scene) -> set[tuple[str, int, int]]:

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.spatial.distance import cdist
 
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments.chapter2.relation_scoring import BESIDE, CARRIED, JudgedPair
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, Row
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, Row
+from lifelore.experiments.chapter2.scoring.relation_scoring import BESIDE, CARRIED, JudgedPair
 from lifelore.perception.pairs.pair_features import PairFeatures, column_names
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.peers.peer import DescribedPair
@@ -27,23 +27,16 @@ DROPS = ("all but one", "weak")
 WEIGHTS = ("equal", "inverse distance")
 BLOCK = 4_000_000
 """Distances held at a time: without the threshold there are tens of thousands of displacements."""
+Rows = NDArray[np.int64]
+Points = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
 class Reading:
     """The choices that the thesis leaves open between a picture and its vote.
 
-    Parameters
-    ----------
-    kernel : str
-        A name of `tabletop_pairs.KERNELS`.
-    drop : str
-        One of `DROPS`.
-    votes : str
-        One of `WEIGHTS`; of equal votes the first relation by name wins.
-    omega : float, optional
-        Longer displacements do not vote, metres.
-    k : int
+    The kernel's name; a rule of `DROPS`; a weight of `WEIGHTS` (of equal votes the first relation by name wins);
+    the length above which displacements do not vote, metres; and the number of neighbours.
     """
 
     kernel: str = STANDARD
@@ -53,36 +46,34 @@ class Reading:
     k: int = 4
 
 
-def displacements(row: Row, kernel: str = STANDARD, drop: str = "all but one") -> NDArray[np.float64]:
+def displacements(row: Row, kernel: str = STANDARD, drop: str = "all but one") -> Points:
     """χ_a - χ_b between all contacts of a row in the truth's order, ``(m, 3)``, metres; none for far pairs."""
     if row["gap"] is None:
         return np.empty((0, 3))
-    sides = row["contacts"][kernel]
-    first, second = (np.array(_kept(sides[side], drop)).reshape(-1, 4)[:, :3] for side in ("a", "b"))
-    moved = (first[:, None] - second[None]).reshape(-1, 3)
+    places = []
+    for side in ("a", "b"):
+        contacts = row["contacts"][kernel][side]
+        strong = [contact for contact in contacts if contact[3] >= THRESHOLD]
+        kept = strong or (contacts[:1] if drop == "all but one" else [])
+        places.append(np.array(kept).reshape(-1, 4)[:, :3])
+    moved = (places[0][:, None] - places[1][None]).reshape(-1, 3)
     return moved if row["a"] == row["pair"][0] else -moved
 
 
-def _kept(contacts: Sequence[Sequence[float]], drop: str) -> list:
-    strong = [contact for contact in contacts if contact[3] >= THRESHOLD]
-    return strong or (list(contacts[:1]) if drop == "all but one" else [])
+def joined_displacements(rows: Sequence[Row], kernel: str, drop: str) -> tuple[Points, Rows]:
+    """The displacements of all rows, ``(m, 3)``, and the number of the row of each, ``(m,)``."""
+    each = [displacements(row, kernel, drop) for row in rows]
+    return np.concatenate(each), np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
 
 
 @dataclass(frozen=True, eq=False)
 class Votes:
-    """The votes of neighbours on displacements.
+    """The votes of neighbours on m displacements: the row of each, the relation that won, and shares of the votes.
 
-    Parameters
-    ----------
-    row : (m,) int64
-        The row each displacement is of.
-    labels : (m,) str
-        The relation that won.
-    shares : (m, 4) float64
-        Share of the votes for each of `CORE_RELATIONS`; zeros where there is no neighbour.
+    `shares` ``(m, 4)`` are those of `CORE_RELATIONS`; zeros where there is no neighbour.
     """
 
-    row: NDArray[np.int64]
+    row: Rows
     labels: NDArray[np.str_]
     shares: NDArray[np.float64]
 
@@ -111,30 +102,21 @@ def votes_of_neighbours(
 ) -> Votes:
     """The k nearest displacements of other scenes vote on each displacement, A and B given.
 
-    Parameters
-    ----------
-    train : (len(rows),) bool, optional
-        Rows to learn from; only the others are classified. Default: leave one scene out.
+    `train` ``(rows,)`` names the rows to learn from; only the others are classified. Default: leave one scene out.
     """
-    each = [displacements(row, reading.kernel, reading.drop) for row in rows]
-    owner = np.repeat(np.arange(len(rows)), [len(one) for one in each])
-    return votes_on(np.concatenate(each), owner, rows, reading, train)
+    return votes_on(*joined_displacements(rows, reading.kernel, reading.drop), rows, reading, train)
 
 
 def votes_on(
-    moved: NDArray[np.float64],
-    owner: NDArray[np.int64],
-    rows: Sequence[Row],
-    reading: Reading,
-    train: NDArray[np.bool_] | None = None,
+    moved: Points, owner: Rows, rows: Sequence[Row], reading: Reading, train: NDArray[np.bool_] | None = None
 ) -> Votes:
     """As `votes_of_neighbours`, from displacements ``(m, 3)`` and the row of each."""
     scene = np.unique([row["scene"] for row in rows], return_inverse=True)[1][owner]
     code = np.array([CORE_RELATIONS.index(row["relation"]) for row in rows])[owner]
     known = np.ones(len(moved), bool) if train is None else train[owner]
+    asked = np.flatnonzero(known if train is None else ~known)
     if reading.omega is not None:
-        known &= np.linalg.norm(moved, axis=1) <= reading.omega
-    asked = np.flatnonzero(np.full(len(moved), True) if train is None else ~train[owner])
+        known = known & (np.linalg.norm(moved, axis=1) <= reading.omega)
     nearest, away = _nearest(moved, asked, scene, known, reading.k)
     weight = np.isfinite(away).astype(float)
     if reading.votes != "equal":
@@ -148,13 +130,7 @@ def votes_on(
     return Votes(owner[asked], labels, shares)
 
 
-def _nearest(
-    moved: NDArray[np.float64],
-    asked: NDArray[np.int64],
-    scene: NDArray[np.int64],
-    known: NDArray[np.bool_],
-    k: int,
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+def _nearest(moved: Points, asked: Rows, scene: Rows, known: NDArray[np.bool_], k: int) -> tuple[Rows, Points]:
     """The k nearest known displacements of other scenes, and how far; infinitely far where there are fewer."""
     k = min(k, len(moved))
     nearest = np.empty((len(asked), k), np.int64)
@@ -172,51 +148,55 @@ def _nearest(
     return nearest, away
 
 
+def judged_row(row: Row, predicted: Relation | None) -> JudgedPair:
+    """A row beside its predicted relation."""
+    return JudgedPair(row["scene"], label_of(row), predicted, gap_of(row))
+
+
 def in_given_order(rows: Sequence[Row], relations: Sequence[str]) -> list[JudgedPair]:
     """Predicted relations of pairs whose order was given, beside the true ones."""
-    return [
-        JudgedPair(row["scene"], label_of(row), Relation(row["a"], row["b"], name, 1.0, gap_of(row)), gap_of(row))
-        for row, name in zip(rows, relations, strict=True)
-    ]
-
-
-# --- models that infer the direction ----------------------------------------------------------------------
+    pairs = zip(rows, relations, strict=True)
+    return [judged_row(row, Relation(row["a"], row["b"], name, 1.0, gap_of(row))) for row, name in pairs]
 
 
 def cross_validated(
     rows: Sequence[Row], new_model: Callable[[], Any], look: Callable[[Row], Any], folds: int | None = None
 ) -> list[JudgedPair]:
-    """Every row classified by a model that learnt from the scenes of the other folds.
+    """Every row classified by a model that learnt from the scenes of the other folds; the direction is inferred.
 
-    Parameters
-    ----------
-    new_model : callable
-        A fresh `RelationClassifier` or peer.
-    look : callable
-        A row as the model sees a scene: `as_scene`, or `as_seen` of a peer's name.
-    folds : int, optional
-        Scenes are dealt to so many folds in turn; default: one scene a fold.
+    ``new_model()`` is a fresh `RelationClassifier` or peer; ``look(row)`` is a row as the model sees a scene,
+    `as_scene` or `as_seen` of a peer's name. Scenes are dealt to the folds in turn; default: one scene a fold.
     """
     scene = np.unique([row["scene"] for row in rows], return_inverse=True)[1]
     fold = scene if folds is None else scene % folds
-    near = np.array([row["gap"] is not None for row in rows])
     views = [look(row) if row["gap"] is not None else None for row in rows]
-    truths = [[label_of(row)] for row in rows]
-    predicted: list[Relation | None] = [None] * len(rows)
+    found = {}
     for number in np.unique(fold):
-        train, test = np.flatnonzero((fold != number) & near), np.flatnonzero((fold == number) & near)
-        if len(train) and len(test):
-            model = new_model().fit_pairs([views[i] for i in train], [truths[i] for i in train])
-            for i in test:
-                predicted[i] = next(iter(model.predict_pairs(views[i])), None)
-    return [
-        JudgedPair(row["scene"], label_of(row), relation, gap_of(row))
-        for row, relation in zip(rows, predicted, strict=True)
-    ]
+        train, test = (np.flatnonzero(own).tolist() for own in (fold != number, fold == number))
+        lessons, asked = ([(rows[i], views[i]) for i in chosen] for chosen in (train, test))
+        found |= dict(zip(test, classified(new_model(), lessons, asked), strict=True))
+    return [found[i] for i in range(len(rows))]
+
+
+def classified(
+    model: Any, lessons: Sequence[tuple[Row, Any]], asked: Sequence[tuple[Row, Any]]
+) -> list[JudgedPair]:
+    """The rows `asked` as the model classifies them that learnt the lessons; far pairs are not predicted.
+
+    Each is a row and its view, as the model sees it; the view of a far pair is None.
+    """
+    near = [(view, [label_of(row)]) for row, view in lessons if view is not None]
+    if near and any(view is not None for _, view in asked):
+        model.fit_pairs(*map(list, zip(*near, strict=True)))
+        return [
+            judged_row(row, None if view is None else next(iter(model.predict_pairs(view)), None))
+            for row, view in asked
+        ]
+    return [judged_row(row, None) for row, _ in asked]
 
 
 def as_scene(row: Row, kernel: str = STANDARD) -> ScenePairs:
-    """A near row as `RelationClassifier` sees a scene; the order of its two things is that of their numbers."""
+    """A near row as `RelationClassifier` sees a scene; the order of its two objects is that of their numbers."""
     a, b = row["pair"]
     matrix = np.array(row["features"])
     features = PairFeatures(column_names(2), matrix, np.array([[a, b], [b, a]]), np.full(2, row["gap"]))

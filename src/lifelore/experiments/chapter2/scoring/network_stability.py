@@ -25,10 +25,10 @@ def contact_nodes(found: Sequence[Interface], truth: Sequence[PairLabel]) -> Nod
     """Contact points of every pair that bears a relation."""
     near = {frozenset((label.a, label.b)) for label in truth if label.relation != NONE and label.confidence >= 2}
     nodes: Nodes = {}
-    for one in found:
-        if frozenset((one.a, one.b)) in near:
-            nodes[one.a, one.b] = np.array([contact.position for contact in one.contacts_a])
-            nodes[one.b, one.a] = np.array([contact.position for contact in one.contacts_b])
+    for pair in found:
+        if frozenset((pair.a, pair.b)) in near:
+            nodes[pair.a, pair.b] = np.array([contact.position for contact in pair.contacts_a])
+            nodes[pair.b, pair.a] = np.array([contact.position for contact in pair.contacts_b])
     return nodes
 
 

@@ -3,48 +3,45 @@
 import base64
 import zlib
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.experiments.chapter2.scenes.perturbation import part_of
+from lifelore.figures.gallery import PictureOfScene, draw_gallery
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.scene import Scene
 from lifelore.perception.scene_json import scene_document
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
-    from lifelore.figures.gallery import PictureOfScene
 
 MOST_POINTS = 5000
 _STEP = 0.0005
 """Metres: places are stored to half a millimetre."""
 _AROUND = 0.05
 """Metres of table stored around the objects."""
-_FIELDS = ("objects", "relations", "holes", "contact_edges")
 
 
 def scene_row(scene: Scene, caption: str) -> dict:
     """``{"example": caption, "camera", "cloud", "document"}``, plain data of some 30 kB."""
-    cloud = _thinned(_trimmed(scene.cloud))
-    whole = scene_document(scene)
-    document = {field: whole[field] for field in _FIELDS}
-    document["objects"] = [
-        {
-            "id": thing["id"],
-            "contact_points": [{"xyz": _short(node["xyz"])} for node in thing["contact_points"]],
-            "edges": thing["edges"],
-        }
-        for thing in document["objects"]
-    ]
-    document["holes"] = [{"outline": [_short(place) for place in hole["outline"]]} for hole in document["holes"]]
+    cloud, whole = _thinned(_trimmed(scene.cloud)), scene_document(scene)
+    document: dict[str, Any] = {
+        "objects": [
+            {
+                "id": item["id"],
+                "contact_points": [{"xyz": _short(node["xyz"])} for node in item["contact_points"]],
+                "edges": item["edges"],
+            }
+            for item in whole["objects"]
+        ],
+        "relations": whole["relations"],
+        "holes": [{"outline": [_short(place) for place in hole["outline"]]} for hole in whole["holes"]],
+        "contact_edges": whole["contact_edges"],
+    }
     camera = None if cloud.camera is None else _short(cloud.camera)
     return {"example": caption, "camera": camera, "cloud": _packed(cloud), "document": document}
 
 
-def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
+def scene_of_row(row: Mapping) -> PictureOfScene:
     """(cloud, document, caption), as `figures.gallery` takes them."""
     table = np.frombuffer(zlib.decompress(base64.b64decode(row["cloud"])), np.int16).reshape(4, -1)
     camera = None if row["camera"] is None else np.array(row["camera"], float)
@@ -52,16 +49,14 @@ def scene_of_row(row: Mapping) -> tuple[LabelledCloud, Mapping, str]:
     return cloud, row["document"], row["example"]
 
 
-def examples_of(result: Mapping, captions: Mapping[str, str] | None = None) -> "list[PictureOfScene]":
+def examples_of(result: Mapping, captions: Mapping[str, str] | None = None) -> list[PictureOfScene]:
     """The examples of a result as a gallery takes them; `captions` replaces the captions that it names."""
     found = [scene_of_row(row) for row in result["rows"] if "example" in row]
     return [(cloud, document, (captions or {}).get(caption, caption)) for cloud, document, caption in found]
 
 
-def draw_examples(result: Mapping, *, columns: int, captions: Mapping[str, str] | None = None) -> "Figure":
+def draw_examples(result: Mapping, *, columns: int = 3, captions: Mapping[str, str] | None = None):
     """The gallery of a result's examples, clouds with networks."""
-    from lifelore.figures.gallery import draw_gallery
-
     return draw_gallery(examples_of(result, captions), columns=columns, layers=("cloud", "networks"))
 
 
@@ -74,11 +69,10 @@ def _packed(cloud: LabelledCloud) -> str:
 
 def _trimmed(cloud: LabelledCloud) -> LabelledCloud:
     """The objects and the table near them."""
-    things = cloud.points[cloud.labels > TABLE][:, :2]
-    low, high = things.min(axis=0) - _AROUND, things.max(axis=0) + _AROUND
+    objects = cloud.points[cloud.labels > TABLE][:, :2]
+    low, high = objects.min(axis=0) - _AROUND, objects.max(axis=0) + _AROUND
     inside = ((cloud.points[:, :2] >= low) & (cloud.points[:, :2] <= high)).all(axis=1)
-    kept = (cloud.labels > TABLE) | ((cloud.labels == TABLE) & inside)
-    return LabelledCloud(cloud.points[kept], cloud.labels[kept], None, cloud.camera)
+    return part_of(cloud, (cloud.labels > TABLE) | ((cloud.labels == TABLE) & inside))
 
 
 def _thinned(cloud: LabelledCloud) -> LabelledCloud:
@@ -88,5 +82,5 @@ def _thinned(cloud: LabelledCloud) -> LabelledCloud:
     return cloud
 
 
-def _short(values: NDArray | list) -> list[float]:
+def _short(values) -> list[float]:
     return [round(float(value), 4) for value in values]

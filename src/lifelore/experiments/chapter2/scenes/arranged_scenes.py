@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from lifelore.core.errors import InputError
-from lifelore.core.relations import ADJACENT, BOTH, ON, PairLabel
+from lifelore.core.relations import ADJACENT, BOTH, ON
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, put_beside, stand, top
 from lifelore.domains.tabletop.pose import about
@@ -24,7 +24,6 @@ from lifelore.domains.tabletop.tabletop import (
 )
 
 USUAL = TabletopSettings()
-Labels = frozenset[tuple[int, int, str]]
 
 
 @dataclass(frozen=True)
@@ -32,19 +31,11 @@ class Placement:
     """A way to place objects, and the labels that must hold when they have settled: (a, b, relation) from 2."""
 
     place: Callable[[np.random.Generator], Group]
-    true: Labels = frozenset()
+    true: frozenset[tuple[int, int, str]] = frozenset()
 
 
 def arranged(name: str, seed: int, number: int, settings: TabletopSettings = USUAL) -> TabletopScene:
-    """Scene `number` of an arrangement: one of `CONTROLS`, or one that the tabletop knows.
-
-    Raises
-    ------
-    MissingExtraError
-        MuJoCo is not installed.
-    InputError
-        No arrangement has the name.
-    """
+    """Scene `number` of an arrangement: one of `CONTROLS`, or one that the tabletop knows. Needs MuJoCo."""
     if name in CONTROLS:
         return settled(CONTROLS[name], name, seed, number, settings)
     own_seed = int(stream(seed, "arranged", name).integers(2**31))
@@ -56,31 +47,23 @@ def settled(
 ) -> TabletopScene:
     """Scene `number` of a placement: drawn until a scene settles, is visible, and has the labels that must hold.
 
-    Raises
-    ------
-    MissingExtraError
-        MuJoCo is not installed.
-    InputError
-        None does in `ATTEMPTS` draws.
+    Raises `InputError` where no scene does in `ATTEMPTS` draws.
     """
     for attempt in range(ATTEMPTS):
         rng = stream(seed, "arranged", name, number, attempt)
         scene = settle_scene(placement.place(rng), rng, settings)
-        if scene is not None and placement.true <= _labels(scene.truth):
-            return replace(scene, name=f"{name}{number:05d}", attempts=attempt + 1)
+        if scene is not None:
+            labels = {(label.a, label.b, label.relation) for label in scene.truth}
+            labels |= {(b, a, relation) for a, b, relation in labels if relation == ADJACENT}
+            if placement.true <= labels:
+                return replace(scene, name=f"{name}{number:05d}", attempts=attempt + 1)
     raise InputError(f"no '{name}' settles as it must in {ATTEMPTS} draws with {settings}; use other settings")
-
-
-def _labels(truth: tuple[PairLabel, ...]) -> set[tuple[int, int, str]]:
-    """Every label, both ways round where it has no direction."""
-    turned = {(label.b, label.a, label.relation) for label in truth if label.relation == ADJACENT}
-    return turned | {(label.a, label.b, label.relation) for label in truth}
 
 
 def turned(rng: np.random.Generator, group: Group) -> Group:
     """The group turned by any yaw."""
     yaw = float(rng.uniform(0, 2 * np.pi))
-    return [thing.turned(yaw) for thing in group]
+    return [placed.turned(yaw) for placed in group]
 
 
 def place_row(rng: np.random.Generator) -> Group:
@@ -111,7 +94,7 @@ def place_corner(rng: np.random.Generator) -> Group:
     ell = stand(l_block(length, width, height, foot, back))
     yaw = float(rng.normal(0, 0.3) + np.pi * rng.integers(2))
     block = stand(box(float(size[0]), float(size[1]), float(size[2])), height=foot).moved(at, 0.0)
-    return [thing.turned(yaw) for thing in (ell, block)]
+    return [placed.turned(yaw) for placed in (ell, block)]
 
 
 CONTROLS = {

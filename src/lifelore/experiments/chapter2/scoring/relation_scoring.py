@@ -1,11 +1,11 @@
 """Accuracy of perceived relations: exact with direction, by component and by class, each with an interval.
 
 The thesis's label of a pair is a vector (on, adjacent); *both* has both components, *none* has neither (§2.4.1).
-Here the direction counts as well: ``on(a, b)`` said of ``on(b, a)`` is wrong, exactly and in its `on` component.
+Here the direction counts as well: ``on(a, b)`` predicted for ``on(b, a)`` is wrong, also in its `on` component.
 Pairs of one scene share its camera, its noise and its neighbours, so intervals resample scenes, not pairs.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -28,32 +28,22 @@ CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
 
 @dataclass(frozen=True)
 class JudgedPair:
-    """A labelled pair and its predicted relation.
-
-    Parameters
-    ----------
-    scene : str
-    truth : PairLabel
-    said : Relation, optional
-        The prediction; None where there is none, which counts as the relation *none*.
-    gap : float
-        Visible gap, metres; infinite where unknown.
-    """
+    """A labelled pair, its predicted relation (None counts as *none*) and its visible gap, metres or infinite."""
 
     scene: str
     truth: PairLabel
-    said: Relation | None
+    predicted: Relation | None
     gap: float
 
     @property
     def relation(self) -> str:
         """The predicted relation."""
-        return self.said.relation if self.said else NONE
+        return self.predicted.relation if self.predicted else NONE
 
     @property
     def same_way(self) -> bool:
         """Whether the prediction names the pair in the truth's order, or has no order."""
-        return self.relation in SYMMETRIC or self.said is None or self.said.a == self.truth.a
+        return self.relation in SYMMETRIC or self.predicted is None or self.predicted.a == self.truth.a
 
     @property
     def exact(self) -> bool:
@@ -106,20 +96,15 @@ class RelationScore:
 def judged_scene(
     scene: str,
     truth: Sequence[PairLabel],
-    said: Sequence[Relation],
+    predicted: Sequence[Relation],
     gaps: Mapping[frozenset[int], float] | None = None,
     least_confidence: int = 2,
 ) -> list[JudgedPair]:
-    """Each labelled pair of a scene beside its predicted relation.
+    """Each labelled pair of a scene beside its predicted relation; labels below a confidence are left out.
 
-    Parameters
-    ----------
-    gaps : mapping, optional
-        Visible gap of ``{a, b}`` where better known than by `said`, metres.
-    least_confidence : int
-        Labels below it are left out.
+    `gaps` are the visible gaps of ``{a, b}``, metres, where better known than by `predicted`.
     """
-    by_pair = {frozenset((relation.a, relation.b)): relation for relation in said}
+    by_pair = {frozenset((relation.a, relation.b)): relation for relation in predicted}
     judged = []
     for label in truth:
         pair = frozenset((label.a, label.b))
@@ -134,19 +119,17 @@ def score(judged: Sequence[JudgedPair]) -> RelationScore | None:
     """The score of some pairs; None of none."""
     if not judged:
         return None
-    scenes = sorted({pair.scene for pair in judged})
-    classes = [name for name in _classes(judged) if any(pair.truth.relation == name for pair in judged)]
+    true = {pair.truth.relation for pair in judged}
+    classes = [name for name in CORE_RELATIONS if name in true] + sorted(true - set(CORE_RELATIONS))
+    of_class = {name: [pair for pair in judged if pair.truth.relation == name] for name in classes}
     return RelationScore(
         pairs=len(judged),
-        scenes=len(scenes),
+        scenes=len({pair.scene for pair in judged}),
         exact=share(judged, lambda pair: pair.exact),
         on=share(judged, lambda pair: pair.on_right),
         adjacent=share(judged, lambda pair: pair.adjacent_right),
-        macro_f1=_macro_f1(judged, scenes, classes),
-        recall={
-            name: share([pair for pair in judged if pair.truth.relation == name], lambda pair: pair.exact)
-            for name in classes
-        },
+        macro_f1=_macro_f1(judged, classes),
+        recall={name: share(own, lambda pair: pair.exact) for name, own in of_class.items()},
     )
 
 
@@ -166,12 +149,8 @@ def share_over_scenes(
 ) -> Estimate:
     """Share of right answers, scenes resampled (BCa); `UNMEASURED` of none.
 
-    Parameters
-    ----------
-    right, asked : (n,)
-        Of each scene how many answers are right, and how many there are.
-    interval_where_all_agree : callable, optional
-        ``(right, n)`` → (low, high), where no resample differs; default: Wilson's.
+    `right` and `asked` ``(n,)`` count the right answers and all answers of each scene. Where all answers agree, no
+    resample differs, and ``interval_where_all_agree(right, n)`` is the interval; default: Wilson's.
     """
     right, asked = np.asarray(right, float), np.asarray(asked, float)
     n_right, n = int(right.sum()), int(asked.sum())
@@ -207,39 +186,41 @@ def difference(first: Sequence[JudgedPair], second: Sequence[JudgedPair]) -> Est
 
     Both hold the same labelled pairs in the same order.
     """
-    names = sorted({pair.scene for pair in first})
-    at = {name: number for number, name in enumerate(names)}
-    rows = np.zeros((len(names), 2))
-    for one, other in zip(first, second, strict=True):
-        rows[at[one.scene]] += (float(one.exact) - float(other.exact), 1.0)
-    drawn = _draws(len(names)) @ rows
-    value = float(rows[:, 0].sum() / rows[:, 1].sum())
+    differences = [(float(a.exact) - float(b.exact), 1.0) for a, b in zip(first, second, strict=True)]
+    sums = _sums_by_scene(first, differences)
+    drawn = _draws(len(sums)) @ sums
+    value = float(sums[:, 0].sum() / sums[:, 1].sum())
     return Estimate(value, value, _percentiles(drawn[:, 0] / drawn[:, 1]), len(first))
 
 
-def _classes(judged: Iterable[JudgedPair]) -> list[str]:
-    """The core relations in their order, then any others by name."""
-    named = {pair.truth.relation for pair in judged}
-    return [*CORE_RELATIONS, *sorted(named - set(CORE_RELATIONS))]
-
-
-def _macro_f1(judged: Sequence[JudgedPair], scenes: list[str], classes: list[str]) -> Estimate:
-    at = {name: number for number, name in enumerate(scenes)}
-    # Of each scene and class: right, said, true.
-    counts = np.zeros((len(scenes), len(classes), 3))
-    for pair in judged:
-        for number, name in enumerate(classes):
-            of = pair.truth.relation == name
-            counts[at[pair.scene], number] += (of and pair.exact, pair.relation == name, of)
+def _macro_f1(judged: Sequence[JudgedPair], classes: Sequence[str]) -> Estimate:
+    # Of each scene and class: right, predicted, true.
+    answers = [
+        [
+            ((pair.truth.relation == name) and pair.exact, pair.relation == name, pair.truth.relation == name)
+            for name in classes
+        ]
+        for pair in judged
+    ]
+    counts = _sums_by_scene(judged, answers)
     value = float(_mean_f1(counts.sum(axis=0)[None])[0])
-    resampled = _mean_f1(np.tensordot(_draws(len(scenes)), counts, axes=1))
+    resampled = _mean_f1(np.tensordot(_draws(len(counts)), counts, axes=1))
     return Estimate(value, value, _percentiles(resampled), len(judged))
 
 
 def _mean_f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Mean over classes of 2 right / (said + true), from counts (n, classes, 3); 0 for a class that is neither."""
-    right, said, true = np.moveaxis(counts, -1, 0)
-    return (2 * right / np.maximum(said + true, 1)).mean(axis=1)
+    """Mean over classes of 2 right / (predicted + true), from counts (n, classes, 3); 0 for an absent class."""
+    right, predicted, true = np.moveaxis(counts, -1, 0)
+    return (2 * right / np.maximum(predicted + true, 1)).mean(axis=1)
+
+
+def _sums_by_scene(judged: Sequence[JudgedPair], numbers: ArrayLike) -> NDArray[np.float64]:
+    """Sums of the numbers of pairs ``(pairs, …)`` over the pairs of each scene ``(scenes, …)``, scenes by name."""
+    names, at = np.unique([pair.scene for pair in judged], return_inverse=True)
+    each = np.asarray(numbers, float)
+    sums = np.zeros((len(names), *each.shape[1:]))
+    np.add.at(sums, at, each)
+    return sums
 
 
 def _draws(n: int) -> NDArray[np.float64]:

@@ -31,13 +31,7 @@ def real_scenes_folder() -> Path | None:
 
 
 def real_scenes() -> tuple[RealScene, ...]:
-    """All of them, by name.
-
-    Raises
-    ------
-    InputError
-        They are not there, or a file is damaged.
-    """
+    """All of them, by name; raises `InputError` if they are not there, or a file is damaged."""
     folder = real_scenes_folder()
     if folder is None:
         raise InputError(f"{VARIABLE} must name a folder with osd/relations.csv and its clouds; set it")

@@ -8,6 +8,7 @@ all data that claims about displacements need. The table's points are left out, 
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,9 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
+from lifelore.experiments.chapter2.scenes.perturbation import without_table
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
 from lifelore.perception.pairs.pair_features import pair_features
@@ -51,32 +54,19 @@ def pair_cells(settings: Mapping) -> list[dict]:
 
     Settings read: ``data_sets``, ``pairs`` (of each), ``real`` (true or false).
     """
-    simulated = [
-        {"data_set": number, "first": first}
-        for number in range(settings["data_sets"])
-        for first in range(0, settings["pairs"], LOT)
-    ]
-    if not settings["real"] or real_scenes_folder() is None:
-        return simulated
-    names = [scene.name for scene in real_scenes()]
-    return simulated + [{"scenes": names[at : at + REAL_LOT]} for at in range(0, len(names), REAL_LOT)]
+    sets = (lots(settings["pairs"], LOT, data_set=number) for number in range(settings["data_sets"]))
+    return [*chain.from_iterable(sets), *real_lots(settings, REAL_LOT, "scenes")]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """The rows of a lot, ``{"set": …, "rows": […]}``; `set` is the number of the data set, or "real"."""
     if "scenes" in cell:
-        wanted = set(cell["scenes"])
-        rows = [
-            row
-            for scene in real_scenes()
-            if scene.name in wanted
-            for row in pair_rows(scene.name, scene.cloud, scene.truth)
-        ]
-        return {"set": "real", "rows": rows}
+        scenes = [scene for scene in real_scenes() if scene.name in cell["scenes"]]
+        return {"set": "real", "rows": [row for s in scenes for row in pair_rows(s.name, s.cloud, s.truth)]}
     number = cell["data_set"]
     drawn = TabletopSettings(arrangement="pair", mix=MIX, camera=settings["camera"], shapes="all")
     rows = []
-    for k in range(cell["first"], min(cell["first"] + LOT, settings["pairs"])):
+    for k in numbers_of(cell, LOT, settings["pairs"]):
         scene = _undoubted(stream(seed, "tabletop pairs", number, k), k, drawn)
         rows += pair_rows(f"{number}-{k}", scene.cloud, scene.truth)
     return {"set": number, "rows": rows}
@@ -91,21 +81,21 @@ def _undoubted(rng: np.random.Generator, number: int, drawn: TabletopSettings) -
 
 
 def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> list[Row]:
-    """A row for each pair of things with a label of confidence 2 or 3.
+    """A row for each pair of objects with a label of confidence 2 or 3.
 
     Returns
     -------
     list of dict
-        ``scene``, ``a``, ``b``, ``relation``, ``confidence``: what is true. ``pair`` is (a, b) with a < b, and all
+        ``scene``, ``a``, ``b``, ``relation``, ``confidence``: the truth. ``pair`` is (a, b) with a < b, and all
         of the rest is in that order: ``gap`` (metres, None for a pair that is not near, which has nothing else);
         ``contacts`` by kernel, on either side ``[x, y, z, support vectors]`` of each contact, none dropped;
-        ``features`` of both orders; ``peers``, what each of `BESIDE_US` sees of both orders.
+        ``features`` of both orders; ``peers``, the description of both orders by each of `BESIDE_US`.
     """
     bare = without_table(cloud)
-    found = {(one.a, one.b): one for one in interfaces(bare)}
+    found = {(near.a, near.b): near for near in interfaces(bare)}
     contacts = {kernel_name(*kernel): _contacts_by_pair(bare, *kernel) for kernel in KERNELS}
     features = pair_features(bare, tuple(found.values())).matrix
-    peers = {name: {(one.a, one.b): one.rows for one in PEERS[name]().describe_pairs(bare)} for name in BESIDE_US}
+    peers = {name: {(p.a, p.b): p.rows for p in PEERS[name]().describe_pairs(bare)} for name in BESIDE_US}
     rows = []
     for label in truth:
         if TABLE in (label.a, label.b) or label.confidence < LEAST_CONFIDENCE:
@@ -132,15 +122,9 @@ def data_sets(results: Sequence[Mapping]) -> dict[int | str, list[Row]]:
     return found
 
 
-def without_table(cloud: LabelledCloud) -> LabelledCloud:
-    """The points of the objects alone."""
-    kept = cloud.labels > TABLE
-    return LabelledCloud(cloud.points[kept], cloud.labels[kept], None, cloud.camera)
-
-
-def contacts_of(one: Interface) -> dict[str, list]:
+def contacts_of(found: Interface) -> dict[str, list]:
     """``{"a": [[x, y, z, support vectors], …], "b": …}``, strongest first."""
-    sides = {"a": one.contacts_a, "b": one.contacts_b}
+    sides = {"a": found.contacts_a, "b": found.contacts_b}
     return {
         side: [[*_rounded(contact.position), contact.n_support] for contact in contacts]
         for side, contacts in sides.items()
@@ -153,7 +137,8 @@ def loose_settings(length: float, cost: float) -> ContactSettings:
 
 
 def _contacts_by_pair(cloud: LabelledCloud, length: float, cost: float) -> dict[tuple[int, int], dict]:
-    return {(one.a, one.b): contacts_of(one) for one in interfaces(cloud, loose_settings(length, cost))}
+    found = interfaces(cloud, loose_settings(length, cost))
+    return {(pair.a, pair.b): contacts_of(pair) for pair in found}
 
 
 def _rounded(values: NDArray[np.float64]) -> list:
