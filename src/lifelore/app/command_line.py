@@ -22,7 +22,6 @@ UsageError: type[Exception] = next(kind for kind in typer.BadParameter.__mro__ i
 
 app = typer.Typer(
     name="lifelore",
-    help="An agent that lives long in one kind of world and becomes good at that world.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
@@ -56,6 +55,23 @@ def _register() -> None:
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)
     app.command("doctor")(doctor_command.doctor)
+
+
+def _print_version(chosen: bool) -> None:
+    if chosen:
+        from lifelore import __version__
+
+        print(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def lifelore(
+    version: bool = typer.Option(
+        False, "--version", is_eager=True, callback=_print_version, help="Print the version."
+    ),
+) -> None:
+    """An agent that lives long in one kind of world and becomes good at that world."""
 
 
 @app.command()

@@ -57,7 +57,7 @@ def _short(x: float) -> str:
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(x) >= size:
             return f"{x / size:,.1f}{letter}"
-    return f"{x:,.0f}"
+    return f"{round(x) or 0:,}"  # no "-0"
 
 
 def _ratio_line(name: str, ratios: dict) -> str:
@@ -65,7 +65,7 @@ def _ratio_line(name: str, ratios: dict) -> str:
     who = name.removesuffix("_vs_scratch")
     return (
         f"{who} compared with scratch, last third: steps to 80 % {_ratio(steps)}, collisions {_ratio(hits)}, "
-        f"first return {ratios['jumpstart']['value']:+,.0f}"
+        f"first return {round(ratios['jumpstart']['value']) or 0:+,}"
     )
 
 

@@ -1,5 +1,7 @@
 """`lifelore live`: live through a stream of tasks in one world."""
 
+import sys
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -8,7 +10,9 @@ Option = typer.Option
 
 
 def live(
-    domain: Annotated[str, Option(help="World: building, or the thesis's worlds lattice and noise.")] = "building",
+    domain: Annotated[
+        str, Option(help="World: building, or the thesis's worlds lattice, noise and advice.")
+    ] = "building",
     map: Annotated[
         str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
     ] = None,
@@ -64,7 +68,7 @@ def live(
     epsilon_floor: Annotated[float, Option(help="q: least ε.")] = 0.01,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> int:
-    """Live through a stream of tasks in one world and learn from each task for the next ones.
+    """Live through tasks in one world and learn from each.
 
     Use it to see what an agent gains from its earlier tasks, in your own map or in a generated office. Memory
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
@@ -101,6 +105,7 @@ def live(
         start=_row_column(start),
         jobs=jobs,
     )
+    _announce_new_folders(memory, out)
     if out is not None:
         check_folder(out)
     watch = None if l2log is None else LifeLog(l2log, domain).add
@@ -112,6 +117,17 @@ def live(
     else:
         print_life(life.report, written)
     return INTERRUPTED if life.stopped else 0
+
+
+def _announce_new_folders(memory: str | None, out: str | None) -> None:
+    """Name the folders that a life will create, so that a mistyped path is seen at once."""
+    from lifelore.memory.location import locate
+
+    place = locate(memory)
+    folders = [place.parent] if isinstance(place, Path) else []
+    for folder in folders + ([Path(out)] if out else []):
+        if not folder.exists():
+            print(f"creating the folder {folder}", file=sys.stderr)
 
 
 def _row_column(text: str | None) -> tuple[int, int] | None:

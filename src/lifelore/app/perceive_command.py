@@ -51,7 +51,7 @@ def perceive(
         Option("--json", help="One JSON document on stdout and nothing else; with --watch one line a cloud."),
     ] = False,
 ) -> int:
-    """Find objects, contact points and spatial relations in point clouds.
+    """Find objects, contacts and relations in point clouds.
 
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.

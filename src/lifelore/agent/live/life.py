@@ -77,7 +77,7 @@ def live(
     ----------
     settings : LifeSettings
     progress : callable, optional
-        Called as ``progress(done, total, label)`` after each task.
+        Called as ``progress(done, total, label)`` before the first task and after each task.
     stop : threading.Event, optional
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
@@ -121,6 +121,8 @@ class _RunningLife:
     ) -> list[dict[str, TaskResult]]:
         results = []
         total = self.settings.tasks
+        if progress:
+            progress(0, total, "")
         for done in range(total):
             if stop.is_set():
                 break

@@ -196,10 +196,11 @@ def _check_world(world: WorldSettings) -> None:
     """Check also the numbers that this domain does not use, because the report repeats them."""
     _check_magnitude("cell", world.cell, MOST_LENGTH)
     _check_magnitude("robot_radius", world.robot_radius, MOST_LENGTH)
-    _check_magnitude("discount", world.discount, 1.0)
     _check_magnitude("goal_reward", world.goal_reward, MOST_REWARD)
     _check_magnitude("wall_reward", world.wall_reward, MOST_REWARD)
     _check_magnitude("density", world.density, 1.0)
+    if world.discount is not None and not 0 <= world.discount < 1:
+        raise InputError(f"discount must lie in [0, 1), got {world.discount}")
     if world.goal_reward is not None and world.goal_reward <= 0:
         raise InputError(f"goal_reward must be positive, got {world.goal_reward}")
     if world.wall_reward is not None and world.wall_reward > 0:

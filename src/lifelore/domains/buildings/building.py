@@ -36,13 +36,13 @@ def building_from_map(
 ) -> GridWorld:
     """The building a round robot can move in, as a grid world.
 
-    The robot's disc must lie in space known to be free: all other pixels, occupied or unknown, are grown by
-    its radius at full resolution (pixel centre to pixel centre, as in ROS costmaps), which also cuts off the
-    stray beams that a laser throws through windows. Specks of unknown (`SPECK`) are not free, but do not
-    grow: they are a mapper's noise in open floor. A cell of `cell` metres is its largest
-    4-connected piece of free pixels (of equal ones, the first from the top left). A move exists exactly
-    where the pieces of two neighbouring cells touch across their border. The largest connected region of
-    cells is kept (of equal ones, the first from the top left), less its slivers (`min_free`).
+    The robot's disc must lie in space known to be free: all other pixels, occupied, unknown or outside the
+    picture, are grown by its radius at full resolution (pixel centre to pixel centre, as in ROS costmaps), which
+    also cuts off the stray beams that a laser throws through windows. Specks of unknown (`SPECK`) are not free,
+    but do not grow: they are a mapper's noise in open floor. A cell of `cell` metres is its largest 4-connected
+    piece of free pixels (of equal ones, the first from the top left). A move exists exactly where the pieces of
+    two neighbouring cells touch across their border. The largest connected region of cells is kept (of equal ones,
+    the first from the top left), less its slivers (`min_free`).
 
     Parameters
     ----------
@@ -70,7 +70,9 @@ def building_from_map(
         `MAX_STATES` cells are.
     """
     _check(occupancy, cell, robot_radius, min_free)
-    free = ~inflate(_solid(occupancy), robot_radius / occupancy.resolution) & (occupancy.state == FREE)
+    # Nothing is known beyond the picture's edge, so a rim of obstacles surrounds it.
+    solid = np.pad(_solid(occupancy), 1, constant_values=True)
+    free = ~inflate(solid, robot_radius / occupancy.resolution)[1:-1, 1:-1] & (occupancy.state == FREE)
     if not free.any():
         raise InputError(
             f"map: no free cell is left for robot_radius {robot_radius} m at {occupancy.resolution} m a pixel "
