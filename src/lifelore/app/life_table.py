@@ -25,6 +25,8 @@ def print_life(report: dict, written: list[str]) -> None:
         highlight=False,
         soft_wrap=True,
     )
+    if report["building"]:
+        console.print(_building_line(report["building"]), highlight=False, soft_wrap=True)
     if tasks:
         console.print(_thirds(report["summary"]["agents"]))
         for name, ratios in report["summary"].items():
@@ -32,6 +34,18 @@ def print_life(report: dict, written: list[str]) -> None:
                 console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
     for path in written:
         console.print(f"wrote {path}", highlight=False)
+
+
+def _building_line(building: dict) -> str:
+    """Whether the map was recognised, and on which grounds."""
+    if not building["recognised"]:
+        return f"a new building: {building['name']} ({building['reason']})"
+    grounds = []
+    if building["agreement"] is not None:
+        grounds.append(f"{int(100 * building['agreement'])} % of places agree")
+    if building["walls"] is not None:
+        grounds.append(f"{int(100 * building['walls'])} % of walls")
+    return f"recognised as {building['name']}" + "".join(f", {ground}" for ground in grounds)
 
 
 def _thirds(agents: dict) -> Table:

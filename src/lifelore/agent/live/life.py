@@ -18,6 +18,7 @@ from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.model_task import live_model_task
 from lifelore.agent.live.q_task import live_q_task
+from lifelore.agent.live.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
@@ -30,8 +31,9 @@ from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.worlds import world_from_settings
+from lifelore.domains.worlds import map_from_settings, world_from_settings
 from lifelore.memory import Memory, open_memory
 
 TASKS_WITH_POLICY = 4
@@ -93,24 +95,42 @@ def live(
     stop = stop or Event()
     began = time.perf_counter()
     names = agents_for(settings.agent, settings.learning.learner)
-    world = world_from_settings(settings.world)
+    occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
+    world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        life = _RunningLife(settings, world, names, memory)
+        place = _place(settings, world, occupancy, memory, names[0])
+        life = _RunningLife(settings, place, names, memory)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)
-        report = _report(settings, world, life, time.perf_counter() - began)
-    return Life(report, world, results, life.lores[names[0]], stop.is_set())
+        report = _report(settings, place, life, time.perf_counter() - began)
+    return Life(report, place.world, results, life.lores[names[0]], stop.is_set())
+
+
+def _place(
+    settings: LifeSettings, world: GridWorld, occupancy: OccupancyMap | None, memory: Memory, agent: str
+) -> Place:
+    """The remembered building of the world, if the agent remembers transitions of buildings."""
+    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learning.learner == "model"
+    if occupancy is not None and remembers:
+        return recognised_place(settings.world, world, occupancy, memory, name)
+    if name is not None:
+        raise InputError(
+            f"building names a map that is remembered, got {name!r} for a life that remembers no map; leave it out"
+        )
+    return own_place(world)
 
 
 class _RunningLife:
     """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
-    def __init__(self, settings: LifeSettings, world: GridWorld, names: list[str], memory: Memory) -> None:
+    def __init__(self, settings: LifeSettings, place: Place, names: list[str], memory: Memory) -> None:
+        world = place.world
         self.settings, self.world, self.names, self.memory = settings, world, names, memory
-        self.stream = TaskStream(world, settings)
+        self.unstored = place.news
+        self.stream = TaskStream(world, settings, place.grid.frame)
         self.scope = prior_scope(world, settings.prior.condition)
         # Every agent starts from the same knowledge and then learns by itself; only the first one's is stored.
-        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory)
+        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory, place.grid)
         self.lores = {name: first.copy() if i else first for i, name in enumerate(names)}
         self.tasks_before = memory.tasks(settings.memory.robot)
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
@@ -157,8 +177,13 @@ class _RunningLife:
         records = {name: self._learn(name, results[name], goal) for name in self.names}
         about = {"index": index, "goal": self.world.cells[goal].tolist(), "world": self.world.fingerprint}
         self.memory.contribute(
-            self.settings.memory.robot, records[self.names[0]], process=self.process, seq=seq, task=about
+            self.settings.memory.robot,
+            records[self.names[0]] + self.unstored,
+            process=self.process,
+            seq=seq,
+            task=about,
         )
+        self.unstored = []
         agents = {name: result.to_dict() for name, result in results.items()}
         self.finished.append({"index": index, "goal": about["goal"], "optimal_return": optimal, "agents": agents})
         return results
@@ -250,11 +275,13 @@ class _SharedTask:
         )
 
 
-def _report(settings: LifeSettings, world: GridWorld, life: _RunningLife, seconds: float) -> dict:
+def _report(settings: LifeSettings, place: Place, life: _RunningLife, seconds: float) -> dict:
+    world = place.world
     return {
         "domain": settings.world.domain,
         "map": _text(settings.world.map),
         "n_states": world.n_states,
+        "building": place.report,
         "seed": settings.seed,
         "settings": _settings_document(settings, world, life.memory.location),
         "tasks": life.finished,
