@@ -15,7 +15,9 @@ from lifelore.agent.live.transitions import model_table, to_record
 from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.learning.known_world import unknown_world
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.floor import floor_of
+from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.office import office_map
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import open_memory
 
@@ -188,11 +190,32 @@ def test_questions_that_break_a_rule(tmp_path, options, error, words):
         find(rooms, remember(tmp_path, rooms), **options)
 
 
+def test_a_map_that_was_saved_again_has_the_same_names_and_ways(tmp_path):
+    """Padded on the left and shifted: the same spot has other coordinates."""
+    office, memory = office_map(5), str(tmp_path / "life.db")
+    write_occupancy_map(tmp_path / "office.yaml", office)
+    again = np.pad(office.state, ((7, 3), (13, 0)), constant_values=UNKNOWN)
+    origin = (office.origin[0] + 4.0, office.origin[1] - 2.5, 0.0)
+    write_occupancy_map(tmp_path / "again.yaml", OccupancyMap(again, office.resolution, origin))
+    world = world_from_settings(WorldSettings(map=str(tmp_path / "office.yaml")))
+    floor = floor_of(office, world)
+    ends = [tuple(point) for point in floor.metres(floor.anchors[[0, world.n_states - 1]]).tolist()]
+    jobs = tuple(Job(Destination(end, name)) for end, name in zip(ends, ("north", "south"), strict=True)) * 2
+    live(LifeSettings(WorldSettings(map=str(tmp_path / "office.yaml")), memory=MemorySettings(memory), goals=jobs))
+    north, south = Destination(name="north"), Destination(name="south")
+    before, after = (find(str(tmp_path / f"{name}.yaml"), memory, north, south) for name in ("office", "again"))
+    shift = np.array([4.0 + 13 * office.resolution, -2.5 + 3 * office.resolution])
+    assert np.allclose(after.poses[[0, -1], :2], before.poses[[0, -1], :2] + shift, atol=0.1)
+    assert after.length == pytest.approx(before.length, abs=0.5)
+
+
 def test_another_building_or_no_memory(tmp_path):
     rooms = two_rooms(tmp_path, "rooms", (2,))
     memory = remember(tmp_path, rooms)
     with pytest.raises(NotFoundError, match=r"knows no moves of this building with cell 0.25, min_free"):
         way(WorldSettings(map=rooms, cell=0.25), LEFT, RIGHT, memory)
+    with pytest.raises(NotFoundError, match="knows no moves of this building"):
+        way(WorldSettings(seed=3), LEFT, RIGHT, memory)
     with pytest.raises(StoreError, match="does not exist"):
         find(rooms, str(tmp_path / "none.db"))
     with pytest.raises(InputError, match="domain must be building"):

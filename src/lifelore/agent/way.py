@@ -9,12 +9,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.live.destinations import Destination, located
+from lifelore.agent.live.destinations import Destination, NamedPlaces
+from lifelore.agent.live.recognition import recognised_place
 from lifelore.agent.live.remembered_moves import RememberedMoves
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of
-from lifelore.domains.worlds import WorldSettings, occupancy_from_settings, world_from_settings
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
 from lifelore.memory import open_memory
 
 CORRIDOR = 2
@@ -59,6 +60,7 @@ def way(
     goal: Destination,
     memory: str | Path | None = None,
     spacing: float | None = None,
+    building: str | None = None,
 ) -> Way:
     """The shortest way over remembered transitions, as a path that is clear by the robot's radius.
 
@@ -72,6 +74,8 @@ def way(
         SQLite file or URL; None: the user's own. It is only read.
     spacing : float, optional
         Metres: largest distance between two poses; None: only the corners of the path.
+    building : str, optional
+        Name of the building; None: recognise it.
 
     Raises
     ------
@@ -84,12 +88,14 @@ def way(
     """
     if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
         raise InputError(f"spacing must be a positive number of metres, got {spacing}")
-    occupancy = occupancy_from_settings(world)
-    grid = world_from_settings(world, occupancy)
-    floor = floor_of(occupancy, grid)
+    if world.domain != "building":
+        raise InputError(f"domain must be building for a way in metres, got {world.domain!r}")
+    occupancy = map_from_settings(world)
     with open_memory(memory, read_only=True) as opened:
-        moves = RememberedMoves.recalled(grid, opened)
-        start, goal = located("from", start, grid, opened), located("to", goal, grid, opened)
+        place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
+        moves, names = RememberedMoves.recalled(place, opened), NamedPlaces.of(place)
+        start, goal = names.located("from", start, opened), names.located("to", goal, opened)
+    floor = floor_of(place.occupancy or occupancy, place.world)
     chain, contradicted = _KnownPart(moves, floor).chain(start, goal)
     near = moves.near(chain, CORRIDOR)
     path = clear_path(floor, near, start.located_point, goal.located_point, moves.true_moves)

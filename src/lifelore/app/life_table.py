@@ -28,6 +28,8 @@ def print_life(report: dict, written: list[str]) -> None:
         highlight=False,
         soft_wrap=True,
     )
+    if report["building"]:
+        console.print(_building_line(report["building"]), highlight=False, soft_wrap=True)
     if tasks:
         console.print(_thirds(report["summary"]["agents"]))
         for name, ratios in report["summary"].items():
@@ -50,6 +52,18 @@ def _job_line(task: dict) -> str:
         f"task {task['index']}: {where}: {name} {result['steps_to_80']:,} steps to 80 %{reached}, "
         f"{result['collisions']:,} collisions"
     )
+
+
+def _building_line(building: dict) -> str:
+    """Whether the map was recognised, and on which grounds."""
+    if not building["recognised"]:
+        return f"a new building: {building['name']} ({building['reason']})"
+    grounds = []
+    if building["agreement"] is not None:
+        grounds.append(f"{int(100 * building['agreement'])} % of places agree")
+    if building["walls"] is not None:
+        grounds.append(f"{int(100 * building['walls'])} % of walls")
+    return f"recognised as {building['name']}" + "".join(f", {ground}" for ground in grounds)
 
 
 def _thirds(agents: dict) -> Table:

@@ -34,6 +34,10 @@ def live(
     robot: Annotated[
         str, Option(help="Name of the robot in memory; robots that run at the same time need different names.")
     ] = "robot",
+    building: Annotated[
+        str | None,
+        Option(metavar="NAME", help="Name of the building; default: recognise it, or name it after its map."),
+    ] = None,
     start: Annotated[
         str | None,
         Option(
@@ -117,7 +121,7 @@ def live(
             learner, episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor
         ),
         prior=PriorSettings(prior, alpha0, weight, form, ties),
-        memory=MemorySettings(memory, robot),
+        memory=MemorySettings(memory, robot, building),
         agent=agent,
         tasks=30 if tasks is None else tasks,
         destinations=destinations,

@@ -30,6 +30,9 @@ def way(
     robot_radius: Annotated[
         float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
     ] = None,
+    building: Annotated[
+        str | None, Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
+    ] = None,
     seed: Annotated[int, Option(help="Without a map: seed of the generated office.")] = 0,
     as_json: Annotated[
         bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
@@ -48,7 +51,7 @@ def way(
 
     settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
     ends = destination_from_text("from", start), destination_from_text("to", goal)
-    found = find_way(settings, *ends, memory, spacing)
+    found = find_way(settings, *ends, memory, spacing, building)
     if csv is not None:
         write_poses(csv, found.poses)
     if as_json:

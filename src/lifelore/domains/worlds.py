@@ -58,22 +58,14 @@ class WorldSettings:
 _REWARDS = ("discount", "goal_reward", "wall_reward")
 
 
-def occupancy_from_settings(settings: WorldSettings) -> OccupancyMap:
-    """The map of a building: read from its file, or a generated office.
-
-    Raises
-    ------
-    InputError
-        The domain is not ``building``, or the map's file breaks a rule of its format.
-    """
-    if settings.domain != "building":
-        raise InputError(f"domain must be building to have a map, got {settings.domain!r}")
+def map_from_settings(settings: WorldSettings) -> OccupancyMap:
+    """The map of a ``building``: the one that the settings name, else a generated office of their seed."""
     return office_map(settings.seed) if settings.map is None else read_occupancy_map(settings.map)
 
 
 def _building(settings: WorldSettings, occupancy: OccupancyMap | None = None, **options) -> GridWorld:
     options.pop("map", None)
-    return building_from_map(occupancy or occupancy_from_settings(settings), **options)
+    return building_from_map(occupancy or map_from_settings(settings), **options)
 
 
 def _lattice(settings: WorldSettings, **options) -> GridWorld:
@@ -105,7 +97,11 @@ def domain_names() -> tuple[str, ...]:
 def world_from_settings(settings: WorldSettings, occupancy: OccupancyMap | None = None) -> GridWorld:
     """The world that `settings` describe; the same settings give the same world.
 
-    A building whose map was read before is made from `occupancy`.
+    Parameters
+    ----------
+    settings : WorldSettings
+    occupancy : OccupancyMap, optional
+        For ``building``: the map in place of the one that the settings name.
 
     Raises
     ------
@@ -129,6 +125,8 @@ def world_from_settings(settings: WorldSettings, occupancy: OccupancyMap | None 
             f"(it takes {', '.join(takes)})"
         )
     if occupancy is not None:
+        if settings.domain != "building":
+            raise InputError(f"occupancy does not apply to domain {settings.domain!r}; leave it out")
         options["occupancy"] = occupancy
     return construct(settings, **options)
 

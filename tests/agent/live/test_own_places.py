@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.live.destinations import Destination, destination_from_text, known_names, located
+from lifelore.agent.live.destinations import Destination, NamedPlaces, destination_from_text
 from lifelore.agent.live.job_list import Job
 from lifelore.agent.live.life import Life, live
 from lifelore.core.errors import InputError, NotFoundError
@@ -56,12 +56,11 @@ def test_a_job_list_is_lived_in_order_and_its_names_are_known_later(room):
     assert [task["goal"] for task in tasks] == [[2, 10], [7, 1], [2, 10]]
     assert life.report["settings"]["tasks"] == life.report["settings"]["goals"] == 3
     with open_memory(Path(room).parent / "life.db") as memory:
-        assert known_names(life.world, memory) == ["dock", "lab"]
-        assert located("to", Destination(name="dock"), life.world, memory) == Destination(DOCK, "dock")
-        with pytest.raises(
-            NotFoundError, match="to: no destination of this building is named 'cellar'; memory knows"
-        ):
-            located("to", Destination(name="cellar"), life.world, memory)
+        names = NamedPlaces(memory.keys("building")[0][0])
+        assert names.names(memory) == ["dock", "lab"]
+        assert names.located("to", Destination(name="dock"), memory) == Destination(DOCK, "dock")
+        with pytest.raises(NotFoundError, match="to: no destination of this building is named 'cellar'; memory"):
+            names.located("to", Destination(name="cellar"), memory)
     with sqlite3.connect(Path(room).parent / "life.db") as file:
         about = [json.loads(row[0]) for row in file.execute("SELECT task FROM lifelore_contributions")]
     file.close()
@@ -80,8 +79,18 @@ def test_the_newest_position_of_a_name_counts(room):
 
 def test_names_belong_to_their_building(room, tmp_path):
     life_in(room, goals=jobs(Destination(LAB, "lab")))
+    assert life_in(room, goal="lab", cell=0.25, tasks=1).report["tasks"][0]["position"] == list(LAB)
     with pytest.raises(NotFoundError, match="memory knows no names here"):
-        life_in(room, goal="lab", cell=0.25)
+        live(flat_settings(domain="building", memory=str(tmp_path / "life.db"), goal="lab"))
+
+
+def test_names_move_with_a_map_that_was_saved_again():
+    """A quarter turn and a shift: the same spot of the floor has other coordinates."""
+    first, later = NamedPlaces("b"), NamedPlaces("b", (1.0, 2.0, np.pi / 2))
+    record = later.record("dock", (3.0, 4.0))
+    # Turned a quarter to the left and shifted: (-4 + 1, 3 + 2).
+    assert record.values.tolist() == [-3_000_000, 5_000_000]
+    assert first.record("dock", (-3.0, 5.0)).values.tolist() == record.values.tolist()
 
 
 def test_tasks_without_chosen_goals_are_as_before(room):

@@ -1,7 +1,7 @@
 """Named destinations of a building: points in metres that memory knows by name.
 
-A record of kind "destination" holds one name: slots 0 and 1 are x and y in micrometres of the map's frame, and the
-newest position counts. Its key begins with the key of the building's frame.
+A record of kind "destination" holds one name: slots 0 and 1 are x and y in micrometres, in the frame of the
+building's first map, and the newest position counts. Its key begins with the key of the building.
 """
 
 import math
@@ -9,10 +9,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.agent.live.transitions import frame_key
+from lifelore.agent.live.recognition import Place
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Record
-from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.buildings.registration import IDENTITY, Pose, inverse, moved
 from lifelore.memory import Memory
 
 KIND, VERSION = "destination", 1
@@ -58,7 +58,7 @@ class Destination:
 
     @property
     def located_point(self) -> Point:
-        """The point of a destination that `located` has looked up."""
+        """The point of a destination that `NamedPlaces.located` has looked up."""
         assert self.point is not None, "look the name up first"
         return self.point
 
@@ -80,38 +80,53 @@ def destination_from_text(argument: str, text: str) -> Destination:
     return Destination((x, y))
 
 
-def destination_record(world: GridWorld, name: str, point: Point) -> Record:
-    """The record by which memory knows the name."""
-    values = np.rint(np.array(point) * _MICROMETRES).astype(np.int64)
-    about = {"name": name, "world": world.fingerprint}
-    return Record(KIND, f"{frame_key(world)}/{name}", VERSION, "newest", np.arange(2), values, about)
+@dataclass(frozen=True)
+class NamedPlaces:
+    """The names of one building; every map of the building shares them.
 
-
-def located(argument: str, destination: Destination, world: GridWorld, memory: Memory) -> Destination:
-    """The destination with its point, looked up in memory if it has only a name.
-
-    Raises
-    ------
-    NotFoundError
-        Memory knows no such name in this building; the message lists known names.
+    key : of the building in memory, or of the frame of a world in no building
+    pose : from the map's frame to that of the building's first map
     """
-    name = destination.name
-    if destination.point is not None or name is None:
-        return destination
-    record = memory.recall(KIND, f"{frame_key(world)}/{name}", VERSION)
-    if record is not None:
-        x, y = (record.values / _MICROMETRES).tolist()
-        return Destination((x, y), name)
-    names = known_names(world, memory)
-    listed = ", ".join(names[:_SHOWN]) + (" …" if len(names) > _SHOWN else "")
-    known = f"memory knows {listed}" if names else "memory knows no names here"
-    raise NotFoundError(
-        f"{argument}: no destination of this building is named '{name}'; {known}; give X,Y in metres, "
-        "or name places in a job list of `lifelore live --goals`"
-    )
 
+    key: str
+    pose: Pose = IDENTITY
 
-def known_names(world: GridWorld, memory: Memory) -> list[str]:
-    """Names of destinations of this building, sorted."""
-    frame = frame_key(world) + "/"
-    return sorted(key.removeprefix(frame) for key, _, _ in memory.keys(KIND) if key.startswith(frame))
+    @classmethod
+    def of(cls, place: Place) -> "NamedPlaces":
+        """The names of a place's building."""
+        pose = place.report and place.report["pose"]
+        return cls(place.grid.building or place.grid.frame, tuple(pose) if pose else IDENTITY)
+
+    def record(self, name: str, point: Point) -> Record:
+        """The record by which memory knows a point by its name from then on."""
+        values = np.rint(moved(self.pose, np.array([point]))[0] * _MICROMETRES).astype(np.int64)
+        return Record(KIND, f"{self.key}/{name}", VERSION, "newest", np.arange(2), values, {"name": name})
+
+    def located(self, argument: str, destination: Destination, memory: Memory) -> Destination:
+        """The destination with its point, looked up in memory if it has only a name.
+
+        Raises
+        ------
+        NotFoundError
+            Memory knows no such name in this building; the message lists known names.
+        """
+        name = destination.name
+        if destination.point is not None or name is None:
+            return destination
+        record = memory.recall(KIND, f"{self.key}/{name}", VERSION)
+        if record is not None:
+            point = moved(inverse(self.pose), record.values[None] / _MICROMETRES)[0]
+            x, y = point.round(6).tolist()
+            return Destination((x, y), name)
+        names = self.names(memory)
+        listed = ", ".join(names[:_SHOWN]) + (" …" if len(names) > _SHOWN else "")
+        known = f"memory knows {listed}" if names else "memory knows no names here"
+        raise NotFoundError(
+            f"{argument}: no destination of this building is named '{name}'; {known}; give X,Y in metres, "
+            "or name places in a job list of `lifelore live --goals`"
+        )
+
+    def names(self, memory: Memory) -> list[str]:
+        """The names that memory knows, sorted."""
+        start = self.key + "/"
+        return sorted(key.removeprefix(start) for key, _, _ in memory.keys(KIND) if key.startswith(start))

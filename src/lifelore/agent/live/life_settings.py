@@ -107,21 +107,26 @@ class MemorySettings:
     robot : str
         Name of the robot in memory, 1 to 200 printable characters. Robots that run at the same time need
         different names.
+    building : str, optional
+        Name of the building: the map must fit the remembered building of this name, or the building is a new one.
+        None: recognise the building; a new one gets the name of its map.
 
     Raises
     ------
     InputError
-        The name breaks its rule.
+        A name breaks its rule.
     """
 
     location: str | None = None
     robot: str = "robot"
+    building: str | None = None
 
     def __post_init__(self) -> None:
-        if not (self.robot.strip() and self.robot.isprintable() and len(self.robot) <= LONGEST_NAME):
-            raise InputError(
-                f"robot must be a name of 1 to {LONGEST_NAME} printable characters, got {self.robot[:40]!r}"
-            )
+        for label, name in (("robot", self.robot), ("building", self.building)):
+            if name is not None and not (name.strip() and name.isprintable() and len(name) <= LONGEST_NAME):
+                raise InputError(
+                    f"{label} must be a name of 1 to {LONGEST_NAME} printable characters, got {name[:40]!r}"
+                )
 
 
 @dataclass(frozen=True)

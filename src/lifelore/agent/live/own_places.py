@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from lifelore.agent.live.destinations import Destination, located
+from lifelore.agent.live.destinations import Destination, NamedPlaces
 from lifelore.agent.live.job_list import named_points
 from lifelore.agent.live.life_settings import LifeSettings, Place
 from lifelore.core.errors import InputError
@@ -52,7 +52,12 @@ class OwnPlaces:
 
 
 def own_places(
-    settings: LifeSettings, world: GridWorld, floor: Callable[[], Floor], memory: Memory, first: int = 0
+    settings: LifeSettings,
+    world: GridWorld,
+    floor: Callable[[], Floor],
+    names: NamedPlaces,
+    memory: Memory,
+    first: int = 0,
 ) -> OwnPlaces:
     """The places that the settings name, from task number `first` of the life on.
 
@@ -77,7 +82,7 @@ def own_places(
     def found(argument: str, end: Destination) -> Destination:
         if end.point is None and end.name in named:
             return Destination(named[end.name], end.name)
-        return located(argument, end, world, memory)
+        return names.located(argument, end, memory)
 
     def state(argument: str, end: Destination) -> int:
         return floor().state_at(argument, end.located_point)

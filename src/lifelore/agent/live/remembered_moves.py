@@ -16,6 +16,7 @@ from scipy.sparse import csgraph
 
 from lifelore.agent.live import transitions
 from lifelore.agent.live.lore import same_place
+from lifelore.agent.live.recognition import Place
 from lifelore.core.errors import NotFoundError
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.memory import Memory
@@ -41,16 +42,18 @@ class RememberedMoves:
     true: NDArray[np.bool_]
 
     @classmethod
-    def recalled(cls, world: GridWorld, memory: Memory) -> "RememberedMoves":
-        """The moves in memory about this building or an earlier version of it.
+    def recalled(cls, place: Place, memory: Memory) -> "RememberedMoves":
+        """The moves in memory about a building or an earlier version of it.
 
         Raises
         ------
         NotFoundError
             Memory holds no transitions of this building.
         """
+        world, corner = place.world, place.grid.corner
         record = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
-        record = record or same_place(world, memory)
+        if record is None and (earlier := same_place(world, memory, place.grid)):
+            record = earlier.record
         if record is None:
             settings = ", ".join(f"{name} {value:g}" for name, value in sorted(world.about.items()))
             raise NotFoundError(
@@ -66,6 +69,7 @@ class RememberedMoves:
         untold = np.array([value.get(slot, -1) < 0 for slot in (target * width + back).tolist()], bool)
         source, target = np.r_[source, target[untold]], np.r_[target, source[untold]]
         column = np.r_[column, back[untold]]
+        source, target = (transitions.cells_from(record, cells, corner) for cells in (source, target))
         cells, ends = np.unique(np.concatenate([source, target]), return_inverse=True)
         states = transitions.states_in(world, np.concatenate([source, target])).reshape(2, -1)
         there = (states >= 0).all(axis=0)

@@ -11,9 +11,15 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 
 class TaskStream:
-    """Makes the task of each number, in one world."""
+    """Makes the task of each number, in one world.
 
-    def __init__(self, world: GridWorld, settings: LifeSettings, start: int | None = None) -> None:
+    `frame` is the key of the grid that the world shares with other maps of its building; default: its own. `start`
+    is the state in which every episode starts; default: any.
+    """
+
+    def __init__(
+        self, world: GridWorld, settings: LifeSettings, frame: str | None = None, start: int | None = None
+    ) -> None:
         self.world, self.seed = world, settings.seed
         self._start = start
         places = np.delete(np.arange(world.n_states), [] if self._start is None else self._start)
@@ -24,7 +30,7 @@ class TaskStream:
             )
         if settings.destinations:
             # Drawn from all cells of the frame, so that a map with small changes has the same destinations.
-            order = stream(self.seed, "destinations", frame_key(world)).permutation(world.state_of.size)
+            order = stream(self.seed, "destinations", frame or frame_key(world)).permutation(world.state_of.size)
             states = world.state_of.ravel()[order]
             places = states[np.isin(states, places)][: settings.destinations]
         self._places = places
