@@ -9,7 +9,9 @@ from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupan
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
 
-DOCUMENT = {"domain", "map", "n_states", "seed", "settings", "tasks", "summary", "memory", "seconds"}
+DOCUMENT = {
+    "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
+}  # fmt: skip
 TASK = {"index", "goal", "optimal_return", "agents"}
 RESULT = {"first_return", "collisions", "steps_to_80", "episodes_to_80", "reached", "final_return"}
 ESTIMATE = {"value", "median", "ci95", "n"}

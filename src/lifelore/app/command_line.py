@@ -42,9 +42,11 @@ def _register() -> None:
         reuse_command,
         scenes_command,
         teach_command,
+        way_command,
     )
 
     app.command("live")(live_command.live)
+    app.command("way")(way_command.way)
     app.command("perceive")(perceive_command.perceive)
     app.command("learn-relations")(learn_relations_command.learn_relations)
     app.command("scenes")(scenes_command.scenes)
