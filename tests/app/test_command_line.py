@@ -100,6 +100,7 @@ def test_the_contract_names_these_commands():
         "perceive",
         "learn-relations",
         "scenes",
+        "learn-from",
         "teach",
         "advise",
         "reproduce",

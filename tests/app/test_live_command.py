@@ -183,7 +183,7 @@ def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
 
 def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "creating the folder out\n")
+    assert (said.status, said.err) == (0, "new folder out\n")
     for words in ("6 tasks in lattice, 341 places", "this robot has finished 6 tasks in all", "steps to 80 %",
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
@@ -195,7 +195,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
 
 def test_json_and_pictures_at_once(ask):
     said = ask(*LATTICE, "--tasks", 2, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "creating the folder out\n")
+    assert (said.status, said.err) == (0, "new folder out\n")
     assert json.loads(Path("out/summary.json").read_text()) == said.document
 
 

@@ -198,9 +198,10 @@ def test_a_full_disk_is_one_line_and_keeps_what_is_finished(start, answer, ask, 
 
 
 AS_NOBODY = """
-import os, sys
+import os, shutil, sys
 from lifelore.app.command_line import run
 memory, spare, *arguments = sys.argv[1:]
+shutil.copy(memory, spare)
 with open(os.devnull, "w") as nowhere:
     told, sys.stdout = sys.stdout, nowhere
     assert run([*arguments, "--memory", spare]) == 0  # so that what is read late is read before the rights go

@@ -34,6 +34,7 @@ def _register() -> None:
         advise_command,
         bench_command,
         doctor_command,
+        learn_from_command,
         learn_relations_command,
         live_command,
         memory_commands,
@@ -51,6 +52,7 @@ def _register() -> None:
     app.command("learn-relations")(learn_relations_command.learn_relations)
     app.command("scenes")(scenes_command.scenes)
     app.command("teach")(teach_command.teach)
+    app.command("learn-from")(learn_from_command.learn_from)
     app.command("advise")(advise_command.advise)
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")

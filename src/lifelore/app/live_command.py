@@ -134,12 +134,19 @@ def live(
         goal=_place("goal", goal, domain),
         goals=() if goals is None else _jobs(goals, tasks),
     )
-    _announce_new_folders(memory, out)
+    new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
     watch = None if l2log is None else LifeLog(l2log, domain).add
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
-        life = live_through(settings, progress=progress, stop=stop, watch=watch)
+
+        def show(done: int, total: int, label: str) -> None:
+            # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
+            for folder in new_folders if done == 0 else ():
+                print(f"new folder {folder}", file=sys.stderr)
+            progress(done, total, label)
+
+        life = live_through(settings, progress=show, stop=stop, watch=watch)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
@@ -148,15 +155,13 @@ def live(
     return INTERRUPTED if life.stopped else 0
 
 
-def _announce_new_folders(memory: str | None, out: str | None) -> None:
-    """Name the folders that a life will create, so that a mistyped path is seen at once."""
+def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
+    """The folders that a life will create."""
     from lifelore.memory.location import locate
 
     place = locate(memory)
-    folders = [place.parent] if isinstance(place, Path) else []
-    for folder in folders + ([Path(out)] if out else []):
-        if not folder.exists():
-            print(f"creating the folder {folder}", file=sys.stderr)
+    folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
+    return [folder for folder in folders if not folder.exists()]
 
 
 def _place(argument: str, text: str | None, domain: str) -> "Place | None":

@@ -103,6 +103,13 @@ def read_runs(path: str | Path) -> list[Run]:
     return runs
 
 
+def run_of_poses(
+    name: str, time: NDArray[np.float64], points: NDArray[np.float64], heading: NDArray[np.float64]
+) -> Run:
+    """A run without outcomes, from arrays as in `Run`."""
+    return Run(name, time, points, heading, [NOTHING] * len(time))
+
+
 def _poses(file: Iterable[str], name: str) -> Iterator[_Pose]:
     lines = iter(file)
     header = next(lines, "")
