@@ -56,3 +56,15 @@ def test_an_example_is_short_and_stands_on_a_page(example):
     assert len(example.read_text(encoding="utf-8").splitlines()) <= 40
     pages = (ROOT / "docs" / "start").glob("*.md")
     assert any(f"examples/{example.name}" in page.read_text(encoding="utf-8") for page in pages)
+
+
+@pytest.mark.slow
+def test_the_example_data_can_be_made_again(tmp_path):
+    pytest.importorskip("mujoco")
+    data = ROOT / "examples" / "data"
+    subprocess.run([sys.executable, str(data / "make.py"), str(tmp_path)], check=True)
+    shipped = {path.name for path in data.iterdir() if path.suffix in (".yaml", ".png", ".csv", ".pcd")}
+    assert {path.name for path in tmp_path.iterdir()} == shipped
+    for name in ("office.yaml", "log.csv"):
+        assert (tmp_path / name).read_text() == (data / name).read_text()
+    assert sum((data / name).stat().st_size for name in shipped) < 1_000_000

@@ -9,7 +9,9 @@ from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupan
 from lifelore.domains.buildings.office import office_map
 from lifelore.memory import open_memory
 
-DOCUMENT = {"domain", "map", "n_states", "seed", "settings", "tasks", "summary", "memory", "seconds"}
+DOCUMENT = {
+    "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
+}  # fmt: skip
 TASK = {"index", "goal", "optimal_return", "agents"}
 RESULT = {"first_return", "collisions", "steps_to_80", "episodes_to_80", "reached", "final_return"}
 ESTIMATE = {"value", "median", "ci95", "n"}
@@ -181,7 +183,7 @@ def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
 
 def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "")
+    assert (said.status, said.err) == (0, "new folder out\n")
     for words in ("6 tasks in lattice, 341 places", "this robot has finished 6 tasks in all", "steps to 80 %",
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
@@ -193,7 +195,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
 
 def test_json_and_pictures_at_once(ask):
     said = ask(*LATTICE, "--tasks", 2, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "")
+    assert (said.status, said.err) == (0, "new folder out\n")
     assert json.loads(Path("out/summary.json").read_text()) == said.document
 
 

@@ -5,7 +5,7 @@ from typing import Annotated, Any
 import typer
 
 memory = typer.Typer(
-    help="Show, export, import, merge or forget the content of a memory, for example to share it in a fleet.",
+    help="Show, export, import, merge or forget memories.",
     no_args_is_help=True,
 )
 
@@ -15,12 +15,12 @@ AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdou
 
 @memory.command()
 def show(where: Where = None, as_json: AsJson = False) -> None:
-    """List the robots that contributed, and the stored records with their sizes."""
+    """List robots and their records with sizes."""
     from lifelore.app.console import print_json
     from lifelore.app.memory_table import print_memory
     from lifelore.memory import open_memory
 
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         overview = opened.show()
     print_json(overview) if as_json else print_memory(overview)
 
@@ -29,10 +29,13 @@ def show(where: Where = None, as_json: AsJson = False) -> None:
 def export(
     path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Write all contributions to one portable file; use it for backups, or to move a memory."""
+    """Write all contributions to one portable file.
+
+    Use it for backups, or to move a memory.
+    """
     from lifelore.memory import open_memory
 
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         count = opened.export_to(path)
     _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
 
@@ -41,7 +44,10 @@ def export(
 def import_(
     paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Add exported files, all or none; contributions stored already or forgotten are skipped."""
+    """Add exported files, all or none.
+
+    Contributions that are stored already or were forgotten are skipped.
+    """
     _merge(paths, where, as_json)
 
 
@@ -51,19 +57,23 @@ def merge(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Add the content of other memories, all or none; use it to share what several robots learnt.
+    """Add the content of other memories, all or none.
 
-    The other memories are not changed. The result does not depend on order and grouping.
+    Use it to share the knowledge of several robots. The other memories are not changed. The result does not depend
+    on order and grouping.
     """
     _merge(others, where, as_json)
 
 
 @memory.command()
 def forget(robot: Annotated[str, typer.Argument()], where: Where = None, as_json: AsJson = False) -> None:
-    """Delete all contributions of a robot for ever: no later import restores them."""
+    """Delete all contributions of a robot for ever.
+
+    No later import restores them.
+    """
     from lifelore.memory import open_memory
 
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         count = opened.forget(robot)
     _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
 

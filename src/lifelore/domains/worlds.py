@@ -8,7 +8,7 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.domains.advice.advice_maze import advice_maze
 from lifelore.domains.buildings.building import building_from_map
-from lifelore.domains.buildings.occupancy_map import read_occupancy_map
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice
@@ -58,11 +58,14 @@ class WorldSettings:
 _REWARDS = ("discount", "goal_reward", "wall_reward")
 
 
-def _building(settings: WorldSettings, **options) -> GridWorld:
-    drawn = settings.map is None
-    occupancy = office_map(settings.seed) if drawn else read_occupancy_map(settings.map)  # type: ignore[arg-type]
+def map_from_settings(settings: WorldSettings) -> OccupancyMap:
+    """The map of a ``building``: the one that the settings name, else a generated office of their seed."""
+    return office_map(settings.seed) if settings.map is None else read_occupancy_map(settings.map)
+
+
+def _building(settings: WorldSettings, occupancy: OccupancyMap | None = None, **options) -> GridWorld:
     options.pop("map", None)
-    return building_from_map(occupancy, **options)
+    return building_from_map(occupancy or map_from_settings(settings), **options)
 
 
 def _lattice(settings: WorldSettings, **options) -> GridWorld:
@@ -91,8 +94,14 @@ def domain_names() -> tuple[str, ...]:
     return tuple(_WORLDS)
 
 
-def world_from_settings(settings: WorldSettings) -> GridWorld:
+def world_from_settings(settings: WorldSettings, occupancy: OccupancyMap | None = None) -> GridWorld:
     """The world that `settings` describe; the same settings give the same world.
+
+    Parameters
+    ----------
+    settings : WorldSettings
+    occupancy : OccupancyMap, optional
+        For ``building``: the map in place of the one that the settings name.
 
     Raises
     ------
@@ -115,6 +124,10 @@ def world_from_settings(settings: WorldSettings) -> GridWorld:
             f"{unused[0]} does not apply to domain {settings.domain!r}, got {options[unused[0]]!r}; leave it out "
             f"(it takes {', '.join(takes)})"
         )
+    if occupancy is not None:
+        if settings.domain != "building":
+            raise InputError(f"occupancy does not apply to domain {settings.domain!r}; leave it out")
+        options["occupancy"] = occupancy
     return construct(settings, **options)
 
 

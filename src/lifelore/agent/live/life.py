@@ -6,6 +6,7 @@ import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from threading import Event
 
@@ -14,10 +15,13 @@ import numpy as np
 from lifelore.action.priors.back_off import posterior_mean
 from lifelore.action.priors.exploration import prior_rows, try_costs
 from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
+from lifelore.agent.live.destinations import NamedPlaces
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.model_task import live_model_task
+from lifelore.agent.live.own_places import OwnGoal, own_places
 from lifelore.agent.live.q_task import live_q_task
+from lifelore.agent.live.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
@@ -30,8 +34,10 @@ from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.domains.worlds import world_from_settings
+from lifelore.domains.worlds import map_from_settings, world_from_settings
 from lifelore.memory import Memory, open_memory
 
 TASKS_WITH_POLICY = 4
@@ -51,6 +57,10 @@ class Life:
         Knowledge of the first agent at the end.
     stopped : bool
         Whether the user asked to stop; the report covers the tasks finished before.
+    occupancy : OccupancyMap, optional
+        The map of a building, laid on the grid of the building's first map.
+    start : int, optional
+        State in which every episode started, if it was given.
     """
 
     report: dict
@@ -58,6 +68,13 @@ class Life:
     results: list[dict[str, TaskResult]] = field(repr=False)
     lore: Lore = field(repr=False)
     stopped: bool = False
+    occupancy: OccupancyMap | None = field(default=None, repr=False)
+    start: int | None = None
+
+    @cached_property
+    def floor(self) -> Floor | None:
+        """The building at the resolution of its map; None in worlds without a map."""
+        return None if self.occupancy is None else floor_of(self.occupancy, self.world)
 
 
 Watcher = Callable[[dict, dict[str, TaskResult]], None]
@@ -77,7 +94,7 @@ def live(
     ----------
     settings : LifeSettings
     progress : callable, optional
-        Called as ``progress(done, total, label)`` after each task.
+        Called as ``progress(done, total, label)`` before the first task and after each task.
     stop : threading.Event, optional
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
@@ -93,34 +110,62 @@ def live(
     stop = stop or Event()
     began = time.perf_counter()
     names = agents_for(settings.agent, settings.learning.learner)
-    world = world_from_settings(settings.world)
+    occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
+    world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        life = _RunningLife(settings, world, names, memory)
+        place = _place(settings, world, occupancy, memory, names[0])
+        life = _RunningLife(settings, place, names, memory)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)
-        report = _report(settings, world, life, time.perf_counter() - began)
-    return Life(report, world, results, life.lores[names[0]], stop.is_set())
+        report = _report(settings, place, life, time.perf_counter() - began)
+    lore, start = life.lores[names[0]], life.places.start
+    return Life(report, place.world, results, lore, stop.is_set(), place.occupancy, start)
+
+
+def _place(
+    settings: LifeSettings, world: GridWorld, occupancy: OccupancyMap | None, memory: Memory, agent: str
+) -> Place:
+    """The remembered building of the world, if the agent remembers transitions of buildings."""
+    name, remembers = settings.memory.building, AGENTS[agent].remembers and settings.learning.learner == "model"
+    if occupancy is not None and remembers:
+        return recognised_place(settings.world, world, occupancy, memory, name)
+    if name is not None:
+        raise InputError(
+            f"building names a map that is remembered, got {name!r} for a life that remembers no map; leave it out"
+        )
+    return own_place(world, occupancy)
 
 
 class _RunningLife:
     """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
-    def __init__(self, settings: LifeSettings, world: GridWorld, names: list[str], memory: Memory) -> None:
-        self.settings, self.world, self.names, self.memory = settings, world, names, memory
-        self.stream = TaskStream(world, settings)
+    def __init__(self, settings: LifeSettings, place: Place, names: list[str], memory: Memory) -> None:
+        world = place.world
+        self.settings, self.world, self.place = settings, world, place
+        self.names, self.memory = names, memory
+        self.names_of_places = NamedPlaces.of(place)
+        self.places = own_places(settings, world, self._floor, self.names_of_places, memory)
+        self.unstored = place.news
+        self.stream = TaskStream(world, settings, place.grid.frame, self.places.start)
         self.scope = prior_scope(world, settings.prior.condition)
         # Every agent starts from the same knowledge and then learns by itself; only the first one's is stored.
-        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory)
+        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory, place.grid)
         self.lores = {name: first.copy() if i else first for i, name in enumerate(names)}
         self.tasks_before = memory.tasks(settings.memory.robot)
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.finished: list[dict] = []
 
+    def _floor(self) -> Floor:
+        assert self.place.occupancy is not None, "a building has a map"
+        return floor_of(self.place.occupancy, self.world)
+
     def run(
         self, pool: ThreadPoolExecutor, progress: Progress | None, stop: Event, watch: Watcher | None
     ) -> list[dict[str, TaskResult]]:
         results = []
-        total = self.settings.tasks
+        total = self.settings.n_tasks
+        if progress:
+            progress(0, total, "")
         for done in range(total):
             if stop.is_set():
                 break
@@ -138,7 +183,8 @@ class _RunningLife:
         return results
 
     def _live_task(self, index: int, seq: int, pool: ThreadPoolExecutor, stop: Event) -> dict[str, TaskResult]:
-        task = self.stream.task(index)
+        own = self.places.goal(seq)
+        task = self.stream.task(index, own and own.state)
         tables = task.tables()
         optimal = mean_start_value(tables, optimal_q(tables, task.domain.discount).max(axis=1))
         if optimal <= 0:
@@ -155,13 +201,26 @@ class _RunningLife:
             raise
         goal = int(task.goal)  # type: ignore[arg-type]
         records = {name: self._learn(name, results[name], goal) for name in self.names}
-        about = {"index": index, "goal": self.world.cells[goal].tolist(), "world": self.world.fingerprint}
+        chosen = {} if own is None else own.to_dict()
+        about = {"index": index, "goal": self.world.cells[goal].tolist()}
         self.memory.contribute(
-            self.settings.memory.robot, records[self.names[0]], process=self.process, seq=seq, task=about
+            self.settings.memory.robot,
+            records[self.names[0]] + self.unstored + self._names(own),
+            process=self.process,
+            seq=seq,
+            task=about | chosen | {"world": self.world.fingerprint},
         )
+        self.unstored = []
         agents = {name: result.to_dict() for name, result in results.items()}
-        self.finished.append({"index": index, "goal": about["goal"], "optimal_return": optimal, "agents": agents})
+        self.finished.append(about | chosen | {"optimal_return": optimal, "agents": agents})
         return results
+
+    def _names(self, own: OwnGoal | None) -> list[Record]:
+        """The record by which memory knows a named destination from now on."""
+        end = own and own.destination
+        if end is None or end.name is None or end.point is None:
+            return []
+        return [self.names_of_places.record(end.name, end.point)]
 
     def _learn(self, name: str, result: TaskResult, goal: int) -> list[Record]:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
@@ -250,11 +309,13 @@ class _SharedTask:
         )
 
 
-def _report(settings: LifeSettings, world: GridWorld, life: _RunningLife, seconds: float) -> dict:
+def _report(settings: LifeSettings, place: Place, life: _RunningLife, seconds: float) -> dict:
+    world = place.world
     return {
         "domain": settings.world.domain,
         "map": _text(settings.world.map),
         "n_states": world.n_states,
+        "building": place.report,
         "seed": settings.seed,
         "settings": _settings_document(settings, world, life.memory.location),
         "tasks": life.finished,
@@ -270,7 +331,7 @@ def _settings_document(settings: LifeSettings, world: GridWorld, location: str) 
     document = {
         "domain": settings.world.domain,
         "map": _text(settings.world.map),
-        "tasks": settings.tasks,
+        "tasks": settings.n_tasks,
         "cell": settings.world.cell,
         "robot_radius": settings.world.robot_radius,
         "destinations": settings.destinations,
@@ -297,8 +358,14 @@ def _settings_document(settings: LifeSettings, world: GridWorld, location: str) 
         "epsilon_decay": learning.epsilon_decay,
         "epsilon_floor": learning.epsilon_floor,
     }
-    sizes = {"size": settings.world.size, "loops": settings.world.loops}
-    return document | {name: value for name, value in sizes.items() if value is not None} | world.about
+    optional = {
+        "goal": settings.goal,
+        "goals": len(settings.goals) or None,
+        "watch": settings.watch or None,
+        "size": settings.world.size,
+        "loops": settings.world.loops,
+    }
+    return document | {name: value for name, value in optional.items() if value is not None} | world.about
 
 
 def _text(path: str | Path | None) -> str | None:

@@ -2,6 +2,7 @@
 
 import hashlib
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +11,7 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
+from lifelore.agent.live.transitions import BuildingGrid
 from lifelore.core.learning.known_world import WorldModel
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
@@ -51,11 +53,15 @@ class Lore:
     scope: PriorScope
     prior: ActionPrior
     model: WorldModel
+    grid: BuildingGrid
     _stored: NDArray[np.int64] = field(repr=False)
 
     @classmethod
-    def recalled(cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Memory) -> "Lore":
-        """The knowledge in memory about this world."""
+    def recalled(
+        cls, world: GridWorld, scope: PriorScope, alpha0: float, memory: Memory, grid: BuildingGrid | None = None
+    ) -> "Lore":
+        """The knowledge in memory about this world; `grid` is that of its building, by default its own."""
+        grid = grid or BuildingGrid(transitions.frame_key(world))
         n_actions = world.neighbour.shape[1]
         record = memory.recall(PRIOR_KIND, scope.key, PRIOR_VERSION)
         prior = (
@@ -64,18 +70,18 @@ class Lore:
             else ActionPrior(n_actions, alpha0, scope.key)
         )
         own = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
-        model = transitions.from_record(world, own)
+        model = transitions.from_record(world, own, grid.corner)
         stored = transitions.model_table(world, model)
         if own is None:
-            changed = same_place(world, memory)
-            model = transitions.from_record(world, changed)
-        return cls(world, scope, prior, model, stored)
+            changed = same_place(world, memory, grid)
+            model = transitions.from_record(world, changed.record if changed else None, grid.corner)
+        return cls(world, scope, prior, model, grid, stored)
 
     def copy(self) -> "Lore":
         """An independent copy for another agent."""
         prior = ActionPrior.merged([self.prior])
         model = WorldModel(self.model.target.copy(), self.model.percept.copy())
-        return Lore(self.world, self.scope, prior, model, self._stored.copy())
+        return Lore(self.world, self.scope, prior, model, self.grid, self._stored.copy())
 
     def learn_prior(self, best: NDArray[np.bool_], goal: int, weight: float) -> Record:
         """Count the policy of a finished task without its goal row (Eq. 3.5, 3.7); return the contribution."""
@@ -89,19 +95,33 @@ class Lore:
     def model_news(self) -> Record:
         """Transitions that differ from those in memory, as a record."""
         table = transitions.model_table(self.world, self.model)
-        record = transitions.to_record(self.world, table, self._stored)
+        record = transitions.to_record(self.world, table, self._stored, self.grid)
         self._stored = table
         return record
 
 
-def same_place(world: GridWorld, memory: Memory) -> Record | None:
-    """Stored transitions of an earlier version of this place; None if there are none."""
-    best, best_share = None, transitions.SAME_PLACE
+class EarlierVersion(NamedTuple):
+    """Stored transitions of an earlier version of a place, and the share of its cells that are unchanged."""
+
+    record: Record
+    agreement: float
+
+
+def same_place(world: GridWorld, memory: Memory, grid: BuildingGrid) -> EarlierVersion | None:
+    """The stored version of this place with the most unchanged cells; None if there is none.
+
+    Versions that are not known to be of this building must agree in `SAME_PLACE` of their cells.
+    """
+    best = None
     for key, version, about in memory.keys(transitions.KIND):
-        if version != transitions.VERSION or about.get("frame") != transitions.frame_key(world):
+        if version != transitions.VERSION or about.get("frame") != grid.frame:
             continue
+        building = about.get("building")
+        if building is not None and grid.building is not None and building != grid.building:
+            continue
+        least = 0.0 if building is not None and building == grid.building else transitions.SAME_PLACE
         record = memory.recall(transitions.KIND, key, version)
-        share = transitions.agreement(world, record) if record else 0.0
-        if share >= best_share:
-            best, best_share = record, share
+        share = transitions.agreement(world, record, grid.corner) if record else 0.0
+        if record and share >= max(least, best.agreement if best else 0.0):
+            best = EarlierVersion(record, share)
     return best

@@ -4,6 +4,7 @@ import json
 import os
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lifelore.agent.live.baselines import AGENTS
@@ -104,7 +105,7 @@ def _write_all(life: Life, folder: Path) -> None:
     save_figure(_life_figure(life), folder / "life.png")
     save_figure(_task_figure(life), folder / "learning_curves.png")
     save_figure(_world_figure(life, paths), folder / "world.png")
-    write_paths(folder / "paths.csv", life.world, paths)
+    write_paths(folder / "paths.csv", life.world, paths, life.floor)
     if _has_prior(life):
         _write_prior(life, folder)
 
@@ -184,20 +185,21 @@ def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
 def _last_paths(life: Life) -> list[GreedyPaths]:
     """Greedy paths of the first agent in the last tasks."""
     world, name = life.world, _agents(life)[0]
-    start = life.report["settings"]["start"]
-    fixed = None if start is None else int(world.state_of[tuple(start)])
     last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
-    return [
-        greedy_paths_of(world, result[name].policy, task["index"], int(world.state_of[tuple(task["goal"])]), fixed)
-        for task, result in last
-    ]
+    paths = []
+    for task, result in last:
+        goal = int(world.state_of[tuple(task["goal"])])
+        found = greedy_paths_of(world, result[name].policy, task["index"], goal, life.start)
+        point = task.get("position")
+        paths.append(replace(found, goal_point=point and tuple(point), name=task.get("name")))
+    return paths
 
 
 def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     world = life.world
     shown = [
         {
-            "label": f"task {task.task}, reached from {_percent(task.arriving)} of starts",
+            "label": f"task {_named(task)}, reached from {_percent(task.arriving)} of starts",
             "goal": world.cells[task.goal],
             "paths": [world.cells[path] for path in task.paths],
         }
@@ -208,6 +210,10 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
     )
+
+
+def _named(task: GreedyPaths) -> str:
+    return f"{task.task} ({task.name})" if task.name else str(task.task)
 
 
 def _percent(share: float) -> str:

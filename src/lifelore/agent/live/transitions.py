@@ -6,13 +6,14 @@ differently or have a larger picture.
 """
 
 import hashlib
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.learning.known_world import UNKNOWN, WorldModel, unknown_world
 from lifelore.core.protocols import Record
-from lifelore.domains.grids.grid_world import MOVE_NAMES, GridWorld
+from lifelore.domains.grids.grid_world import MOVE_NAMES, Frame, GridWorld
 
 KIND, VERSION = "transitions", 1
 COLUMN_BITS = 20
@@ -20,6 +21,19 @@ COLUMN_BITS = 20
 SAME_PLACE = 0.8
 """Least share of the stored cells whose percepts are unchanged if two grids on one frame are the same place. Two
 different buildings agree in about a third of their cells, most of them open floor."""
+
+
+class BuildingGrid(NamedTuple):
+    """The grid that all maps of a building share.
+
+    frame : hash of the grid's frame and settings, see `frame_key`
+    corner : cell (row, column) of a world's lower left corner, counted from that of the building's first map
+    building : key of the building in memory; None if memory stores no map of it
+    """
+
+    frame: str
+    corner: tuple[int, int] = (0, 0)
+    building: str | None = None
 
 
 def cells_of(world: GridWorld) -> NDArray[np.int64]:
@@ -35,9 +49,12 @@ def states_in(world: GridWorld, cells: NDArray[np.int64]) -> NDArray[np.int64]:
     return np.where(own[order][place] == cells, order[place], -1)
 
 
-def frame_key(world: GridWorld) -> str:
-    """Hash of the properties that two versions of one place share: frame, actions and settings, not the grid."""
-    parts = (world.name, world.frame, MOVE_NAMES, sorted(world.about.items()))
+def frame_key(world: GridWorld, frame: Frame | None = None) -> str:
+    """Hash of the properties that two versions of one place share: frame, actions and settings, not the grid.
+
+    `frame` is that of the place's first map where the world was laid on it; default: the world's own.
+    """
+    parts = (world.name, frame or world.frame, MOVE_NAMES, sorted(world.about.items()))
     return hashlib.sha256(repr(parts).encode()).hexdigest()[:32]
 
 
@@ -48,34 +65,63 @@ def model_table(world: GridWorld, model: WorldModel) -> NDArray[np.int64]:
     return np.column_stack([targets, model.percept])
 
 
-def to_record(world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64]) -> Record:
-    """The entries of `table` that differ from `before`, as a record in which the newest value counts."""
+def to_record(
+    world: GridWorld, table: NDArray[np.int64], before: NDArray[np.int64], grid: BuildingGrid | None = None
+) -> Record:
+    """The entries of `table` that differ from `before`, as a record in which the newest value counts.
+
+    `grid` is that of the building; default: the world's own.
+    """
+    grid = grid or BuildingGrid(frame_key(world))
     width = table.shape[1]
     state, column = np.nonzero(table != before)
     slots = cells_of(world)[state] * width + column
     order = np.argsort(slots)
-    about = {"world": world.name, "states": world.n_states, "frame": frame_key(world), "shape": list(world.shape)}
+    about = {"world": world.name, "states": world.n_states, "frame": grid.frame, "shape": list(world.shape)}
+    if grid.building is not None:
+        about |= {"corner": list(grid.corner), "building": grid.building}
     return Record(KIND, world.fingerprint, VERSION, "newest", slots[order], table[state, column][order], about)
 
 
-def from_record(world: GridWorld, record: Record | None) -> WorldModel:
-    """The model of this world in a record, without the cells that the world no longer has."""
+def from_record(world: GridWorld, record: Record | None, corner: tuple[int, int] = (0, 0)) -> WorldModel:
+    """The model of this world in a record, without the cells that the world no longer has.
+
+    `corner` is the cell of the world's lower left corner, see `BuildingGrid`.
+    """
     model = unknown_world(world.n_states, world.neighbour.shape[1])
     if record is None:
         return model
     width = model.target.shape[1] + 1
-    state, column = states_in(world, record.slots // width), record.slots % width
+    shift = _shift(record, corner)
+    state, column = states_in(world, _shifted(record.slots // width, shift)), record.slots % width
     known = (state >= 0) & (record.values >= 0)
     moves, percepts = known & (column < width - 1), known & (column == width - 1)
-    model.target[state[moves], column[moves]] = states_in(world, record.values[moves])
+    model.target[state[moves], column[moves]] = states_in(world, _shifted(record.values[moves], shift))
     model.percept[state[percepts]] = record.values[percepts]
     return model
 
 
-def agreement(world: GridWorld, record: Record) -> float:
+def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)) -> float:
     """Share of the record's cells whose percepts are unchanged in this world, in [0, 1]."""
     width = world.neighbour.shape[1] + 1
     percepts = (record.slots % width == width - 1) & (record.values >= 0)
-    state = states_in(world, record.slots[percepts] // width)
+    state = states_in(world, _shifted(record.slots[percepts] // width, _shift(record, corner)))
     same = (state >= 0) & (world.percepts[state] == record.values[percepts])
     return float(same.mean()) if same.size else 0.0
+
+
+def cells_from(record: Record, cells: NDArray[np.int64], corner: tuple[int, int]) -> NDArray[np.int64]:
+    """Numbers of a record's cells counted from a world's `corner`; -1 for cells below or left of it."""
+    return _shifted(cells, _shift(record, corner))
+
+
+def _shift(record: Record, corner: tuple[int, int]) -> tuple[int, int]:
+    """Rows and columns from a record's lower left corner to that of a world."""
+    row, column = record.about.get("corner", (0, 0))
+    return row - corner[0], column - corner[1]
+
+
+def _shifted(cells: NDArray[np.int64], shift: tuple[int, int]) -> NDArray[np.int64]:
+    """Numbers of the same cells counted from another corner; -1 for cells below or left of it."""
+    row, column = (cells >> COLUMN_BITS) + shift[0], (cells & (2**COLUMN_BITS - 1)) + shift[1]
+    return np.where((row >= 0) & (column >= 0), (row << COLUMN_BITS) | column, -1)

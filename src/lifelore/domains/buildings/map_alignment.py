@@ -1,0 +1,96 @@
+"""Resamples an occupancy map on the grid of an earlier map of the same building, so that their cells coincide."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap
+from lifelore.domains.buildings.registration import IDENTITY, Pose, composed, inverse, moved
+
+_RAGGED = 2
+"""Pixels that may lie beyond the earlier map's picture without making the grid larger."""
+
+
+@dataclass(frozen=True)
+class MapFrame:
+    """Where the first map of a building lies in its own world frame.
+
+    origin : pose of the lower left corner of its picture
+    size : width and height of its picture in metres
+    """
+
+    origin: Pose
+    size: tuple[float, float]
+
+    @classmethod
+    def of(cls, occupancy: OccupancyMap) -> "MapFrame":
+        """The frame of a building's first map."""
+        rows, columns = occupancy.state.shape
+        return cls(occupancy.origin, (columns * occupancy.resolution, rows * occupancy.resolution))
+
+
+def aligned_map(
+    new: OccupancyMap, pose: Pose, frame: MapFrame, cell: float, pixel: float | None = None
+) -> tuple[OccupancyMap, tuple[int, int]]:
+    """A map with its pixels on the grid of an earlier map, and the cell of its lower left corner.
+
+    Parameters
+    ----------
+    new : OccupancyMap
+    pose : (dx, dy, dyaw)
+        From the world frame of `new` to the world frame of the earlier map.
+    frame : MapFrame
+        Of the earlier map.
+    cell : float
+        Side of a cell in metres. The picture covers that of the earlier map; it grows by whole cells where `new`
+        knows more.
+    pixel : float, optional
+        Side of a pixel of the result in metres; default: that of `new`.
+
+    Returns
+    -------
+    aligned : OccupancyMap
+        Each pixel has the state of the pixel of `new` in which its centre lies. The origin is in the world frame
+        of `new`, so positions in metres stay those of `new`.
+    corner : (row, column)
+        Cell of the lower left corner, counted from the lower left corner of the earlier map; at most 0.
+    """
+    pixel = new.resolution if pixel is None else pixel
+    to_frame = composed(
+        inverse(frame.origin), composed(pose, new.origin)
+    )  # picture of `new` → picture of the frame
+    low, high = _extent(new, to_frame)
+    slack = _RAGGED * max(pixel, new.resolution)
+    corner, shape = [], []
+    for axis in (0, 1):
+        first = 0 if low[axis] >= -slack else int(np.floor(low[axis] / cell))
+        end = frame.size[axis] if high[axis] <= frame.size[axis] + slack else np.ceil(high[axis] / cell) * cell
+        corner.append(first)
+        shape.append(round((end - first * cell) / pixel))
+    x, y = (np.arange(n) + 0.5 for n in shape)
+    centres = np.stack(np.meshgrid(x * pixel + corner[0] * cell, y[::-1] * pixel + corner[1] * cell), axis=-1)
+    state = _sampled(new, moved(inverse(to_frame), centres.reshape(-1, 2))).reshape(shape[1], shape[0])
+    here = composed(inverse(pose), frame.origin)
+    origin = composed(here, (corner[0] * cell, corner[1] * cell, 0.0))
+    if pose == IDENTITY and corner == [0, 0]:
+        origin = frame.origin  # without rounding, so that the same world has the same fingerprint
+    return OccupancyMap(state, pixel, origin, new.source), (corner[1], corner[0])
+
+
+def _extent(new: OccupancyMap, to_frame: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Smallest and largest x and y of the known pixels in the frame of the earlier picture."""
+    row, column = np.nonzero(new.state != UNKNOWN)
+    if not row.size:
+        return np.zeros(2), np.zeros(2)
+    centres = moved(to_frame, np.column_stack([column + 0.5, len(new.state) - row - 0.5]) * new.resolution)
+    half = new.resolution / 2
+    return centres.min(axis=0) - half, centres.max(axis=0) + half
+
+
+def _sampled(new: OccupancyMap, points: NDArray[np.float64]) -> NDArray[np.uint8]:
+    """The states of the pixels in which points of the picture's own frame lie; unknown outside it."""
+    column, row = np.floor(points.T / new.resolution).astype(np.int64)
+    row = len(new.state) - 1 - row
+    inside = (row >= 0) & (row < new.state.shape[0]) & (column >= 0) & (column < new.state.shape[1])
+    return np.where(inside, new.state[np.where(inside, row, 0), np.where(inside, column, 0)], UNKNOWN)

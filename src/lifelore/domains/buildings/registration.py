@@ -1,0 +1,293 @@
+"""Finds the rigid motion that lays one occupancy map on another, and how well the two then agree.
+
+1. All rotations in steps of 1°, and all translations at once: the walls of one map are correlated by FFT with the
+   blurred walls of the other (correlative matching; Olson 2009, Carpin 2008).
+2. The best poses that differ are searched again in fine steps, then refined below a pixel by robust least squares
+   on the distance to the nearest wall (Fitzgibbon 2003).
+3. The share of walls that lie on walls, counted both ways where both maps know the ground, judges each pose. A
+   second pose that fits nearly as well makes the result ambiguous.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft, ndimage
+from scipy.optimize import least_squares
+
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
+
+Pose = tuple[float, float, float]
+"""dx, dy in metres and dyaw in radians: p ↦ R(dyaw) p + (dx, dy)."""
+IDENTITY: Pose = (0.0, 0.0, 0.0)
+
+WALL_TOLERANCE = 0.15
+"""Metres within which two walls are the same wall."""
+SPECK = 3
+"""Largest number of adjacent wall pixels without a counterpart that count as noise."""
+COARSE_SIDE = 200
+"""Largest side of the coarse pictures in pixels; more needs more time and finds smaller overlaps."""
+COARSE_PIXEL = 0.3
+"""Smallest coarse pixel in metres."""
+COARSE_STEP = np.radians(1.0)
+N_PEAKS, N_COARSE, N_FINE = 4, 32, 8
+"""Poses that stay of each angle, after the coarse search, and after the fine one."""
+FINE_REACH, FINE_BLUR = 0.4, 0.2
+"""Metres: how far the fine search shifts a coarse pose, and the width of a wall's likelihood."""
+FINE_TURNS = np.radians(np.arange(-0.75, 0.76, 0.25))
+FAR, TURNED = 1.0, np.radians(5.0)
+"""Metres at the middle of the map, or radians, from which on two poses are different."""
+LEAST_OVERLAP = 0.5
+"""Least share of the smaller map's walls that must lie where the other map knows the ground."""
+_MOST_POINTS = 4000
+_REACH = 2.0  # metres: distances to walls are cut off here
+
+
+class Fit(NamedTuple):
+    """A pose and how well it fits.
+
+    pose : from the new map's world frame to the old map's
+    match : share of walls on walls, in [0, 1]
+    overlap : share of the smaller map's walls on ground that the other map knows, in [0, 1]
+    """
+
+    pose: Pose
+    match: float
+    overlap: float
+
+
+@dataclass(frozen=True)
+class Registration:
+    """The best fit of two maps, and the best one at a clearly different pose (None if there is none)."""
+
+    best: Fit
+    second: Fit | None
+
+
+def register(old: OccupancyMap, new: OccupancyMap) -> Registration | None:
+    """The pose that lays `new` on `old`; None where a map has no walls or no pose has enough overlap."""
+    a, b = _Walls(old), _Walls(new)
+    if len(a.points) < 2 or len(b.points) < 2:
+        return None
+    places, value = _searched(a, b, _coarse(a, b))
+    places = places[np.argsort(-value, kind="stable")]
+    chosen = np.array([_refined(a, b, place) for place in places[_different(places, N_FINE)]])
+    fits = [_fit(a, b, _pose(b, place)) for place in chosen]
+    order = [
+        k for k in np.argsort([-fit.match for fit in fits], kind="stable") if fits[k].overlap >= LEAST_OVERLAP
+    ]
+    if not order:
+        return None
+    second = [k for k in order[1:] if _differ(chosen[order[0]], chosen[k])]
+    return Registration(fits[order[0]], fits[second[0]] if second else None)
+
+
+def register_near(old: OccupancyMap, new: OccupancyMap, pose: Pose = IDENTITY) -> Fit | None:
+    """The fit near a pose that is known to some decimetres; None where a map has no walls."""
+    a, b = _Walls(old), _Walls(new)
+    if len(a.points) < 2 or len(b.points) < 2:
+        return None
+    return _fit(a, b, _pose(b, _refined(a, b, _place(b, pose))))
+
+
+# ---- walls -----------------------------------------------------------------------------------------
+
+
+class _Walls:
+    """The walls of a map as points in metres of its world frame, and what lies near them."""
+
+    def __init__(self, occupancy: OccupancyMap) -> None:
+        self.map = occupancy
+        state, self.pixel = occupancy.state, occupancy.resolution
+        beside_free = ndimage.binary_dilation(state == FREE, np.ones((3, 3)))
+        self.edge = (state == OCCUPIED) & beside_free
+        rows, columns = np.nonzero(self.edge)
+        inner = np.column_stack([columns + 0.5, len(state) - rows - 0.5]) * self.pixel
+        self.points = moved(occupancy.origin, inner)
+        self.middle = self.points.mean(axis=0) if len(self.points) else np.zeros(2)
+
+    @cached_property
+    def few(self) -> NDArray[np.float64]:
+        """At most `_MOST_POINTS` of the points, evenly chosen."""
+        return self.points[:: -(-len(self.points) // _MOST_POINTS)]
+
+    @cached_property
+    def distance(self) -> NDArray[np.float32]:
+        """Metres from each pixel to the nearest wall, at most `_REACH`."""
+        away = ndimage.distance_transform_edt(~self.edge) * self.pixel  # type: ignore[operator]
+        return np.minimum(away, _REACH).astype(np.float32)
+
+    @cached_property
+    def known(self) -> NDArray[np.bool_]:
+        """Pixels that are known, or lie by a known one."""
+        reach = int(np.ceil(2 * WALL_TOLERANCE / self.pixel))
+        return ndimage.distance_transform_edt(self.map.state == UNKNOWN) <= reach  # type: ignore[operator]
+
+    def inner(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+        """World points as (row, column) of the picture, fractional: pixel centres are whole."""
+        x, y = moved(inverse(self.map.origin), points).T / self.pixel
+        return np.array([len(self.edge) - y - 0.5, x - 0.5])
+
+    def pixels(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Flat numbers of the points' pixels, and which points lie within the picture."""
+        row, column = np.rint(self.inner(points)).astype(np.int64)
+        inside = (row >= 0) & (row < self.edge.shape[0]) & (column >= 0) & (column < self.edge.shape[1])
+        return np.where(inside, row * self.edge.shape[1] + column, 0), inside
+
+
+def moved(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 2) turned and shifted by a pose."""
+    cos, sin = np.cos(pose[2]), np.sin(pose[2])
+    return points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+
+
+def inverse(pose: Pose) -> Pose:
+    """The pose that undoes a pose."""
+    dx, dy = moved((0.0, 0.0, -pose[2]), np.array([[-pose[0], -pose[1]]]))[0]
+    return float(dx), float(dy), -pose[2]
+
+
+def composed(outer: Pose, inner: Pose) -> Pose:
+    """The pose that applies `inner`, then `outer`."""
+    dx, dy = moved(outer, np.array([inner[:2]]))[0]
+    return float(dx), float(dy), outer[2] + inner[2]
+
+
+# ---- search: a place is (x, y, yaw) of the new map's middle in the old frame -----------------------
+
+
+def _place(b: _Walls, pose: Pose) -> NDArray[np.float64]:
+    return np.array([*moved(pose, b.middle[None])[0], pose[2]])
+
+
+def _pose(b: _Walls, place: NDArray[np.float64]) -> Pose:
+    yaw = float((place[2] + np.pi) % (2 * np.pi) - np.pi)
+    x, y = place[:2] - moved((0.0, 0.0, yaw), b.middle[None])[0]
+    return float(x), float(y), yaw
+
+
+def _differ(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether places are clearly different; the arguments broadcast."""
+    turn = np.abs((one[..., 2] - other[..., 2] + np.pi) % (2 * np.pi) - np.pi)
+    apart = np.hypot(one[..., 0] - other[..., 0], one[..., 1] - other[..., 1])
+    return (turn > TURNED) | (apart > FAR)
+
+
+def _different(places: NDArray[np.float64], most: int) -> list[int]:
+    """Numbers of the first `most` places that differ from all chosen before them."""
+    chosen: list[int] = []
+    left = np.ones(len(places), dtype=bool)
+    while left.any() and len(chosen) < most:
+        chosen.append(int(left.argmax()))
+        left &= _differ(places, places[chosen[-1]])
+    return chosen
+
+
+def _coarse(a: _Walls, b: _Walls) -> NDArray[np.float64]:
+    """The best places that differ, (n, 3), by correlation of coarse pictures at every angle."""
+    around = b.points - b.middle
+    radius = np.hypot(*around.T).max()
+    pixel = max(COARSE_PIXEL, max(np.ptp(a.points, axis=0).max(), 2 * radius) / COARSE_SIDE)
+    radius += pixel
+    low = a.points.min(axis=0) - 2 * pixel
+    n_a = np.ceil(np.ptp(a.points, axis=0) / pixel).astype(int) + 4
+    n_b = int(np.ceil(2 * radius / pixel)) + 1
+    shape = [fft.next_fast_len(int(n) + n_b, real=True) for n in n_a]
+    field = fft.rfft2(_coarse_field(a, low, n_a, pixel), shape)
+    angles = np.arange(0, 2 * np.pi, COARSE_STEP)
+    values, places = np.empty((len(angles), N_PEAKS)), np.empty((len(angles), N_PEAKS, 3))
+    for k, angle in enumerate(angles):
+        cell = np.floor((moved((0.0, 0.0, angle), around) + radius) / pixel).astype(np.int64)
+        picture = np.bincount(cell[:, 0] * n_b + cell[:, 1], minlength=n_b * n_b).reshape(n_b, n_b)
+        score = fft.irfft2(field * np.conj(fft.rfft2(picture.astype(np.float32), shape)), shape)
+        values[k], shift = _peaks(score, pixel)
+        shift = np.where(shift < n_a, shift, shift - shape)
+        places[k, :, :2], places[k, :, 2] = low + shift * pixel + radius, angle
+    places = places.reshape(-1, 3)[np.argsort(-values.ravel(), kind="stable")]
+    return places[_different(places, N_COARSE)]
+
+
+def _coarse_field(a: _Walls, low: NDArray, shape: NDArray, pixel: float) -> NDArray[np.float32]:
+    """Blurred walls less their mean over known ground, 0 elsewhere: a picture by (x, y)."""
+    cell = np.floor((a.points - low) / pixel).astype(np.int64)
+    walls = np.bincount(cell[:, 0] * shape[1] + cell[:, 1], minlength=shape[0] * shape[1]).reshape(shape)
+    blurred = ndimage.gaussian_filter(np.minimum(walls * a.pixel / pixel, 1.0), 1.0)
+    at, inside = a.pixels(low + (np.argwhere(np.ones(shape)) + 0.5) * pixel)
+    known = (inside & a.known.ravel()[at]).reshape(shape)
+    return np.where(known, blurred - blurred[known].mean(), 0.0).astype(np.float32)
+
+
+def _peaks(score: NDArray, pixel: float) -> tuple[list[float], NDArray[np.int64]]:
+    """The `N_PEAKS` highest values that are at least `FAR` apart, and where they are."""
+    reach, values, places = int(np.ceil(FAR / pixel)), [], []
+    for _ in range(N_PEAKS):
+        at = np.unravel_index(int(score.argmax()), score.shape)
+        values.append(float(score[at]))
+        places.append(at)
+        near = (np.arange(k - reach, k + reach + 1) % size for k, size in zip(at, score.shape, strict=True))
+        score[np.ix_(*near)] = -np.inf
+    return values, np.array(places, np.int64)
+
+
+def _searched(a: _Walls, b: _Walls, places: NDArray[np.float64]):
+    """The best place among fine steps around each coarse one, and its likelihood."""
+    reach = int(np.ceil(FINE_REACH / a.pixel))
+    likely = np.pad(np.exp(-0.5 * (a.distance / FINE_BLUR) ** 2), reach)
+    step = max(1, int(0.1 / a.pixel))
+    steps = np.arange(-reach + reach % step, reach + 1, step)
+    shifts = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
+    offsets = shifts @ np.array([likely.shape[1], 1])
+    points = b.few[::3] - b.middle
+    best, value = places.copy(), np.full(len(places), -np.inf)
+    for k, (x, y, yaw) in enumerate(places):
+        for turn in FINE_TURNS:
+            row, column = np.rint(a.inner(moved((x, y, yaw + turn), points))).astype(np.int64)
+            inside = (row >= 0) & (row < a.edge.shape[0]) & (column >= 0) & (column < a.edge.shape[1])
+            at = ((row + reach) * likely.shape[1] + column + reach)[inside]
+            score = likely.ravel()[offsets[:, None] + at].sum(axis=1)
+            i = int(score.argmax())
+            if score[i] > value[k]:
+                value[k] = score[i]
+                along = moved((0.0, 0.0, a.map.origin[2]), np.array([[shifts[i, 1], -shifts[i, 0]]]) * a.pixel)[0]
+                best[k] = x + along[0], y + along[1], yaw + turn
+    return best, value
+
+
+def _refined(a: _Walls, b: _Walls, place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The place below a pixel, by robust least squares on the distances to walls."""
+    points = b.few - b.middle
+    arm = max(float(np.hypot(*points.T).mean()), a.pixel)  # a turn times this moves the walls as far as a shift
+
+    def residual(change: NDArray) -> NDArray:
+        there = moved((place[0] + change[0], place[1] + change[1], place[2] + change[2] / arm), points)
+        return ndimage.map_coordinates(a.distance, a.inner(there), order=1, mode="nearest")
+
+    change = np.zeros(3)
+    for scale in (0.3, 0.05):
+        change = least_squares(residual, change, loss="cauchy", f_scale=scale, diff_step=1e-3, x_scale=0.1).x
+    return place + change / (1, 1, arm)
+
+
+def _fit(a: _Walls, b: _Walls, pose: Pose) -> Fit:
+    hits, seen, misses = 0, 0, 0
+    for here, other, back in ((a, b, pose), (b, a, inverse(pose))):
+        at, inside = here.pixels(moved(back, other.points))
+        counted = inside & here.known.ravel()[at]
+        hit = counted & (here.distance.ravel()[at] <= WALL_TOLERANCE)
+        seen += int(counted.sum())
+        hits += int(hit.sum())
+        misses += _clustered(other.edge, counted & ~hit)
+    # Pixels of different sizes draw the same wall with different numbers of points.
+    smaller = min(len(a.points), len(b.points))
+    return Fit(pose, hits / (hits + misses) if hits else 0.0, min(seen / (2 * smaller), 1.0))
+
+
+def _clustered(edge: NDArray[np.bool_], missed: NDArray[np.bool_]) -> int:
+    """Number of missed walls, without specks: a mapper's noise is scattered, a changed wall is not."""
+    picture = np.zeros(edge.shape, dtype=bool)
+    picture[edge] = missed
+    piece = np.asarray(ndimage.label(picture, np.ones((3, 3)))[0])  # type: ignore[index]
+    size = np.bincount(piece.ravel())[1:]
+    return int(size[size > SPECK].sum())
