@@ -1,5 +1,6 @@
 """A real PostgreSQL for all tests that want one, places where no memory has been yet, and no haste in any test."""
 
+import gc
 import itertools
 from collections.abc import Callable, Iterator
 
@@ -10,6 +11,9 @@ from hypothesis import HealthCheck, settings
 Places = Callable[[str], str]
 SLOW = ("experiments", "app", "figures")
 """Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out as a whole."""
+
+# As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
+gc.set_threshold(100_000)
 
 # On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
