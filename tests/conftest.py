@@ -3,6 +3,7 @@
 import gc
 import itertools
 from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import psycopg
 import pytest
@@ -10,7 +11,9 @@ from hypothesis import HealthCheck, settings
 
 Places = Callable[[str], str]
 SLOW = ("experiments", "app", "figures")
-"""Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out as a whole."""
+"""Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
+QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/test_cloud_image.py")
+"""Quick files of these folders, a file a room."""
 
 # As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
 gc.set_threshold(100_000)
@@ -20,10 +23,23 @@ settings.register_profile("patient", deadline=None, suppress_health_check=[Healt
 settings.load_profile("patient")
 
 
+def is_slow(path: Path, config: pytest.Config) -> bool:
+    """Whether a file of tests, or a folder within one of `SLOW`, is slow as a whole."""
+    tests = config.rootpath / "tests"
+    if not path.is_relative_to(tests):
+        return False
+    name = path.relative_to(tests)
+    return len(name.parts) > 1 and name.parts[0] in SLOW and name.as_posix() not in QUICK
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Slow files are not even imported where slow tests are left out."""
+    return True if "not slow" in config.option.markexpr and is_slow(collection_path, config) else None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        folder = item.path.relative_to(item.config.rootpath).parts
-        if folder[:1] == ("tests",) and folder[1] in SLOW:
+        if is_slow(item.path, item.config):
             item.add_marker(pytest.mark.slow)
 
 

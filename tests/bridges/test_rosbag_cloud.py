@@ -106,6 +106,7 @@ def test_without_rosbags_the_extra_is_named(tmp_path, monkeypatch):
         read_bag_cloud(tmp_path)
 
 
+@pytest.mark.slow
 def test_the_command_line_looks_into_a_bag(tmp_path, capsys):
     from lifelore.app.command_line import run
 

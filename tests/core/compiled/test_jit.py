@@ -114,6 +114,7 @@ def test_the_cache_is_named_after_all_that_kernels_read(tmp_path):
     assert PACKAGE / "core" / "mdp.py" in kernel_sources(PACKAGE)
 
 
+@pytest.mark.slow
 def test_imports_are_found_as_python_finds_them(tmp_path):
     """The quick reading of import statements beside the parser, on this package and on unusual layouts."""
 

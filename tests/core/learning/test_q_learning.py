@@ -211,6 +211,7 @@ def test_threads_change_no_bit(draw_world, threads):
     assert not np.array_equal(alone[0].q, alone[1].q)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_converges_to_the_optimum_where_every_action_keeps_mass(draw_world, seed):
     tables = draw_world(seed, n_states=10, n_actions=3)
