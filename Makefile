@@ -3,8 +3,8 @@ PYTHON ?= python3
 PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
-# Tests marked as one group share a worker: the tests of one claim share its one quick run.
-PARALLEL := -n auto --dist loadgroup
+# In the order of the folders: the claims and the processes come before many small files, so both cores end together.
+PARALLEL := -n auto --no-loadscope-reorder
 # Each worker has a core of its own; threads of linear algebra would only take it from the other workers.
 PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL)
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt

@@ -2,8 +2,10 @@
 
 import gc
 import itertools
+import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
+from typing import Any
 
 import psycopg
 import pytest
@@ -41,6 +43,25 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if is_slow(item.path, item.config):
             item.add_marker(pytest.mark.slow)
+
+
+def scope_of(nodeid: str) -> str:
+    """The claim of a test of the registry, else the file: the tests of a scope share a worker, and so a fixture."""
+    file = nodeid.partition("::")[0]
+    claim = re.search(r"\[(C\d+\.\d+)\]$", nodeid) if file.endswith("experiments/test_registry.py") else None
+    return claim[1] if claim else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Hand out scopes; pytest-xdist 3.8 ignores the marks of its own groups where pytest is 9.2 or newer."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Scheduling(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return scope_of(nodeid)
+
+    return Scheduling(config, log)
 
 
 @pytest.fixture(scope="session")
