@@ -93,6 +93,7 @@ def read_all(terminal: int) -> str:
         shown += part
 
 
+@pytest.mark.slow
 def test_on_a_terminal_a_bar_moves_on_stderr_and_stdout_is_still_pure(start, known, monkeypatch):
     monkeypatch.setenv("TERM", "xterm-256color")
     ours, theirs = pty.openpty()
@@ -111,6 +112,7 @@ def test_on_a_terminal_a_bar_moves_on_stderr_and_stdout_is_still_pure(start, kno
     assert "living" not in out
 
 
+@pytest.mark.slow
 def test_into_a_pipe_nothing_is_said_beside_the_answer(start, answer, known):
     said = answer(start("live", "--domain", "lattice", "--tasks", 2, "--memory", known, "--json"))
     assert (said.status, said.err) == (0, "")

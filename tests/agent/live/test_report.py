@@ -58,6 +58,7 @@ def test_summary_is_the_report_as_strict_json(life, folder):
     assert json.loads(text, parse_constant=_no_constant) == json.loads(json.dumps(life.report))
 
 
+@pytest.mark.slow
 def test_paths_walk_from_cell_to_cell_and_end_at_their_goal(life, folder):
     with (folder / "paths.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -74,6 +75,7 @@ def test_paths_walk_from_cell_to_cell_and_end_at_their_goal(life, folder):
         assert np.abs(np.diff(path, axis=0)).sum(axis=1) == pytest.approx(life.world.frame.cell, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_the_prior_reads_back_as_a_map(life, folder):
     assert read_occupancy_map(folder / "prior.yaml").state.shape == life.world.shape
 
