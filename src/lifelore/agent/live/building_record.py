@@ -1,8 +1,8 @@
 """Converts a remembered building to records of memory and back: one of its map, one for each map file seen.
 
 The record of the map has a slot for each run of 30 pixels on the grid of the building's first map, with two bits a
-pixel. The newest map counts, run by run, so that the memory follows a building that changes. The record of a map file
-has the file's digest as key, and the pose of the file on the building, so that no map is compared twice.
+pixel. The newest map counts, run by run, so that the memory follows a building that changes. The record of a map
+file has the file's digest as key, and the pose of the file on the building, so that no map is compared twice.
 """
 
 import hashlib
