@@ -8,9 +8,9 @@ BIG = 100_000
 LONG = 60.0
 """Estimated seconds from which on a life gets a line of advice."""
 FIRST, LATER = 55e-6, 4e-6
-"""Processor seconds a place of one agent's first task, with reading the map and storing it, and of a later task; the
-time grows in proportion to the places. Measured at 5,000 to 80,000 places, see docs/courier.md; `frontier` alone
-takes up to five times as long. Learner q has no such law."""
+"""Processor seconds a place of one agent's first task, with reading and storing the map, and of a later task. Time
+grows in proportion to the places. Measured at 5,000 to 80,000 places, see docs/courier.md; `frontier` takes up to
+five times as long. Learner q has no such law."""
 
 
 def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | None]:

@@ -25,8 +25,9 @@ BENCHES = (
     "capacity",
     "recognition",
 )
-"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them; those of `WITH_MAP` take a map too."""
+"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them."""
 WITH_MAP = ("courier", "recognition")
+"""Benchmarks that take a ROS map."""
 
 
 def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
