@@ -11,7 +11,7 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.prior_file import save_prior
-from lifelore.experiments.bench.deep_worlds import GUIDED, SEVEN, UNIFORM
+from lifelore.experiments.bench.action.deep_worlds import GUIDED, SEVEN, UNIFORM
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "deep_rl.md").read_text(encoding="utf-8")

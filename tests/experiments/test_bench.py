@@ -7,13 +7,17 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
-from lifelore.experiments.bench import BENCHES, bench, c_loop, first_result, kernels
-from lifelore.experiments.bench.gymnasium_loop import TextbookLattice, short_textbook_rate, textbook_rate
-from lifelore.experiments.bench.lattice_case import lattice_task, new_case, run_kernel
-from lifelore.experiments.bench.list_loop import short_tuned_rate, tuned_rate
-from lifelore.experiments.bench.many_learners import alone_rate, many_rate
+from lifelore.experiments.bench import BENCHES, bench
+from lifelore.experiments.bench.learners import c_loop, kernels
+from lifelore.experiments.bench.learners.gymnasium_loop import TextbookLattice, short_textbook_rate, textbook_rate
+from lifelore.experiments.bench.learners.lattice_case import lattice_task, new_case, run_kernel
+from lifelore.experiments.bench.learners.list_loop import short_tuned_rate, tuned_rate
+from lifelore.experiments.bench.learners.many_learners import alone_rate, many_rate
+from lifelore.experiments.bench.learners.thread_scaling import check_same_bits, run_all
 from lifelore.experiments.bench.rounds import at_least, at_most, interleaved, paired_ratio, row
-from lifelore.experiments.bench.thread_scaling import check_same_bits, run_all
+from lifelore.experiments.bench.startup import first_result
+
+FOLDER = Path(c_loop.__file__).parents[1]
 
 
 @pytest.fixture
@@ -153,8 +157,14 @@ def test_what_cannot_be_run():
     assert "kernels" in BENCHES
 
 
+def test_every_benchmark_stands_in_its_folder():
+    for name, folder in BENCHES.items():
+        source = FOLDER / folder / f"{name}.py"
+        assert f"def bench_{name}(" in source.read_text(encoding="utf-8")
+
+
 def test_courier_lives_at_home_and_abroad(monkeypatch):
-    from lifelore.experiments.bench import courier
+    from lifelore.experiments.bench.lives import courier
 
     monkeypatch.setattr(courier, "TASKS", 3)
     monkeypatch.setattr(courier, "VISITS", 1)

@@ -8,9 +8,17 @@ from PIL import Image
 
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import TOTAL
-from lifelore.experiments.bench import bench, capacity, capacity_case
-from lifelore.experiments.bench.capacity_case import ACTIONS, TURN, Contexts, Learners, bytes_of, contributions
-from lifelore.experiments.bench.gpu_bound import MOVE_COPIED, SAMPLE_BYTES, SAMPLE_COPIED, Gpu
+from lifelore.experiments.bench import bench
+from lifelore.experiments.bench.fleet import capacity, capacity_case
+from lifelore.experiments.bench.fleet.capacity_case import (
+    ACTIONS,
+    TURN,
+    Contexts,
+    Learners,
+    bytes_of,
+    contributions,
+)
+from lifelore.experiments.bench.fleet.gpu_bound import MOVE_COPIED, SAMPLE_BYTES, SAMPLE_COPIED, Gpu
 
 ROUND = Gpu(bandwidth=160e9, transfer=1e9, latency=1e-6, launch=1e-3)
 """160 bytes a step: 1e9 steps a second at most. Two reads in a row: 0.5e6 of them by one thread."""

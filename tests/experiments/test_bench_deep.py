@@ -11,9 +11,9 @@ from PIL import Image
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.bridges.minigrid_view import FORWARD, LEFT, RIGHT, solved_layout
 from lifelore.core.errors import MissingExtraError
-from lifelore.experiments.bench import deep, deep_learning, deep_speed
-from lifelore.experiments.bench.deep_learning import greedy_score, learnt
-from lifelore.experiments.bench.deep_worlds import (
+from lifelore.experiments.bench.action import deep, deep_learning, deep_speed
+from lifelore.experiments.bench.action.deep_learning import greedy_score, learnt
+from lifelore.experiments.bench.action.deep_worlds import (
     GUIDED,
     LAYOUTS,
     SEVEN,
@@ -26,7 +26,7 @@ from lifelore.experiments.bench.deep_worlds import (
     new_world,
     one_layout,
 )
-from lifelore.experiments.bench.figure_deep_curves import draw_deep_curves
+from lifelore.experiments.bench.action.figure_deep_curves import draw_deep_curves
 from lifelore.figures.style import save_figure
 
 pytest.importorskip("minigrid")

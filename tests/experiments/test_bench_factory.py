@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench import BENCHES, factory
-from lifelore.experiments.bench.factory import bench_factory, megabytes_of_all
+from lifelore.experiments.bench import BENCHES
+from lifelore.experiments.bench.action import factory
+from lifelore.experiments.bench.action.factory import bench_factory, megabytes_of_all
 
 
 def test_the_answer_keeps_its_contract(monkeypatch):

@@ -5,7 +5,8 @@ import json
 import pytest
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench import bench, merge
+from lifelore.experiments.bench import bench
+from lifelore.experiments.bench.fleet import merge
 from lifelore.memory import open_memory
 
 

@@ -8,10 +8,10 @@ import pytest
 
 from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.bench import perceive
-from lifelore.experiments.bench.perceive import bench_perceive
-from lifelore.experiments.chapter2 import perception_stages
-from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
+from lifelore.experiments.bench.perception import perceive
+from lifelore.experiments.bench.perception.perceive import bench_perceive
+from lifelore.experiments.chapter2.scoring import perception_stages
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene_json import scene_document

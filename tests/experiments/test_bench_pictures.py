@@ -8,9 +8,9 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.bench import pictures
-from lifelore.experiments.bench.pictures import bench_pictures, draw_and_judge, judge, most_labelled
-from lifelore.experiments.chapter2.real_scenes import RealScene, real_scenes_folder
+from lifelore.experiments.bench.perception import pictures
+from lifelore.experiments.bench.perception.pictures import bench_pictures, draw_and_judge, judge, most_labelled
+from lifelore.experiments.chapter2.scenes.real_scenes import RealScene, real_scenes_folder
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_truth import read_relations

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.bench import priors
-from lifelore.experiments.bench.priors import (
+from lifelore.experiments.bench.action import priors
+from lifelore.experiments.bench.action.priors import (
     ACTIONS,
     ALPHA0,
     DENSE,

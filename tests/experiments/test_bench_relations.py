@@ -8,11 +8,11 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.bench import relation_learners, relation_scenes, relations
-from lifelore.experiments.bench.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
-from lifelore.experiments.chapter2 import network_stability
-from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
-from lifelore.experiments.chapter2.real_scenes import RealScene
+from lifelore.experiments.bench.perception import relation_learners, relation_scenes, relations
+from lifelore.experiments.bench.perception.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
+from lifelore.experiments.chapter2.scenes.real_scenes import RealScene
+from lifelore.experiments.chapter2.scoring import network_stability
+from lifelore.experiments.chapter2.scoring.network_stability import contact_nodes, stability
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.peers import PEERS
 

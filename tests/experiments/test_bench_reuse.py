@@ -6,10 +6,17 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench import BENCHES, reuse, reuse_loops
-from lifelore.experiments.bench.reuse import bench_reuse
-from lifelore.experiments.bench.reuse_case import HORIZON, LargeReserve, Reserve
-from lifelore.experiments.bench.reuse_peers import BOTORCH, MABWISER, BoTorchUCB, installed, mabwiser_ucb1
+from lifelore.experiments.bench import BENCHES
+from lifelore.experiments.bench.interaction import reuse, reuse_loops
+from lifelore.experiments.bench.interaction.reuse import bench_reuse
+from lifelore.experiments.bench.interaction.reuse_case import HORIZON, LargeReserve, Reserve
+from lifelore.experiments.bench.interaction.reuse_peers import (
+    BOTORCH,
+    MABWISER,
+    BoTorchUCB,
+    installed,
+    mabwiser_ucb1,
+)
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.selection import (
     BeliefEntropy,

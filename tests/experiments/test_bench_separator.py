@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from lifelore.experiments.bench import cloud_pairs, separator
-from lifelore.experiments.bench.cloud_pairs import DRAWN, cloud_pair, voxels
-from lifelore.experiments.bench.separator import FINE, WIDE, bench_separator
+from lifelore.experiments.bench.perception import cloud_pairs, separator
+from lifelore.experiments.bench.perception.cloud_pairs import DRAWN, cloud_pair, voxels
+from lifelore.experiments.bench.perception.separator import FINE, WIDE, bench_separator
 
 
 @pytest.fixture

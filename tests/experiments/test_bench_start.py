@@ -6,9 +6,11 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import LifeloreError
-from lifelore.experiments.bench import bench, buildings, start, start_cases
-from lifelore.experiments.bench.process_cost import Cost, installed_environment, process_cost
-from lifelore.experiments.bench.start_cases import clouds_to_perceive, fitted_study
+from lifelore.experiments.bench import bench
+from lifelore.experiments.bench.lives import buildings
+from lifelore.experiments.bench.startup import start, start_cases
+from lifelore.experiments.bench.startup.process_cost import Cost, installed_environment, process_cost
+from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study
 
 
 def checked(result: dict, told: list) -> dict:

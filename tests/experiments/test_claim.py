@@ -1,8 +1,13 @@
 """Settings of a claim and what may override them."""
 
+import importlib
+import sys
+from pathlib import Path
+
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.experiments.engine import registry
 from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.predicate import Predicate
 
@@ -71,3 +76,19 @@ def test_overriding_leaves_the_claim_as_it_was():
     one = claim()
     one.settings("full", {"runs": 3})
     assert one.settings("full")["runs"] == 5
+
+
+def test_a_small_claim_stands_in_one_module(tmp_path, monkeypatch):
+    text = (Path(registry.__file__).parents[1] / "chapter2/c2_09_substructure/claim.toml").read_text()
+    (tmp_path / "small").mkdir()
+    (tmp_path / "small/claim.toml").write_text(text)
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print")
+    monkeypatch.syspath_prepend(tmp_path)
+    claim = Claim.load("C2.9", tmp_path / "small", "small")
+    assert claim.cells is claim.draw is print
+    assert claim.check is None
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = print  # no figure")
+    importlib.invalidate_caches()
+    monkeypatch.delitem(sys.modules, "small.run")
+    with pytest.raises(InputError, match="missing draw"):
+        Claim.load("C2.9", tmp_path / "small", "small")

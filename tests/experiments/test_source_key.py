@@ -18,7 +18,7 @@ def test_closure_reaches_through_imports_and_leaves_figures_out():
         "lifelore.core.compiled.random_state",
         "lifelore.core.compiled.jit",
     } <= found
-    assert "lifelore.experiments.chapter3.lattice_learning" in found
+    assert "lifelore.experiments.chapter3.learning.grid_tasks" in found
     assert not any(name.startswith("lifelore.figures") for name in found)
     assert "lifelore.experiments.chapter3.c3_02_lattice_prior.measure" not in found
 

@@ -5,7 +5,7 @@ import pytest
 from matplotlib.patches import Circle, Rectangle
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.pictures.figure_interaction_model import draw_interaction_model
+from lifelore.experiments.pictures.figure_graph_models import draw_interaction_model
 from lifelore.experiments.pictures.figure_response_surface import draw_response_surface
 from lifelore.figures.style import save_figure
 

@@ -12,13 +12,17 @@ Figures are made without pyplot, so nothing global is left behind and any thread
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import NotFoundError, StoreError
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure, SubFigure
+else:
+    # Annotations of modules that draw: matplotlib is loaded when something is drawn, and not before.
+    Axes = Figure = SubFigure = Any
 
 MAX_BYTES = 300_000
 """Largest PNG that `save_figure` writes: figures are committed."""
@@ -118,7 +122,7 @@ def house_style() -> Iterator[None]:
         yield
 
 
-def new_figure(width: float, height: float) -> "Figure":
+def new_figure(width: float, height: float) -> Figure:
     """An empty figure, `width` × `height` inches, whose parts arrange themselves."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
@@ -128,13 +132,13 @@ def new_figure(width: float, height: float) -> "Figure":
     return figure
 
 
-def two_rows(figure: "Figure", heights: tuple[float, float]) -> tuple["SubFigure", "SubFigure"]:
+def two_rows(figure: Figure, heights: tuple[float, float]) -> tuple[SubFigure, SubFigure]:
     """An upper and a lower part of these relative heights, each with a legend and a caption of its own."""
     upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=heights, hspace=0.02)[:, 0]
     return upper, lower
 
 
-def save_figure(figure: "Figure", path: str | Path) -> Path:
+def save_figure(figure: Figure, path: str | Path) -> Path:
     """Write a PNG of at most `MAX_BYTES` in one step, in fewer colours or coarser if need be; returns its path.
 
     Raises
@@ -153,7 +157,7 @@ def save_figure(figure: "Figure", path: str | Path) -> Path:
     return path
 
 
-def _small_enough(figure: "Figure", path: Path) -> bytes:
+def _small_enough(figure: Figure, path: Path) -> bytes:
     """The PNG in full colour if the limit allows, else in 256 colours, else coarser."""
     from io import BytesIO
 

@@ -16,7 +16,7 @@ from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, Oc
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY
 from lifelore.domains.worlds import WorldSettings
-from lifelore.experiments.bench.resaved_maps import cropped, noisy, padded, shifted, turned
+from lifelore.experiments.bench.lives.resaved_maps import cropped, noisy, padded, shifted, turned
 from lifelore.memory import open_memory
 
 OFFICE = office_map(1, 14.0, 12.0)

@@ -12,8 +12,8 @@ from lifelore.domains.buildings.registration import (
     register,
     register_near,
 )
-from lifelore.experiments.bench.recognition import recognised
-from lifelore.experiments.bench.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
+from lifelore.experiments.bench.lives.recognition import recognised
+from lifelore.experiments.bench.lives.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
 
 OFFICE = office_map(1, 20.0, 14.0)
 

@@ -17,9 +17,9 @@ from lifelore.experiments.chapter2.c2_01_nearest_displacements.measure import (
     readings,
 )
 from lifelore.experiments.chapter2.c2_02_label_components import figure as c2_2
-from lifelore.experiments.chapter2.pair_validation import Reading, as_seen, votes_of_neighbours
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, MIX, STANDARD, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, as_seen, votes_of_neighbours
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, pair_features

@@ -13,8 +13,8 @@ from lifelore.experiments.chapter2.c2_02_label_components.measure import (
     rows,
     split_answers,
 )
-from lifelore.experiments.chapter2.pair_validation import Reading, Votes
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, Votes
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.2")

@@ -12,8 +12,14 @@ from lifelore.experiments.chapter2.c2_03_displacements_by_relation.measure impor
     rows,
     sideways,
 )
-from lifelore.experiments.chapter2.pair_validation import displacements
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, kernel_name, pair_cells, pair_rows
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import (
+    KERNELS,
+    STANDARD,
+    kernel_name,
+    pair_cells,
+    pair_rows,
+)
+from lifelore.experiments.chapter2.scoring.pair_validation import displacements
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.pairs.pair_features import column_names
 

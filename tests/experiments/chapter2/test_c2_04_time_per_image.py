@@ -8,7 +8,7 @@ from lifelore.experiments.chapter2.c2_04_time_per_image import run as image_timi
 from lifelore.experiments.chapter2.c2_04_time_per_image.measure import measure, rows
 from lifelore.experiments.chapter2.c2_04_time_per_image.run import DENSE, KINDS, made_dense, run_cell, timed_image
 from lifelore.experiments.chapter2.c2_04_time_per_image.run import cells as timing_cells
-from lifelore.experiments.chapter2.perception_stages import STAGES
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.4")

@@ -20,7 +20,8 @@ from lifelore.experiments.chapter2.c2_05_discarded_points.run import (
     run_cell,
     strong_places,
 )
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes import scene_lots
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
 
 
 def row_of_points() -> LabelledCloud:
@@ -70,10 +71,10 @@ def test_cells_are_lots_of_lessons_scenes_and_real_scenes(monkeypatch):
     assert len(model) == 16
     wanted = [{"lessons": k} for k in (0, 10, 20)] + [{"first": k, "model": model} for k in (0, 4, 8)]
     assert cells(settings) == wanted
-    monkeypatch.setattr(spoilt_scenes, "real_scenes_folder", lambda: None)
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: None)
     assert cells({**settings, "real": True}) == wanted
-    monkeypatch.setattr(spoilt_scenes, "real_scenes_folder", lambda: "somewhere")
-    monkeypatch.setattr(spoilt_scenes, "real_scenes", lambda: [SimpleNamespace(name=name) for name in "abc"])
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: "somewhere")
+    monkeypatch.setattr(scene_lots, "real_scenes", lambda: [SimpleNamespace(name=name) for name in "abc"])
     assert cells({**settings, "real": True})[6:] == [
         {"real": ["a", "b"], "model": model},
         {"real": ["c"], "model": model},

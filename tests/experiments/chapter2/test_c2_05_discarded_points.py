@@ -14,7 +14,7 @@ from lifelore.experiments.chapter2.c2_05_discarded_points.measure import (
     scene_of,
     taught,
 )
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.relations.relation import Relation
 

@@ -3,9 +3,9 @@
 import pytest
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_06_same_hole.measure import measure, rows
 from lifelore.experiments.chapter2.c2_06_same_hole.run import findings, objects_only, split_contact
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
 from lifelore.perception.topology.holes import contact_loops
 
 pytest.importorskip("mujoco")

@@ -5,9 +5,9 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ON
-from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_07_oversegmented_stack.measure import measure, rows
 from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import KINDS, simulated
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
 
 pytest.importorskip("mujoco")
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_10_ball_on_block.measure import measure
 from lifelore.experiments.chapter2.c2_10_ball_on_block.run import BALL, BLOCK, findings
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
 
 pytest.importorskip("mujoco")
 

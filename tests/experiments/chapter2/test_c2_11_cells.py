@@ -19,6 +19,7 @@ from lifelore.experiments.chapter2.c2_11_distant_objects.run import (
     shift_to,
 )
 from lifelore.experiments.chapter2.c2_11_distant_objects.run import cells as pair_cells
+from lifelore.experiments.chapter2.scenes import scene_lots
 
 SETTINGS = {
     "pairs": 1,
@@ -142,10 +143,10 @@ def test_points_are_thinned_to_three_millimetres():
 
 def test_cells_of_pairs_and_of_real_scenes(monkeypatch):
     assert pair_cells({"pairs": 9, "real": False}) == [{"first": 0}, {"first": 4}, {"first": 8}]
-    monkeypatch.setattr(parted_pairs, "real_scenes_folder", lambda: None)
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: None)
     assert pair_cells({"pairs": 4, "real": True}) == [{"first": 0}]
-    monkeypatch.setattr(parted_pairs, "real_scenes_folder", lambda: "somewhere")
-    monkeypatch.setattr(parted_pairs, "real_scenes", lambda: [SimpleNamespace(name=name) for name in "abcde"])
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: "somewhere")
+    monkeypatch.setattr(scene_lots, "real_scenes", lambda: [SimpleNamespace(name=name) for name in "abcde"])
     assert pair_cells({"pairs": 4, "real": True})[1:] == [{"real": ["a", "b", "c", "d"]}, {"real": ["e"]}]
 
 

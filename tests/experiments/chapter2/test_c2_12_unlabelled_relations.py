@@ -21,8 +21,8 @@ from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters 
     rand_index_by_scene,
     sighted,
 )
-from lifelore.experiments.chapter2.pair_validation import Reading
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.perception.pairs.pair_features import COLUMNS
 

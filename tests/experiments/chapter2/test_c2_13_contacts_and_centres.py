@@ -16,7 +16,7 @@ from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import (
 )
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import BALL, BLOCK, LESSON, SCENE, run_cell
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import cells as block_cells
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.13")

@@ -6,7 +6,7 @@ import pytest
 from lifelore.experiments.chapter2.c2_01_nearest_displacements.figure import PRINTED, draw_confusion
 from lifelore.experiments.chapter2.c2_03_displacements_by_relation.figure import draw_displacements
 from lifelore.experiments.chapter2.c2_04_time_per_image.figure import draw_seconds
-from lifelore.experiments.chapter2.method_panels import draw_method_panels
+from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
 from lifelore.figures.style import house_style, new_figure
 
 

@@ -4,8 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
-from lifelore.experiments.chapter2 import pair_validation
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scoring import pair_validation
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     Reading,
     Votes,
     as_scene,
@@ -19,7 +20,6 @@ from lifelore.experiments.chapter2.pair_validation import (
     votes_of_neighbours,
     votes_on,
 )
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
 from lifelore.perception.pairs.pair_features import column_names
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation import Relation
@@ -290,7 +290,7 @@ def test_what_is_said_stands_beside_what_is_true():
     rows = [pair("s", ON, way=(3, 2)), pair("t", NONE, gap=None)]
     first, second = in_given_order(rows, [ON, ADJACENT])
     assert first.truth == label_of(rows[0]) == PairLabel(3, 2, ON, 3)
-    assert first.said == Relation(3, 2, ON, 1.0, 0.01)
+    assert first.predicted == Relation(3, 2, ON, 1.0, 0.01)
     assert first.exact
     assert (second.scene, second.exact, second.gap, gap_of(rows[1])) == ("t", False, np.inf, np.inf)
     with pytest.raises(ValueError, match="zip"):
@@ -348,7 +348,7 @@ def test_pairs_that_are_not_near_are_neither_shown_nor_learnt_from():
     judged = cross_validated(rows, lambda: Parrot(log, said), lambda row: row["scene"])
     assert [learnt for learnt, _, _ in log] == [["c"], ["a"]]
     assert [labels for _, labels, _ in log] == [[PairLabel(2, 3, ADJACENT, 3)], [PairLabel(2, 3, ON, 3)]]
-    assert [one.said for one in judged] == [said, None, said]
+    assert [one.predicted for one in judged] == [said, None, said]
     assert [one.exact for one in judged] == [True, True, False]
 
 
@@ -384,7 +384,7 @@ def test_the_thesiss_neighbours_infer_the_direction():
     rows += [numbered(f"beside {n}", ADJACENT, way, 0.01 * n) for n, way in enumerate(ways)]
     judged = cross_validated(rows, lambda: RelationClassifier("displacement", symmetric=SYMMETRIC), as_scene)
     assert all(one.exact for one in judged)
-    assert [(one.said.a, one.said.b) for one in judged[:6] if one.said] == ways
+    assert [(one.predicted.a, one.predicted.b) for one in judged[:6] if one.predicted] == ways
 
 
 def test_a_peer_sees_what_the_row_keeps_of_it():

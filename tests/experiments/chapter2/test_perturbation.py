@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.chapter2.perturbation import (
+from lifelore.experiments.chapter2.scenes.perturbation import (
     cut_object,
     fewer_points,
     grown_masks,

@@ -6,7 +6,7 @@ from scipy.stats import binomtest
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.chapter2.relation_scoring import (
+from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
     judged_scene,
@@ -71,7 +71,7 @@ def test_a_scene_is_judged_pair_by_pair_without_the_doubtful():
     said = [Relation(3, 2, "on", 0.9, 0.004), Relation(3, 4, "adjacent", 0.9, 0.01)]
     first, second = judged_scene("s", truth, said, {frozenset((2, 4)): 0.07})
     assert (first.exact, first.gap) == (False, 0.004)
-    assert (second.exact, second.said, second.gap) == (True, None, 0.07)
+    assert (second.exact, second.predicted, second.gap) == (True, None, 0.07)
     assert len(judged_scene("s", truth, said, least_confidence=1)) == 3
     # A gap that is known better than by looking counts.
     assert judged_scene("s", truth, said, {frozenset((2, 3)): 0.001})[0].gap == 0.001

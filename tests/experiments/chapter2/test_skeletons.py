@@ -8,8 +8,8 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, NONE, ON
 from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import Three, is_path
-from lifelore.experiments.chapter2.scene_example import scene_of_row, scene_row
-from lifelore.experiments.chapter2.skeletons import NEAR, RELATED, SUPPORT, only, predicates, reading
+from lifelore.experiments.chapter2.scenes.scene_example import scene_of_row, scene_row
+from lifelore.experiments.chapter2.scenes.skeletons import NEAR, RELATED, SUPPORT, only, predicates, reading
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.relations.relation import Relation

@@ -8,8 +8,8 @@ import pytest
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
-from lifelore.experiments.chapter2 import tabletop_pairs
-from lifelore.experiments.chapter2.tabletop_pairs import (
+from lifelore.experiments.chapter2.scenes import scene_lots, tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import (
     BESIDE_US,
     KERNELS,
     LOT,
@@ -193,8 +193,9 @@ def eight_real_scenes(monkeypatch, blocks, tmp_path):
     scenes = [
         SimpleNamespace(name=f"r{n}", cloud=blocks, truth=[PairLabel(2, 4, NONE, 2 + n % 2)]) for n in range(8)
     ]
-    monkeypatch.setattr(tabletop_pairs, "real_scenes_folder", lambda: tmp_path)
-    monkeypatch.setattr(tabletop_pairs, "real_scenes", lambda: scenes)
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: tmp_path)
+    for module in (scene_lots, tabletop_pairs):
+        monkeypatch.setattr(module, "real_scenes", lambda: scenes)
 
 
 @pytest.mark.usefixtures("eight_real_scenes")
@@ -213,7 +214,7 @@ def test_a_lot_of_real_scenes_has_their_rows_alone(monkeypatch):
 
 
 def test_a_machine_without_real_scenes_has_simulated_ones(monkeypatch):
-    monkeypatch.setattr(tabletop_pairs, "real_scenes_folder", lambda: None)
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: None)
     assert pair_cells({**SETTINGS, "real": True}) == pair_cells(SETTINGS)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
     EXPERTS,
     errands_of,
@@ -18,9 +18,8 @@ from lifelore.experiments.chapter3.advice_mazes import (
     policy_of,
     thesis_advisor,
     walk,
-    without_interval,
 )
-from lifelore.experiments.engine.estimates import is_above
+from lifelore.experiments.engine.estimates import exact_value, is_above
 from lifelore.experiments.engine.registry import claim_of
 
 SMALL = claim_of("C3.15").settings("quick")
@@ -130,4 +129,4 @@ def test_a_gain_that_is_only_rounding_is_not_certain():
 
 def test_shares_of_the_grid():
     assert grid_of({"loops": [0.0, 0.1], "experts": ["walks", "trips"]})[1:3] == [(0.0, "trips"), (0.1, "walks")]
-    assert grid_share([True, False, False, False]) == without_interval(0.25, 4)
+    assert grid_share([True, False, False, False]) == exact_value(0.25, 4)

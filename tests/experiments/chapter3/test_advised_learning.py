@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter3.advice_mazes import errands_of, maze_of
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.mazes import errands_of, maze_of
 from lifelore.experiments.chapter3.c3_16_advised_learning.run import run_cell, summary
 from lifelore.experiments.engine.registry import claim_of
 

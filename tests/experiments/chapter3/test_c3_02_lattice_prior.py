@@ -14,9 +14,10 @@ from lifelore.experiments.chapter3.c3_02_lattice_prior.run import (
     configurations,
     online_priors,
     run_cell,
+    run_of,
 )
-from lifelore.experiments.chapter3.lattice_learning import learn_task, rows_of, run_of, schedule_of
-from lifelore.experiments.chapter3.reward_curves import schedule_in_words
+from lifelore.experiments.chapter3.learning.grid_tasks import learn_task, rows_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words, schedule_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 

@@ -15,16 +15,13 @@ from lifelore.experiments.chapter3.c3_03_noise_maze_prior.run import (
     COMPARED,
     KEYS,
     METHODS,
-    PERCEPT,
-    PLACE,
     PLAIN,
-    exact_prior,
     grid_of,
-    rows_of,
     run_cell,
     run_of,
 )
-from lifelore.experiments.chapter3.lattice_learning import learn_task, schedule_of
+from lifelore.experiments.chapter3.learning.grid_tasks import PERCEPT, PLACE, exact_prior, learn_task, rows_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 
@@ -178,13 +175,13 @@ def test_every_task_has_a_maze_of_its_own_between_50_and_80_percent(run):
     met = run.training["noise"] + run.testing
     for (density, world, goal), task in zip(mazes, met, strict=True):
         assert round(density * 81) == 81 - world.n_states
-        assert (goal, world.n_states) == (task.problem.goal, task.problem.tables.n_states)
+        assert (goal, world.n_states) == (task.goal, task.tables.n_states)
     assert len({world.fingerprint for _, world, _ in mazes}) == 6
 
 
 def test_codes_by_a_slow_look_around(run):
     task = run.testing[1]
-    _, world, _ = maze_of(task.problem.stream)
+    _, world, _ = maze_of(task.stream)
     for state, (row, column) in enumerate(world.cells.tolist()):
         assert task.contexts[PLACE][state] == 11 * row + column
         sides = [(-1, 0), (1, 0), (0, 1), (0, -1)]
@@ -198,30 +195,30 @@ def test_codes_by_a_slow_look_around(run):
 def test_counts_by_a_slow_tally(run, kind):
     tally = {}
     for task in run.training["noise"]:
-        for state, best in enumerate(task.problem.best):
-            if state != task.problem.goal:
+        for state, best in enumerate(task.best):
+            if state != task.goal:
                 row = tally.setdefault(int(task.contexts[kind][state]), np.zeros(4))
                 row += best
-    prior = exact_prior(run.training["noise"], kind, 0.1)
+    prior = exact_prior(run.training["noise"], 0.1, kind)
     assert prior.contexts.tolist() == sorted(tally)
     np.testing.assert_array_equal(prior.counts(sorted(tally)), [tally[code] for code in sorted(tally)])
 
 
 def test_the_lattices_places_are_read_in_a_maze_and_others_are_unknown(run):
     grid = lattice(11)
-    prior = exact_prior(run.training["lattice"], PLACE, 0.1)
+    prior = exact_prior(run.training["lattice"], 0.1, PLACE)
     assert prior.contexts.tolist() == sorted((11 * row + column) for row, column in grid.cells.tolist())
     task = run.testing[0]
     places = task.contexts[PLACE]
     in_lattice = ((places // 11) % 2 == 1) | ((places % 11) % 2 == 1)
     assert (prior.unseen(places) == ~in_lattice).all()
-    explore = np.diff(rows_of(task, prior, PLACE, "proportion", "uniform").explore_cum, axis=1, prepend=0)
+    explore = np.diff(rows_of(task, prior, "proportion", "uniform", PLACE).explore_cum, axis=1, prepend=0)
     strange = np.flatnonzero(~in_lattice[np.argsort(places)])
     np.testing.assert_allclose(explore[strange], 0.25)
 
 
 def test_a_percept_never_counts_a_move_into_a_wall(run):
-    prior = exact_prior(run.training["noise"], PERCEPT, 0.1)
+    prior = exact_prior(run.training["noise"], 0.1, PERCEPT)
     passable = (prior.contexts[:, None] >> np.arange(4)) & 1
     assert not prior.counts(prior.contexts)[passable == 0].any()
 
@@ -229,11 +226,9 @@ def test_a_percept_never_counts_a_move_into_a_wall(run):
 def test_a_prior_that_has_seen_nothing_is_q_learning(run):
     schedule = schedule_of({**SMALL, "max_steps": 100}, SCHEDULE)
     task = run.testing[0]
-    plain, learner = learn_task(task.problem, None, schedule)
+    plain, learner = learn_task(task, None, schedule)
     for kind in (PLACE, PERCEPT):
-        guided, other = learn_task(
-            task.problem, rows_of(task, ActionPrior(4), kind, "proportion", "prior"), schedule
-        )
+        guided, other = learn_task(task, rows_of(task, ActionPrior(4), "proportion", "prior", kind), schedule)
         assert plain.tobytes() == guided.tobytes()
         assert learner.q.tobytes() == other.q.tobytes()
 
@@ -241,9 +236,9 @@ def test_a_prior_that_has_seen_nothing_is_q_learning(run):
 def test_more_tasks_leave_the_first_ones_alone(run):
     more = run_of({**SMALL, "training_tasks": [2, 5], "test_tasks": 3}, 3, 0)
     for kind in ("lattice", "noise"):
-        goals = [task.problem.goal for task in run.training[kind]]
-        assert [task.problem.goal for task in more.training[kind]][:4] == goals
-    assert [task.problem.stream for task in more.testing][:2] == [task.problem.stream for task in run.testing]
+        goals = [task.goal for task in run.training[kind]]
+        assert [task.goal for task in more.training[kind]][:4] == goals
+    assert [task.stream for task in more.testing][:2] == [task.stream for task in run.testing]
 
 
 def test_the_grid_of_full_by_counting():
@@ -273,11 +268,9 @@ def test_a_cell_is_plain_data_with_every_method_in_every_cell_of_the_grid(cell):
 def test_a_number_is_what_learning_alone_gives(run, cell):
     how = {**SMALL["default"], "form": "support", "alpha0": None, "schedule": SCHEDULE, "ties": "prior"}
     found = next(f for f in cell["found"] if f["method"] == "qpap" and all(f[key] == how[key] for key in KEYS))
-    prior = exact_prior(run.training["noise"], PERCEPT, 1.0)
+    prior = exact_prior(run.training["noise"], 1.0, PERCEPT)
     schedule = schedule_of({**SMALL, "max_steps": 200}, SCHEDULE)
-    returns = [
-        learn_task(t.problem, rows_of(t, prior, PERCEPT, "support", "prior"), schedule)[0] for t in run.testing
-    ]
+    returns = [learn_task(t, rows_of(t, prior, "support", "prior", PERCEPT), schedule)[0] for t in run.testing]
     assert found["first"] == np.mean([r[0] for r in returns])
     assert found["first_ten"] == pytest.approx(np.mean([r[:10].mean() for r in returns]))
 

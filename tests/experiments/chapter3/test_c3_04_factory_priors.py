@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter3.c3_04_factory_priors.measure import measure, rows
-from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE, cells, run_cell
-from lifelore.experiments.chapter3.factory_learning import grid_of
+from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE, run_cell
+from lifelore.experiments.chapter3.factory.learning import grid_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 
@@ -95,7 +95,7 @@ def test_rows_hold_the_grid_the_curves_and_the_masses():
 @pytest.fixture(scope="module")
 def small():
     settings = {**QUICK, "training_tasks": 3, "episodes": 12, "max_steps": 200, "alpha0": [0.1], "last": 5}
-    return settings, [run_cell(settings, cell, 1) for cell in cells(settings)[:2]]
+    return settings, [run_cell(settings, cell, 1) for cell in ({"run": 0}, {"run": 1})]
 
 
 def test_a_run_holds_every_make_in_every_use(small):

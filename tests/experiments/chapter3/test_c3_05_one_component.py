@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.experiments.chapter3.c3_05_one_component.measure import measure, rows
+from lifelore.experiments.chapter3.c3_05_one_component.run import cells, run_cell
 from lifelore.experiments.chapter3.c3_06_four_components import measure as c3_6
-from lifelore.experiments.chapter3.factory_gains import measure, rows
-from lifelore.experiments.chapter3.factory_learning import grid_of
-from lifelore.experiments.chapter3.factory_series import cells, run_cell
+from lifelore.experiments.chapter3.factory.learning import grid_of
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.5")

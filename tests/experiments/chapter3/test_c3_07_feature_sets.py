@@ -5,15 +5,15 @@ import pytest
 
 from lifelore.domains.factory.factory import RAW
 from lifelore.experiments.chapter3.c3_07_feature_sets.measure import measure, rows
-from lifelore.experiments.chapter3.c3_07_feature_sets.run import KEYS, METHODS, cells, grid_of, run_cell
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
+from lifelore.experiments.chapter3.c3_07_feature_sets.run import KEYS, METHODS, grid_of, run_cell
+from lifelore.experiments.chapter3.factory.modified_tasks import (
     CARDINALS,
     DIAGONALS,
     contexts_of,
     learn_problem,
     problem_of,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.7")
@@ -114,7 +114,7 @@ def test_the_figure_is_drawn_from_rows_alone():
 def small():
     settings = {**QUICK, "episodes": 4, "early": 2, "test_tasks": 1, "max_steps": [50, 60]}
     settings["default"] = {**QUICK["default"], "max_steps": 60}
-    return settings, run_cell(settings, cells(settings)[0], 3)
+    return settings, run_cell(settings, {"run": 0}, 3)
 
 
 def test_every_method_is_met_once_in_each_cell_it_reads(small):

@@ -7,14 +7,13 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_08_feature_importance.measure import gaps, measure, rows
 from lifelore.experiments.chapter3.c3_08_feature_importance.run import (
-    cells,
     counted_actions,
     counted_states,
     grid_of,
     importance,
     run_cell,
 )
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, contexts_of, problem_of
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, contexts_of, problem_of
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.8")
@@ -109,7 +108,7 @@ def test_first_best_actions_by_hand():
 @pytest.fixture(scope="module")
 def small():
     settings = {**QUICK, "policies": [1, 2], "default": {**QUICK["default"], "policies": 2}}
-    return settings, run_cell(settings, cells(settings)[0], 4)
+    return settings, run_cell(settings, {"run": 0}, 4)
 
 
 def test_a_small_run_agrees_with_counts_made_anew(small):

@@ -6,13 +6,12 @@ from lifelore.core.errors import InputError
 from lifelore.experiments.chapter3.c3_09_online_features.measure import measure, rows
 from lifelore.experiments.chapter3.c3_09_online_features.run import (
     METHODS,
-    cells,
     grid_of,
     run_cell,
 )
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import learn_problem, problem_of
-from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.factory.modified_tasks import learn_problem, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.9")
@@ -92,7 +91,7 @@ def test_the_grid_is_the_default_and_every_other_choice_alone():
 
 def test_a_small_run_agrees_with_an_agent_of_its_own():
     settings = {**QUICK, "tasks": 2, "episodes": 4}
-    result = run_cell(settings, cells(settings)[0], 8)
+    result = run_cell(settings, {"run": 0}, 8)
     found = {
         (f["method"], f["source"]): f
         for f in result["found"]

@@ -13,10 +13,10 @@ from lifelore.experiments.chapter3.c3_10_selection_over_tasks.measure import (
     settled_after,
     shares,
 )
-from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, cells, mask_of, run_cell
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
-from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent, counted
+from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, mask_of, run_cell
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, FULL_SET, learn_problem, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import Counting, OnlineAgent, counted
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.10")
@@ -136,7 +136,7 @@ def test_before_its_first_task_an_agent_explores_uniformly(problem):
 
 def test_a_small_run_agrees_with_an_agent_of_its_own():
     settings = {**QUICK, "tasks": 2}
-    result = run_cell(settings, cells(settings)[0], 7)
+    result = run_cell(settings, {"run": 0}, 7)
     assert {len(masks) for masks in result["chosen"].values()} == {2}
     agent = OnlineAgent(True, Counting("exact", "way"), 0.1, "uniform")
     for i, mask in enumerate(result["chosen"]["exact, on the way"]):

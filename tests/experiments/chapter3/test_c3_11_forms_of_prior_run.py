@@ -18,8 +18,8 @@ from lifelore.experiments.chapter3.c3_11_forms_of_prior.run import (
     run_of,
     summary,
 )
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import contexts_of, learn_problem, problem_of
+from lifelore.experiments.chapter3.factory.modified_tasks import contexts_of, learn_problem, problem_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.registry import claim_of
 
 FULL = dict(claim_of("C3.11").sizes["full"])

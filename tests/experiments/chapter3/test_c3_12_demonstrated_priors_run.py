@@ -17,7 +17,7 @@ from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import (
     run_of,
     self_trained,
 )
-from lifelore.experiments.chapter3.modified_factory_tasks import contexts_of
+from lifelore.experiments.chapter3.factory.modified_tasks import contexts_of
 from lifelore.experiments.engine.registry import claim_of
 
 QUICK = dict(claim_of("C3.12").sizes["quick"])

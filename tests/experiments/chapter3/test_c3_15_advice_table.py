@@ -3,7 +3,7 @@
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.advice_mazes import AGENTS
+from lifelore.experiments.chapter3.advice.mazes import AGENTS
 from lifelore.experiments.chapter3.c3_15_advice_table.figure import PRINTED
 from lifelore.experiments.chapter3.c3_15_advice_table.measure import measure, rows
 from lifelore.experiments.engine.registry import claim_of

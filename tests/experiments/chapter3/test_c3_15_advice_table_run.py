@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.advisor import BETTER
-from lifelore.experiments.chapter3.advice_mazes import goal_models_of, maze_of
+from lifelore.experiments.chapter3.advice.mazes import goal_models_of, maze_of
 from lifelore.experiments.chapter3.c3_15_advice_table.run import better_advisor, run_cell
 from lifelore.experiments.engine.registry import claim_of
 

@@ -8,7 +8,7 @@ import pytest
 
 from lifelore.action.advice.advisor import Advisor
 from lifelore.action.advice.goal_model import GoalModel
-from lifelore.experiments.chapter3.advice_mazes import (
+from lifelore.experiments.chapter3.advice.mazes import (
     errands_of,
     goal_models_of,
     maze_of,
@@ -97,7 +97,7 @@ def test_watching_once_is_watching_at_every_kappa(cell):
 def test_q_learning_that_found_nothing_yet_is_random_motion():
     maze = maze_of(QUICK, CELL, 0)
     errands = errands_of(maze, 2)
-    settings = {**QUICK, "snapshots": [1], "max_episode_steps": 1}
-    for policy, errand in zip(agent_policies(settings, maze, errands)["q 1"], errands, strict=True):
+    settings = {**QUICK, "tasks": 2, "snapshots": [1], "max_episode_steps": 1}
+    for policy, errand in zip(agent_policies(settings, maze)["q 1"], errands, strict=True):
         # One step that is not the last tells nothing: Q is 0 everywhere.
         assert policy == pytest.approx(policy_of(maze.world, "random", errand)[:, 0])

@@ -6,16 +6,15 @@ import pytest
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.layout import factory
-from lifelore.experiments.chapter3 import factory_learning
-from lifelore.experiments.chapter3.factory_learning import (
+from lifelore.experiments.chapter3.factory import learning
+from lifelore.experiments.chapter3.factory.learning import (
     Problem,
     exact_prior,
     greedy_return,
     hand_made_prior,
-    hand_made_rows,
     learn_task,
-    learnt_rows,
     problem_of,
+    rows_of,
     solved,
     tasks_of,
     with_pseudo_count,
@@ -34,7 +33,7 @@ THREE_CELLS = """
 def corridor(monkeypatch):
     """The only task of a corridor: start, procurement point, assembly point."""
     small = factory(THREE_CELLS, discount=0.9)
-    monkeypatch.setattr(factory_learning, "floor", lambda discount: small)
+    monkeypatch.setattr(learning, "floor", lambda discount: small)
     return solved.__wrapped__((0,), 0.9)
 
 
@@ -95,8 +94,8 @@ def test_without_counts_a_prior_is_q_learning_to_the_bit():
     problem = problem_of(SETTINGS, (2,), (5, "test"))
     schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
     plain, learner = learn_task(problem, None, schedule)
-    learnt = learnt_rows(problem, exact_prior([], "global", 0.1), "global", "prior")
-    silent = hand_made_rows(problem, hand_made_prior(np.zeros_like(problem.solved.best), 35, 0.1), "prior")
+    learnt = rows_of(problem, exact_prior([], "global", 0.1), "global", "prior")
+    silent = rows_of(problem, hand_made_prior(np.zeros_like(problem.solved.best), 35, 0.1), None, "prior")
     for rows in (learnt, silent):
         curve, other = learn_task(problem, rows, schedule)
         assert curve.rewards.tobytes() == plain.rewards.tobytes()
@@ -106,7 +105,7 @@ def test_without_counts_a_prior_is_q_learning_to_the_bit():
 def test_a_prior_of_the_task_itself_finds_it_sooner():
     problem = problem_of(SETTINGS, (2,), (5, "test"))
     schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
-    rows = learnt_rows(problem, exact_prior([problem.solved], "global", 0.01), "global", "uniform")
+    rows = rows_of(problem, exact_prior([problem.solved], "global", 0.01), "global", "uniform")
     guided, _ = learn_task(problem, rows, schedule)
     plain, _ = learn_task(problem, None, schedule)
     assert guided.rewards.mean() > plain.rewards.mean() + 1000

@@ -5,16 +5,16 @@ import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
-from lifelore.experiments.chapter3.lattice_learning import (
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import run_of
+from lifelore.experiments.chapter3.learning.grid_tasks import (
     exact_prior,
     learn_task,
     mean_returns,
     rows_of,
-    run_of,
-    schedule_of,
     start_values,
     summary,
 )
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine import curve_blocks, learning_run
 from lifelore.experiments.engine.curve_blocks import block_edges, block_means
 from lifelore.experiments.engine.registry import claim_of

@@ -7,14 +7,16 @@ from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
 from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
-from lifelore.experiments.chapter4.ball_game_learners import (
+from lifelore.experiments.chapter4.ball_game.games import DEFAULT, Setting, check_games
+from lifelore.experiments.chapter4.ball_game.learners import (
     BeatLearner,
     PrintedExp3,
     exp3_by_episode,
     tuned_gamma,
 )
-from lifelore.experiments.chapter4.ball_game_play import (
+from lifelore.experiments.chapter4.ball_game.play import (
     FixedSpeeds,
+    Learner,
     Players,
     log_shares,
     losses_by_speed,
@@ -22,7 +24,6 @@ from lifelore.experiments.chapter4.ball_game_play import (
     populations,
     train,
 )
-from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, Setting, check_games
 from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import library_of, transition_of
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.baselines.exp3 import EXP3
@@ -76,10 +77,8 @@ def test_everybody_meets_the_same_world_whoever_else_plays():
     assert single.hits[0].tolist() == together.hits[4].tolist()
 
 
-class Kept:
+class Kept(Learner):
     """A speed for each player and episode."""
-
-    watches = False
 
     def __init__(self, speeds):
         self.speeds = speeds
@@ -89,9 +88,6 @@ class Kept:
 
     def observe(self, speed, moves):
         raise AssertionError
-
-    def end_episode(self, speed, loss):
-        pass
 
 
 def test_a_speed_kept_for_an_episode_loses_what_the_table_says():

@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.experiments.chapter4.c4_01_golf_example.measure import measure, rows
 from lifelore.experiments.chapter4.c4_01_golf_example.run import follow_printed, greedy_shares, run_cell
-from lifelore.experiments.chapter4.golf_runs import exact_library, learnt_library
+from lifelore.experiments.chapter4.golf.rounds import exact_library, learnt_library
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.1")

@@ -8,8 +8,8 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.experiments.chapter4.c4_02_golf_holes.measure import measure, rows
 from lifelore.experiments.chapter4.c4_02_golf_holes.run import program_gaps, run_cell
-from lifelore.experiments.chapter4.golf_runs import exact_library, play_holes
-from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
+from lifelore.experiments.chapter4.golf.rounds import exact_library, play_holes
+from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.selection import Greedy
 

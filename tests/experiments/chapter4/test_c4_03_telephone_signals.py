@@ -8,11 +8,11 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.domains.telephone.telephone import Telephone
 from lifelore.experiments.chapter4.c4_03_telephone_signals.measure import measure, orders, rows
-from lifelore.experiments.chapter4.c4_03_telephone_signals.run import run_cell
-from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import (
+from lifelore.experiments.chapter4.c4_03_telephone_signals.run import (
     SIGNAL_OF_PATH,
     exact_library,
     learnt_library,
+    run_cell,
 )
 from lifelore.experiments.engine.registry import claim_of
 

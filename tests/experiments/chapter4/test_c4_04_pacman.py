@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.domains.pacman.pacman import STRATEGIES
-from lifelore.experiments.chapter4.c4_04_pacman.measure import REUSERS, measure, rows
-from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import LEARNERS
+from lifelore.experiments.chapter4.c4_04_pacman.measure import measure, rows
+from lifelore.experiments.chapter4.c4_04_pacman.run import LEARNERS, REUSERS
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import reproduce

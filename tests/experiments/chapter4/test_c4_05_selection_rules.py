@@ -8,7 +8,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter4.c4_05_selection_rules.measure import late_by_seen, measure, rows, verdicts
 from lifelore.experiments.chapter4.c4_05_selection_rules.run import run_cell
-from lifelore.experiments.chapter4.surveillance_runs import CASES, RULES
+from lifelore.experiments.chapter4.surveillance.runs import CASES, RULES
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.5")

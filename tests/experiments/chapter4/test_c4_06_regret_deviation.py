@@ -16,7 +16,7 @@ from lifelore.experiments.chapter4.c4_06_regret_deviation.measure import (
     rows,
 )
 from lifelore.experiments.chapter4.c4_06_regret_deviation.run import run_cell
-from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
+from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.6")

@@ -6,8 +6,8 @@ import pytest
 
 from lifelore.experiments.chapter4.c4_07_bandit_baselines.measure import best_gp, measure, rows
 from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, REUSE, run_cell
-from lifelore.experiments.chapter4.surveillance_peers import PEERS
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.chapter4.surveillance.peers import PEERS
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.7")

@@ -3,15 +3,16 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.c4_09_model_storage.measure import measure
-from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
+from lifelore.experiments.chapter4.c4_09_model_storage.applications import (
     Application,
     pacman_application,
     random_application,
     reserve_application,
-    stored,
     telephone_application,
+    with_returns,
 )
+from lifelore.experiments.chapter4.c4_09_model_storage.measure import measure
+from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import stored
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.library.storage_cost import StorageSizes
 
@@ -33,7 +34,7 @@ def by_hand():
     """One type, one policy, two states, one action, rewards 0, 1, 2; two episodes of two steps."""
     there, back = (0, 0, 1), (1, 0, 0)
     episodes = [(np.array([there, back]), np.array([1.0, 0.0])), (np.array([there, there]), np.array([1.0, 2.0]))]
-    return Application(StorageSizes(1, 1, 2, 1, 3), np.arange(3.0), [[episodes]])
+    return Application(StorageSizes(1, 1, 2, 1, 3), np.arange(3.0), with_returns([[episodes]]))
 
 
 def test_entries_by_hand():
@@ -57,7 +58,7 @@ def test_rewards_that_are_a_function_of_the_step_fill_no_more_than_the_steps():
 def test_telephone_has_as_many_rewards_as_states():
     found = telephone_application(np.random.default_rng(0), 3, 4)
     assert (found.sizes.n_states, found.sizes.n_rewards, found.sizes.n_actions) == (6, 6, 1)
-    assert all(pay.sum() in (3.0, 10.0) for _, _, (_, pay) in found.sequences())
+    assert all(pay.sum() in (3.0, 10.0) for _, _, (_, pay) in found.runs.sequences())
 
 
 def test_reserve_has_more_or_fewer_rewards_than_states_by_how_pay_is_rounded():

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_10_landmark_regret.landmark_tables import (
+from lifelore.experiments.chapter4.c4_10_landmark_regret.measure import EXAMPLE, example_regret, measure, rows
+from lifelore.experiments.chapter4.c4_10_landmark_regret.run import (
     RANDOM,
     parted,
     random_table,
     surveillance_table,
 )
-from lifelore.experiments.chapter4.c4_10_landmark_regret.measure import EXAMPLE, example_regret, measure, rows
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.10")

@@ -5,7 +5,8 @@ from math import comb
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.ball_game_methods import (
+from lifelore.experiments.chapter4.ball_game.games import DEFAULT, Setting
+from lifelore.experiments.chapter4.ball_game.methods import (
     HINDSIGHT,
     METHODS,
     ORACLE,
@@ -16,7 +17,6 @@ from lifelore.experiments.chapter4.ball_game_methods import (
     known_of,
     run_methods,
 )
-from lifelore.experiments.chapter4.ball_game_settings import DEFAULT, Setting
 from lifelore.experiments.chapter4.c4_12_user_diversity.measure import PRINTED, measure, rows
 from lifelore.experiments.chapter4.c4_12_user_diversity.run import cells, run_cell
 from lifelore.experiments.engine.registry import claim_of

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.ball_game_settings import DEFAULT
+from lifelore.experiments.chapter4.ball_game.games import DEFAULT
 from lifelore.experiments.chapter4.c4_13_type_naming.measure import measure, right_of, share
 from lifelore.experiments.chapter4.c4_13_type_naming.run import WAYS, cells, confusion, run_cell
 from lifelore.experiments.engine.registry import claim_of

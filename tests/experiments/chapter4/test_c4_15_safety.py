@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.ball_game_methods import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
+from lifelore.experiments.chapter4.ball_game.methods import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
 from lifelore.experiments.chapter4.c4_15_safety.measure import measure, rows, worst_ratio
 from lifelore.experiments.chapter4.c4_15_safety.run import LAGGING, cells, run_cell
 from lifelore.experiments.engine.registry import claim_of

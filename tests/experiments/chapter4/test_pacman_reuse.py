@@ -8,12 +8,12 @@ from lifelore.domains.pacman.pacman import STRATEGIES, PacmanMaze
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import (
     arenas,
     exact_moments,
-    falling,
+    falling_schedule,
     greedy,
     sampled_returns,
     trained_policies,
 )
-from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import first_lasting, first_stretch, reused, run_cell
+from lifelore.experiments.chapter4.c4_04_pacman.run import first_lasting, first_stretch, reused, run_cell
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
@@ -75,13 +75,12 @@ def test_samples_are_of_the_policies_on_the_types(at_home, library):
 
 
 def test_learning_in_parts_is_learning_at_once(at_home):
-    from lifelore.core.learning.q_learning import Schedule
-
     def learnt(parts):
         learner, rewards = at_home[3].begin((2, "parts")), []
-        rates = falling(0.5, 60)
+        plan = falling_schedule(0.5, 0.5, 60, 1.0)
         for part in parts:
-            rewards.append(at_home[3].learn(learner, Schedule(rates[part], rates[part], 200, 1.0)).rewards)
+            schedule = plan._replace(epsilon=plan.epsilon[part], alpha=plan.alpha[part])
+            rewards.append(at_home[3].learn(learner, schedule).rewards)
         return learner.q, np.concatenate(rewards)
 
     whole, parted = learnt([slice(0, 60)]), learnt([slice(0, 7), slice(7, 60)])
@@ -91,7 +90,7 @@ def test_learning_in_parts_is_learning_at_once(at_home):
 
 def test_rates_fall_as_printed():
     # 0.5, less 0.5/N after each of N episodes.
-    assert falling(0.5, 4).tolist() == [0.5, 0.375, 0.25, 0.125]
+    assert falling_schedule(0.5, 0.1, 4, 1.0).epsilon.tolist() == [0.5, 0.375, 0.25, 0.125]
 
 
 def test_greedy_policy_shares_ties():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.reuse_runs import (
+from lifelore.experiments.chapter4.reuse.many_tasks import (
     converged_after,
     curve,
     grouped_mean,

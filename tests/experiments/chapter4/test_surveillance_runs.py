@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.experiments.chapter4.surveillance_peers import GIVEN, PEERS, make_peer, tuning_grid
-from lifelore.experiments.chapter4.surveillance_runs import (
+from lifelore.experiments.chapter4.surveillance.peers import GIVEN, PEERS, make_peer, tuning_grid
+from lifelore.experiments.chapter4.surveillance.runs import (
     DEFAULT_WORLD,
     EXACT,
     LEARNT,

@@ -14,7 +14,7 @@ from lifelore.domains.tabletop.shapes import ball, box, cup
 from lifelore.experiments.chapter5.c5_01_more_relations import run as word_scenes
 from lifelore.experiments.chapter5.c5_01_more_relations.run import (
     KINDS,
-    compound_counts,
+    compound_facts,
     from_the_other_side,
     labels_of,
     outlines,
@@ -80,7 +80,7 @@ def test_a_cell_draws_its_own_numbers_of_its_own_kind(monkeypatch):
 
     monkeypatch.setattr(word_scenes, "_drawn", lambda seed, shapes, number: scene("drawn", shapes, number))
     monkeypatch.setattr(word_scenes, "seen", lambda scene, cloud: {})
-    monkeypatch.setattr(word_scenes, "compound_counts", lambda scene: {})
+    monkeypatch.setattr(word_scenes, "compound_facts", lambda scene: {})
     monkeypatch.setattr(word_scenes, "arranged", lambda name, seed, number: scene(name, number))
     settings = {"lessons": [10], "scenes": 1, "compound": 12}
     found = run_cell(settings, {"kind": "lesson", "first": 8}, 0)
@@ -165,7 +165,7 @@ def test_in_is_a_cup_whether_or_not_it_is_called_on_and_adjacent():
 
 
 def test_the_thesiss_rules_on_what_is_true():
-    row, angle = compound_counts(ROW), compound_counts(ANGLE)  # type: ignore[arg-type]
+    row, angle = compound_facts(ROW), compound_facts(ANGLE)  # type: ignore[arg-type]
     assert row["true"] == row["thesis"] == [["between", 3, 2, 4]]
     # Two different adjacents, and not between: a counterexample.
     assert (angle["true"], angle["thesis"]) == ([], [["between", 3, 2, 4]])
@@ -173,7 +173,7 @@ def test_the_thesiss_rules_on_what_is_true():
     assert row["lifelore"] == [["between", 3, 2, 4]]
     assert angle["lifelore"] == []
     leaning = made([at(0, 0), at(0.04, 0, 0.06)], [PairLabel(3, 2, "both"), *ON_TABLE[:2]])
-    found = compound_counts(leaning)  # type: ignore[arg-type]
+    found = compound_facts(leaning)  # type: ignore[arg-type]
     assert (found["true"], found["thesis"]) == ([], [["in", 3, 2]])
 
 

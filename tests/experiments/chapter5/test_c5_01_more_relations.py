@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter2.relation_scoring import wilson
+from lifelore.experiments.chapter2.scoring.relation_scoring import wilson
 from lifelore.experiments.chapter5.c5_01_more_relations.measure import (
     compound_counts,
     f1,

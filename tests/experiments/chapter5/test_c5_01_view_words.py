@@ -8,10 +8,10 @@ from lifelore.experiments.chapter5.c5_01_more_relations.view_words import (
     is_between,
     is_in,
     offset,
-    said_of_pair,
     shared_outline,
     side_by_side,
     words,
+    words_of_pair,
 )
 
 SOUTH, NORTH = np.array([0.0, -1, 0.5]), np.array([0.0, 1, 0.5])
@@ -94,10 +94,10 @@ def test_the_users_word():
 
 
 def test_a_pair_in_both_orders_and_in_none():
-    assert said_of_pair(7, 4, RIGHT, LEFT, SOUTH) == [PairLabel(7, 4, "right_of"), PairLabel(4, 7, "left_of")]
+    assert words_of_pair(7, 4, RIGHT, LEFT, SOUTH) == [PairLabel(7, 4, "right_of"), PairLabel(4, 7, "left_of")]
     upper = block(0, 0, 0.1)
-    assert said_of_pair(2, 3, upper, block(0, 0), SOUTH) == [PairLabel(3, 2, "under")]
-    assert said_of_pair(2, 3, upper, block(0.09, 0), SOUTH) == [PairLabel(2, 3, "none")]
+    assert words_of_pair(2, 3, upper, block(0, 0), SOUTH) == [PairLabel(3, 2, "under")]
+    assert words_of_pair(2, 3, upper, block(0.09, 0), SOUTH) == [PairLabel(2, 3, "none")]
 
 
 @pytest.mark.parametrize(

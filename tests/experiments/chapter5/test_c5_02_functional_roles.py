@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.experiments.chapter2.arranged_scenes import Placement, settled
+from lifelore.experiments.chapter2.scenes.arranged_scenes import Placement, settled
 from lifelore.experiments.chapter5.c5_02_functional_roles.measure import judged_queries
 from lifelore.experiments.chapter5.c5_02_functional_roles.run import PARTS, POOLS, ROLES, predicate_bag
 from lifelore.perception.relations.relation import Relation

@@ -1,4 +1,8 @@
-"""Speed and worth as ratios, measured side by side: one function a benchmark, plain data out."""
+"""Benchmarks: speed and benefit as ratios, measured side by side; plain data out.
+
+A folder a subject: a benchmark's module has its name, and its peers stand beside it. `rounds` measures them in
+turns.
+"""
 
 from importlib import import_module
 
@@ -8,26 +12,26 @@ from lifelore.core.protocols import Progress
 MOST_REPEATS = 1000
 
 
-BENCHES = (
-    "kernels",
-    "courier",
-    "priors",
-    "separator",
-    "perceive",
-    "relations",
-    "pictures",
-    "factory",
-    "deep",
-    "reuse",
-    "start",
-    "buildings",
-    "merge",
-    "capacity",
-    "recognition",
-)
-"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them."""
+BENCHES = {
+    "kernels": "learners",
+    "courier": "lives",
+    "priors": "action",
+    "separator": "perception",
+    "perceive": "perception",
+    "relations": "perception",
+    "pictures": "perception",
+    "factory": "action",
+    "deep": "action",
+    "reuse": "interaction",
+    "start": "startup",
+    "buildings": "lives",
+    "merge": "fleet",
+    "capacity": "fleet",
+    "recognition": "lives",
+}
+"""Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition")
-"""Benchmarks that take a ROS map."""
+"""Benchmarks that also take a ROS map."""
 
 
 def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
@@ -39,8 +43,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives; for
-        ``recognition``: offices; for
-        ``relations``: lots of scenes, judged together; for ``deep``: runs of learning.
+        ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs of learning.
     map : str, optional
         For ``courier`` and ``recognition``: a ROS map to live in; default generated offices.
     progress : callable, optional
@@ -65,7 +68,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         raise InputError(f"repeats must lie in [1, {MOST_REPEATS}], got {repeats}")
     if map is not None and name not in WITH_MAP:
         raise InputError(f"map applies to bench {' and '.join(WITH_MAP)}, got {map} for {name}; leave it out")
-    run = getattr(import_module(f"{__name__}.{name}"), f"bench_{name}")
+    run = getattr(import_module(f"{__name__}.{BENCHES[name]}.{name}"), f"bench_{name}")
     options = {"map": map} if name in WITH_MAP else {}
     return {"bench": name, **run(repeats, progress or _silent, **options)}
 

@@ -2,10 +2,12 @@
 
 - ``claim.toml``: title, what the thesis reports, settings with their limits, and the conditions and rules of the
   verdict.
-- ``run.py``: ``cells(settings)`` lists the cells of a run, ``run_cell(settings, cell, seed)`` computes one of
-  them. Cells are independent plain dictionaries, run in any order on any thread.
+- ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
+  seed)`` computes one of them. Cells are independent plain dictionaries, run in any order on any thread.
 - ``measure.py``: ``measure(settings, results)`` gives named estimates, ``rows(settings, results)`` compact rows.
 - ``figure.py``: ``draw(result)`` draws the finished result; it runs nothing again.
+
+A small claim may leave out one or two of the modules; their functions then stand in a module that is there.
 
 Results of cells are plain data (what JSON can hold), so that a stored cell equals a fresh one.
 """
@@ -27,6 +29,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MODES = ("quick", "full")
+MODULES = ("run", "measure", "figure")
+FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
 OPTIONAL = {"limits", "named", "timed"}
 """Keys of ``claim.toml``."""
@@ -93,7 +97,7 @@ class Claim:
         Raises
         ------
         InputError
-            ``claim.toml`` is no TOML, or a key of it is missing or unknown.
+            ``claim.toml`` is no TOML, a key of it is missing or unknown, or a function is missing.
         """
         path = folder / "claim.toml"
         try:
@@ -106,7 +110,14 @@ class Claim:
                 f"missing {', '.join(sorted(missing)) or 'none'}, unknown {', '.join(sorted(unknown)) or 'none'}"
             )
             raise InputError(f"{path} must have the keys of a claim; {keys}")
-        run, measure, figure = (import_module(f"{package}.{name}") for name in ("run", "measure", "figure"))
+        modules = [import_module(f"{package}.{name}") for name in MODULES if (folder / f"{name}.py").is_file()]
+        found = {name: [vars(m)[name] for m in modules if name in vars(m)] for name in (*FUNCTIONS, "check")}
+        found["cells"] = found["cells"] or [each_run]
+        absent = [name for name in FUNCTIONS if not found[name]]
+        if absent:
+            raise InputError(
+                f"modules of {folder} must define {', '.join(FUNCTIONS)}; missing {', '.join(absent)}"
+            )
         full = data["settings"]["full"]
         return cls(
             id=claim_id,
@@ -119,13 +130,8 @@ class Claim:
             predicate=Predicate.from_data(data),
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
-            cells=run.cells,
-            run_cell=run.run_cell,
-            check=getattr(run, "check", None),
-            measure=measure.measure,
-            rows=measure.rows,
-            draw=figure.draw,
             timed=data.get("timed", False),
+            **{name: functions[0] for name, functions in found.items() if functions},
         )
 
     def read_measures(self) -> set[str]:
@@ -157,6 +163,11 @@ class Claim:
         if self.check:
             self.check(settings)
         return settings
+
+
+def each_run(settings: Settings) -> list[dict]:
+    """The cells of a claim whose module `run` lists none: ``{"run": number}`` for each of its ``runs``."""
+    return [{"run": number} for number in range(settings["runs"])]
 
 
 def _as_type_of(default: Any, value: Any, label: str) -> Any:

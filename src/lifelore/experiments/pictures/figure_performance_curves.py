@@ -1,16 +1,11 @@
 """What policy reuse knows: policies' performance over a line of tasks (after the thesis's Figure 4.1)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 _COLOURS = (BLUE, GREEN, ORANGE)
 
@@ -24,43 +19,28 @@ def draw_performance_curves(
     shown: tuple[str, str],
     deviation: float,
     epsilon: float,
-) -> "Figure":
+):
     """Curves, the points known of them, and the points a new task asks about.
 
-    Parameters
-    ----------
-    tasks : (n,) float
-        Places in the space of tasks.
-    curves : mapping
-        Policy to its performance (n,) there.
-    types : mapping
-        Type to its place.
-    new_task : float
-        Place of the unknown task.
-    shown : (type, policy)
-        Whose distribution of performance is drawn.
-    deviation : float
-        Of that distribution, in units of performance.
-    epsilon : float
-        How far performances within the shown type may differ: the tasks of its ε-ball are shaded.
+    `tasks` ``(n,)`` are places in the space of tasks, `curves` policy → its performance ``(n,)`` there, `types`
+    type → its place. The distribution of performance of the (type, policy) `shown` is drawn with its deviation;
+    performances within the shown type differ by at most `epsilon`: the tasks of this ε-ball are shaded.
     """
     place, known = np.asarray(tasks, float), {name: np.asarray(c, float) for name, c in curves.items()}
     with house_style():
         figure = new_figure(7.6, 4.3)
         axes = figure.subplots()
-        _shade_ball(axes, place, known, types[shown[0]], epsilon, shown[0])
+        _shade_ball(axes, place, known, types[shown[0]], epsilon)
         for colour, (name, values) in zip(_COLOURS, known.items(), strict=False):
             axes.plot(place, values, color=colour, lw=2)
             axes.annotate(
                 name, (place[-1], values[-1]), (6, 0), textcoords="offset points", color=colour, va="center",
                 fontsize=11,
             )  # fmt: skip
-            at = np.interp(list(types.values()), place, values)
-            axes.plot(list(types.values()), at, "o", color=INK, ms=5, zorder=5)
-            axes.plot(
-                [new_task], np.interp([new_task], place, values), "o", ms=8, mfc=PAPER, mec=VERMILION, mew=1.8,
-                zorder=6,
-            )  # fmt: skip
+            known_at = [*types.values()]
+            axes.plot(known_at, np.interp(known_at, place, values), "o", color=INK, ms=5, zorder=5)
+            asked = np.interp([new_task], place, values)
+            axes.plot([new_task], asked, "o", ms=8, mfc=PAPER, mec=VERMILION, mew=1.8, zorder=6)
         axes.axvline(new_task, color=VERMILION, lw=1, ls=(0, (4, 3)))
         _draw_distribution(axes, types[shown[0]], place, known[shown[1]], deviation, shown)
         ticks = {**types, "$x^*$": new_task}
@@ -73,7 +53,7 @@ def draw_performance_curves(
     return figure
 
 
-def _shade_ball(axes: "Axes", place: NDArray, known: Mapping[str, NDArray], at: float, epsilon: float, name: str):
+def _shade_ball(axes, place: NDArray, known: Mapping[str, NDArray], at: float, epsilon: float) -> None:
     """The tasks around a type on which no policy's performance differs from the type's by more than ε / 2."""
     differences = [np.abs(values - np.interp(at, place, values)) for values in known.values()]
     inside = place[np.max(differences, axis=0) <= epsilon / 2]
@@ -92,7 +72,7 @@ def _shade_ball(axes: "Axes", place: NDArray, known: Mapping[str, NDArray], at: 
 
 
 def _draw_distribution(
-    axes: "Axes", at: float, place: NDArray, values: NDArray, deviation: float, shown: tuple[str, str]
+    axes, at: float, place: NDArray, values: NDArray, deviation: float, shown: tuple[str, str]
 ) -> None:
     centre, width = float(np.interp(at, place, values)), 0.05 * (place[-1] - place[0])
     height = np.linspace(-3, 3, 80)

@@ -5,16 +5,13 @@ left wall the bands of two types stand as curves over the policies, with their d
 """
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.figures.style import BLUE, GREY, INK, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 _FINE = 60
 
@@ -27,18 +24,10 @@ def draw_response_surface(
     shown: tuple[int, int] = (0, -1),
     *,
     words: tuple[str, str, str] = ("type", "policy", "performance"),
-) -> "Figure":
-    """Draw the surface that passes through what is known.
+):
+    """Draw the surface through the known means ``(n_types, n_policies)``, finite, at least two of each.
 
-    Parameters
-    ----------
-    mean, deviation : (n_types, n_policies) float
-        Of the performance, finite; at least two of each.
-    types, policies : sequence of str
-    shown : (int, int)
-        Numbers of the two types drawn as bands.
-    words : (str, str, str)
-        Labels of the axes.
+    `shown` are the numbers of the two types drawn as bands, `words` the labels of the axes.
     """
     mean, deviation = np.asarray(mean, float), np.asarray(deviation, float)
     if mean.ndim != 2 or min(mean.shape) < 2 or mean.shape != (len(types), len(policies)):

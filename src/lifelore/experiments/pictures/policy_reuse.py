@@ -20,12 +20,11 @@ from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.domains.surveillance.surveillance import BASE, LAYOUTS, SIDE, Surveillance
-from lifelore.experiments.chapter4.category_bars import draw_category_bars
-from lifelore.experiments.pictures.figure_interaction_model import draw_interaction_model
+from lifelore.experiments.chapter4.golf.category_bars import draw_category_bars
+from lifelore.experiments.pictures.figure_graph_models import draw_interaction_model, draw_type_model
 from lifelore.experiments.pictures.figure_performance_curves import draw_performance_curves
 from lifelore.experiments.pictures.figure_reserve_map import draw_reserve_maps
 from lifelore.experiments.pictures.figure_response_surface import draw_response_surface
-from lifelore.experiments.pictures.figure_type_model import draw_type_model
 from lifelore.experiments.pictures.figure_world_plates import draw_world_plates
 from lifelore.figures.style import save_figure
 
@@ -41,10 +40,8 @@ def plates(results: Path = RESULTS) -> Iterator[tuple[str, "Figure"]]:
     yield "reuse_model", draw_type_model()
     yield "reuse_clubs", draw_category_bars(Golf().category_probs, EDGES, CLUBS, HOLES)
     reserves = {name: Surveillance(name) for name in LAYOUTS}
-    yield (
-        "reuse_reserves",
-        draw_reserve_maps({n: (r.targets, r.is_hilltop) for n, r in reserves.items()}, BASE, SIDE),
-    )
+    maps = {name: (reserve.targets, reserve.is_hilltop) for name, reserve in reserves.items()}
+    yield "reuse_reserves", draw_reserve_maps(maps, BASE, SIDE)
     mean, error = _losses(results)
     sizes, speeds = [f"b = {b}" for b in SIZES], [str(speed) for speed in SPEEDS]
     words = ("size of the ball", "speed", "minus the loss")

@@ -6,23 +6,18 @@ extra ``sim``.
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.figures.scene_document import TABLE_NAME, Bond, read_document
 from lifelore.figures.scene_picture import draw_scene_on
 from lifelore.figures.style import GREY, LIGHT, house_style, new_figure, save_figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 PATH = Path("docs/pictures/scene_layers.png")
 _PICTURE = (2.95, 2.21)
 _GUTTER, _HEAD, _MOST = 0.12, 0.3, 14
 
 
-def draw_layers(cloud: LabelledCloud, document: Mapping) -> "Figure":
+def draw_layers(cloud: LabelledCloud, document: Mapping):
     """The figure, the lowest layer first; arguments as of `scene_picture.sample_scene`."""
     bonds = read_document(document).bonds
     text = 0.15 * ((min(len(bonds), 2 * _MOST) + 1) // 2) + 0.15
@@ -41,7 +36,9 @@ def draw_layers(cloud: LabelledCloud, document: Mapping) -> "Figure":
             axes = figure.add_axes((left / width, low / height, _PICTURE[0] / width, _PICTURE[1] / height))
             draw_scene_on(axes, cloud, document, _PICTURE, layers)
             axes.set_title(title, fontsize=9.5, pad=5)
-            _frame(axes)
+            axes.set_axis_on()
+            axes.set(xticks=[], yticks=[])
+            axes.spines[:].set(visible=True, color=LIGHT)
             if "relations" in layers:
                 _write(axes, bonds)
             else:
@@ -56,14 +53,7 @@ def predicate(bond: Bond) -> str:
     return f"{bond.relation}({a}, {b})"
 
 
-def _frame(axes: "Axes") -> None:
-    axes.set_axis_on()
-    axes.set(xticks=[], yticks=[])
-    axes.spines[:].set_visible(True)
-    axes.spines[:].set_color(LIGHT)
-
-
-def _write(axes: "Axes", bonds: tuple[Bond, ...]) -> None:
+def _write(axes, bonds: tuple[Bond, ...]) -> None:
     """The predicates in two columns under their picture."""
     rows = (min(len(bonds), 2 * _MOST) + 1) // 2
     for place, bond in enumerate(bonds[: 2 * _MOST]):

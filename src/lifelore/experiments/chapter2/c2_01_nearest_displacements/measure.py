@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.1: scores with A and B given, with the direction inferred, and over the grid."""
+"""Claim C2.1: scores of pairs with A and B given, with the direction inferred, and over the grid (§2.4.1)."""
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
@@ -9,7 +9,9 @@ import numpy as np
 from lifelore.core.metrics import RESAMPLES, Estimate
 from lifelore.core.relations import BOTH, CORE_RELATIONS, ON, SYMMETRIC
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import BESIDE_US, KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     DROPS,
     WEIGHTS,
     Reading,
@@ -19,13 +21,13 @@ from lifelore.experiments.chapter2.pair_validation import (
     in_given_order,
     votes_of_neighbours,
 )
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, less_rate, score, score_row, share
-from lifelore.experiments.chapter2.tabletop_pairs import BESIDE_US, KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, less_rate, score, score_row, share
 from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 
 SCENES = {"simulated": False, "real": True}
+cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -46,21 +48,14 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def hardest_margin(judged: Sequence[JudgedPair]) -> Estimate:
     """Least recall of the other relations less that of *both*; pairs of each relation resampled (percentiles)."""
-    right = {
-        name: np.array([pair.exact for pair in judged if pair.truth.relation == name], float)
-        for name in CORE_RELATIONS
-    }
-    right = {name: answers for name, answers in right.items() if len(answers)}
-    if BOTH not in right or len(right) < 2:
+    counts = {name: number for name, number in right_and_all(judged).items() if name != "all"}
+    if BOTH not in counts or len(counts) < 2:
         return UNMEASURED
     rng = stream(len(judged), "recalls resampled")
-    drawn = {
-        name: rng.binomial(len(answers), answers.mean(), RESAMPLES) / len(answers)
-        for name, answers in right.items()
-    }
-    others = [name for name in right if name != BOTH]
-    value = float(min(right[name].mean() for name in others) - right[BOTH].mean())
-    spread = np.min([drawn[name] for name in others], axis=0) - drawn[BOTH]
+    drawn = {name: rng.binomial(n, right / n, RESAMPLES) / n for name, (right, n) in counts.items()}
+    recalls = {name: right / n for name, (right, n) in counts.items()}
+    both, of_both = recalls.pop(BOTH), drawn.pop(BOTH)
+    value, spread = min(recalls.values()) - both, np.min(list(drawn.values()), axis=0) - of_both
     low, high = np.quantile(spread, [0.025, 0.975])
     return Estimate(value, value, (float(low), float(high)), len(judged))
 
@@ -86,17 +81,13 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             matrix = {"confusion": name, "predicted_by_actual": confusion(judged)}
             found.append(matrix | score_row(scored, ("exact", "macro_f1")))
     for method, kinds in inferred(settings["folds"], sets).items():
-        for kind, judged in kinds.items():
-            scored = score(judged)
-            assert scored is not None
-            found.append({"method": method, "scenes": kind, **score_row(scored)})
+        scores = {kind: score(judged) for kind, judged in kinds.items()}
+        found += [{"method": method, "scenes": kind, **score_row(s)} for kind, s in scores.items() if s]
     for reading in readings(settings):
-        row: dict = {"grid": {**vars(reading)}}
-        for name, real in SCENES.items():
-            judged = given_order(sets, reading, real)
-            if judged:
-                row[name] = right_and_all(judged)
-        found.append(row)
+        judged = {name: given_order(sets, reading, real) for name, real in SCENES.items()}
+        found.append(
+            {"grid": vars(reading), **{name: right_and_all(pairs) for name, pairs in judged.items() if pairs}}
+        )
     return found
 
 
@@ -123,11 +114,11 @@ def inferred(folds: int, sets: Mapping[int | str, Sequence[Row]]) -> dict[str, d
     """By method and kind of scenes the judged pairs, each data set by itself; the direction is inferred."""
     found: dict[str, dict[str, list[JudgedPair]]] = {}
     for method, (new_model, look, own_folds) in methods(folds).items():
-        kinds = found.setdefault(method, {})
         for number, pairs in sets.items():
-            kind = "real" if number == "real" else "simulated"
-            n_folds = None if kind == "real" else own_folds
-            kinds.setdefault(kind, []).extend(cross_validated(pairs, new_model, look, n_folds))
+            kind, n_folds = ("real", None) if number == "real" else ("simulated", own_folds)
+            found.setdefault(method, {}).setdefault(kind, []).extend(
+                cross_validated(pairs, new_model, look, n_folds)
+            )
     return found
 
 

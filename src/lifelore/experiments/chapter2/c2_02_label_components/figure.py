@@ -1,14 +1,10 @@
 """How often each component of a label is right and agreed on, beside its majority and the printed share."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.method_panels import per_cent
+from lifelore.experiments.chapter2.scoring.method_panels import per_cent
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, PAPER, SKY, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 PRINTED = {"on": (40, 28), "adjacent": (39, 18)}
 """Of 49: right, and in agreement with 75 % of the neighbours."""
@@ -19,7 +15,7 @@ BARS = {
 }
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     names, colours = zip(*BARS.values(), strict=True)
     with house_style():
         figure = new_figure(8.2, 2.4)
@@ -38,11 +34,8 @@ def draw(result: Mapping) -> "Figure":
                 axes.plot(at, [place - 0.45, place + 0.45], color=VERMILION, lw=2.2, zorder=5)
             axes.set_xlim(0, 108)
             axes.grid(axis="x", color=LIGHT)
-        every[-1].legend(
-            every[-1].lines[-1:],
-            ["thesis, of 49"],
-            loc="lower right",
-            bbox_to_anchor=(1.0, 1.0),
-            borderaxespad=0.2,
+        last = every[-1]
+        last.legend(
+            last.lines[-1:], ["thesis, of 49"], loc="lower right", bbox_to_anchor=(1, 1), borderaxespad=0.2
         )
     return figure

@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.2: the two components of a label over random splits of each data set."""
+"""Claim C2.2: the two components of a label over random splits of each data set (§2.4.1)."""
 
 from collections.abc import Mapping, Sequence
 
@@ -8,13 +8,15 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import Reading, Votes, displacements, votes_on
-from lifelore.experiments.chapter2.relation_scoring import BESIDE, CARRIED
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, Votes, joined_displacements, votes_on
+from lifelore.experiments.chapter2.scoring.relation_scoring import BESIDE, CARRIED
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
 COMPONENTS = {"on": CARRIED, "adjacent": BESIDE}
 MEASURES = ("right", "majority", "right_less_majority", "agreement")
+cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -34,8 +36,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Means by data set at the standard kernel, then by kernel over fewer splits."""
     found, splits = [*at_standard_kernel(settings, results)], max(1, settings["splits"] // 10)
-    for reading in (Reading(kernel_name(*kernel)) for kernel in KERNELS):
-        found += [{"kernel": reading.kernel, **row} for row in by_data_set(settings, results, reading, splits)]
+    for kernel in (kernel_name(*kernel) for kernel in KERNELS):
+        found += [{"kernel": kernel, **row} for row in by_data_set(settings, results, Reading(kernel), splits)]
     return found
 
 
@@ -47,17 +49,16 @@ def at_standard_kernel(settings: Mapping, results: Sequence[Mapping]) -> list[di
 
 def by_data_set(settings: Mapping, results: Sequence[Mapping], reading: Reading, splits: int) -> list[dict]:
     """``{"data_set", **split_answers}`` of each data set."""
+    sets = {str(name): pairs for name, pairs in data_sets(results).items()}
     return [
-        {"data_set": str(name), **split_answers(settings, pairs, reading, splits, str(name))}
-        for name, pairs in data_sets(results).items()
+        {"data_set": name, **split_answers(settings, rows, reading, splits, name)} for name, rows in sets.items()
     ]
 
 
 def split_answers(settings: Mapping, rows: Sequence[Row], reading: Reading, splits: int, name: str) -> dict:
     """Means over random splits of a data set by scene: shares of each component, and displacements classified."""
-    each = [displacements(row, reading.kernel, reading.drop) for row in rows]
-    owner = np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
-    moved, truth = np.concatenate(each), np.array([row["relation"] for row in rows])
+    moved, owner = joined_displacements(rows, reading.kernel, reading.drop)
+    truth = np.array([row["relation"] for row in rows])
     scenes = sorted({row["scene"] for row in rows})
     n_test = max(1, round(len(scenes) * settings["test"] / settings["pairs"]))
     answers = []

@@ -1,7 +1,6 @@
 """Displacements between contact points, seen from the front and coloured by relation (thesis Fig 2.4)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,39 +10,29 @@ from lifelore.figures.object_palette import RELATION_MARKERS, mixed, relation_pa
 from lifelore.figures.scatter import draw_scatter
 from lifelore.figures.style import GREY, INK, PAPER, house_style, new_figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 CLOSE = 25
 """Millimetres; how far the figure's second view reaches."""
 
 
-def draw(result: Mapping) -> "Figure":
-    found = {
-        kind: [row for row in result["rows"] if row["scenes"] == kind and "mm" in row]
-        for kind in ("simulated", "real")
-    }
-    kinds = [kind for kind, rows in found.items() if rows]
+def draw(result: Mapping):
+    found: dict[str, list[Mapping]] = {}
+    for row in result["rows"]:
+        if "mm" in row:
+            found.setdefault(row["scenes"], []).append(row)
     with house_style():
-        figure = new_figure(10.0, 1.3 + 3.9 * len(kinds))
-        for (whole, close), kind in zip(figure.subplots(len(kinds), 2, squeeze=False), kinds, strict=True):
-            draw_displacements(whole, found[kind], f"{kind} pairs")
-            draw_displacements(close, found[kind], f"{kind} pairs, within {CLOSE} mm", reach=CLOSE)
+        figure = new_figure(10.0, 1.3 + 3.9 * len(found))
+        panels = figure.subplots(len(found), 2, squeeze=False)
+        for (whole, close), (kind, rows) in zip(panels, found.items(), strict=True):
+            draw_displacements(whole, rows, f"{kind} pairs")
+            draw_displacements(close, rows, f"{kind} pairs, within {CLOSE} mm", reach=CLOSE)
     return figure
 
 
-def draw_displacements(axes: "Axes", rows: Sequence[Mapping], title: str, reach: float | None = None) -> None:
+def draw_displacements(axes, rows: Sequence[Mapping], title: str, reach: float | None = None) -> None:
     """The displacements of each relation, the middle of *on*, and the band of *adjacent*, shaded.
 
-    Parameters
-    ----------
-    axes : matplotlib axes
-    rows : sequence of mapping
-        ``{"relation", "mm", "middle_of_on"}``.
-    title : str
-    reach : float, optional
-        How far from the origin is shown, mm; default: all.
+    `rows` are ``{"relation", "mm", "middle_of_on"}``; `reach` is the distance from the origin that is shown, mm
+    (default: all).
     """
     palette = relation_palette([])
     groups = {f"{row['relation']} ({len(row['mm'])})": row for row in rows}
@@ -62,18 +51,16 @@ def draw_displacements(axes: "Axes", rows: Sequence[Mapping], title: str, reach:
         axes.set(xlim=(-reach, reach), ylim=(-reach, reach))
     axes.set_aspect("equal", adjustable="box" if reach else "datalim")
     right, up = rows[0]["middle_of_on"]
-    if right is not None:
-        low, high = axes.get_ylim()
-        beyond = 100 * (high - low)
-        band = (-beyond, EDGE * up) if up > 0 else (EDGE * up, beyond)
-        axes.axhspan(*band, color=mixed(palette[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
-        axes.set_ylim(low, high)
-        _cross(axes, (right + 0.0, up + 0.0), mixed(palette[ON], INK, 0.45))  # no minus before a zero
-
-
-def _cross(axes: "Axes", centre: tuple[float, float], colour: str) -> None:
+    if right is None:
+        return
+    low, high = axes.get_ylim()
+    beyond = 100 * (high - low)
+    band = (-beyond, EDGE * up) if up > 0 else (EDGE * up, beyond)
+    axes.axhspan(*band, color=mixed(palette[ADJACENT], PAPER, 0.85), lw=0, zorder=-1)
+    axes.set_ylim(low, high)
+    centre = right + 0.0, up + 0.0  # no minus before a zero
     axes.plot(*centre, "+", ms=17, mew=5, color=PAPER, zorder=4)
-    axes.plot(*centre, "+", ms=15, mew=2.2, color=colour, zorder=5)
+    axes.plot(*centre, "+", ms=15, mew=2.2, color=mixed(palette[ON], INK, 0.45), zorder=5)
     axes.annotate(
         f"({centre[0]:.2g}, {centre[1]:.2g})", centre, (9, -3), textcoords="offset points", fontsize=7.5, va="top",
         color=INK, zorder=5, bbox={"facecolor": PAPER, "alpha": 0.75, "edgecolor": GREY, "lw": 0.4, "pad": 1.5},

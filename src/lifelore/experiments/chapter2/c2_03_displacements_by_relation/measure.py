@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.3: where the displacements of each relation lie."""
+"""Claim C2.3: where the displacements of each relation lie (§2.4.1, Figure 2.4)."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -10,29 +10,30 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import DROPS, as_scene, displacements
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, as_scene, displacements
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
 from lifelore.experiments.engine.estimates import UNMEASURED
 
 EDGE = 0.2
 """The printed band begins at y = -0.1, a fifth of the way to the printed cluster at y = -0.5."""
 CHOICES = ("all", "no longer than omega", "shortest")
 """Which displacements of a pair are plotted; the thesis plots "the separation displacements"."""
+FRACTIONS = (
+    "on_centre_sideways_of_its_rise", "on_on_one_side", "adjacent_in_band", "on_outside_band",
+    "sign_of_x_tells_left_right",
+)  # fmt: skip
+cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
+Answers = tuple[NDArray[np.str_], NDArray[np.bool_]]
+"""The scene of each answer, and whether it is right."""
 
 
 @dataclass(frozen=True, eq=False)
 class Plot:
-    """The displacements of some rows as Figure 2.4 shows them.
+    """Displacements of some rows as Figure 2.4 shows them: places `at` ``(m, 2)`` to the right and up, metres.
 
-    Parameters
-    ----------
-    at : (m, 2) float64
-        To the right and up, metres.
-    row : (m,) int64
-        The row of each.
-    relation, scene : (m,) str
-        Its pair's label and scene.
+    Each has the number of its row, and its pair's relation and scene, all ``(m,)``.
     """
 
     at: NDArray[np.float64]
@@ -55,17 +56,17 @@ class Plot:
 
 def plotted(rows: Sequence[Row], kernel: str, drop: str, choice: str, omega: float) -> Plot:
     """The displacements of `rows` found with a kernel of `KERNELS` and chosen by a rule of `CHOICES`."""
-    each = [_chosen(displacements(row, kernel, drop), choice, omega) for row in rows]
+
+    def chosen(moved: NDArray[np.float64]) -> NDArray[np.float64]:
+        length = np.linalg.norm(moved, axis=1)
+        if choice == "shortest":
+            return moved[np.argsort(length, kind="stable")[:1]]
+        return moved[length <= omega] if choice == "no longer than omega" else moved
+
+    each = [chosen(displacements(row, kernel, drop)) for row in rows]
     owner = np.repeat(np.arange(len(rows)), [len(moved) for moved in each])
     relation, scene = (np.array([row[key] for row in rows], dtype=str)[owner] for key in ("relation", "scene"))
     return Plot(np.concatenate(each)[:, [0, 2]], owner, relation, scene)
-
-
-def _chosen(moved: NDArray[np.float64], choice: str, omega: float) -> NDArray[np.float64]:
-    length = np.linalg.norm(moved, axis=1)
-    if choice == "shortest":
-        return moved[np.argsort(length, kind="stable")[:1]]
-    return moved[length <= omega] if choice == "no longer than omega" else moved
 
 
 def by_kind(results: Sequence[Mapping]) -> dict[str, list[Row]]:
@@ -80,31 +81,26 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """Of all displacements of the simulated pairs at the standard kernel."""
     pairs = by_kind(results)["simulated"]
     plot = plotted(pairs, STANDARD, DROPS[0], "all", settings["omega"])
-    on_one_side, *others = (_clustered_share(scene, holds) for scene, holds in answers(pairs, plot).values())
-    if on_one_side.n and on_one_side.value < 0.5:
-        on_one_side = _complement(on_one_side)
+    up, *others = (_share(*answered) for answered in answers(pairs, plot))
+    if up.n and up.value < 0.5:
+        ends = None if up.ci95 is None else (1 - up.ci95[1], 1 - up.ci95[0])
+        up = Estimate(1 - up.value, 1 - up.median, ends, up.n)
     slope = sideways_of_rise(plot, settings["resamples"])
-    return dict(zip(FRACTIONS, (slope, on_one_side, *others), strict=True))
+    return dict(zip(FRACTIONS, (slope, up, *others), strict=True))
 
 
-FRACTIONS = (
-    "on_centre_sideways_of_its_rise", "on_on_one_side", "adjacent_in_band", "on_outside_band",
-    "sign_of_x_tells_left_right",
-)  # fmt: skip
-
-
-def answers(rows: Sequence[Row], plot: Plot) -> dict[str, tuple[NDArray[np.str_], NDArray[np.bool_]]]:
-    """Scenes and answers of each share: *on* upwards, *adjacent* in the band, *on* outside, side by sign of x."""
+def answers(rows: Sequence[Row], plot: Plot) -> tuple[Answers, Answers, Answers, Answers]:
+    """Of each share after the slope: *on* upwards, *adjacent* in the band, *on* outside, side by sign of x."""
     on, adjacent = plot.relation == ON, plot.relation == ADJACENT
-    return {
-        "on_upwards": (plot.scene[on], plot.at[on, 1] > 0),
-        "adjacent_in_band": (plot.scene[adjacent], ~plot.outside_band[adjacent]),
-        "on_outside_band": (plot.scene[on], plot.outside_band[on]),
-        "sign_of_x_tells_left_right": sign_answers(rows, plot),
-    }
+    return (
+        (plot.scene[on], plot.at[on, 1] > 0),
+        (plot.scene[adjacent], ~plot.outside_band[adjacent]),
+        (plot.scene[on], plot.outside_band[on]),
+        sign_answers(rows, plot),
+    )
 
 
-def sign_answers(rows: Sequence[Row], plot: Plot) -> tuple[NDArray[np.str_], NDArray[np.bool_]]:
+def sign_answers(rows: Sequence[Row], plot: Plot) -> Answers:
     """Of every adjacent pair that stands sideways: its scene, and whether its mean x has the sign of its side."""
     found = []
     for number, row in enumerate(rows):
@@ -124,14 +120,9 @@ def sideways(row: Row) -> float | None:
     return float(right) if abs(right) > abs(behind) else None
 
 
-def _clustered_share(scene: NDArray[np.str_], answers: NDArray[np.bool_]) -> Estimate:
+def _share(scene: NDArray[np.str_], right: NDArray[np.bool_]) -> Estimate:
     at = np.unique(scene, return_inverse=True)[1]
-    return share_over_scenes(np.bincount(at, answers), np.bincount(at))
-
-
-def _complement(share: Estimate) -> Estimate:
-    ends = None if share.ci95 is None else (1 - share.ci95[1], 1 - share.ci95[0])
-    return Estimate(1 - share.value, 1 - share.median, ends, share.n)
+    return share_over_scenes(np.bincount(at, right), np.bincount(at))
 
 
 def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:
@@ -139,8 +130,7 @@ def sideways_of_rise(plot: Plot, resamples: int) -> Estimate:
     on = plot.relation == ON
     if not on.any():
         return UNMEASURED
-    owners = np.unique(plot.row[on])
-    own = [plot.at[on & (plot.row == owner)] for owner in owners]
+    own = [plot.at[on & (plot.row == owner)] for owner in np.unique(plot.row[on])]
     draws = stream(len(own), "C2.3", "pairs resampled").integers(0, len(own), (resamples, len(own)))
     middles = [np.median(np.concatenate([own[i] for i in draw]), axis=0) for draw in draws]
     low, high = np.quantile([_slope(middle) for middle in middles], [0.025, 0.975])
@@ -163,17 +153,15 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             if own.any():
                 place = {"scenes": kind, "relation": name, "outside_band": float(plot.outside_band[own].mean())}
                 points.append(place | {"middle_of_on": middle, "mm": np.round(1000 * plot.at[own], 1).tolist()})
-        for kernel, drop, choice in product((kernel_name(*one) for one in KERNELS), DROPS, CHOICES):
-            reading = {"kernel": kernel, "drop": drop, "choice": choice}
+        for kernel, drop, choice in product((kernel_name(*kernel) for kernel in KERNELS), DROPS, CHOICES):
             other = plotted(pairs, kernel, drop, choice, settings["omega"])
-            grid.append(
-                {"scenes": kind, "reading": reading, "displacements": len(other.at), **fractions(pairs, other)}
-            )
+            row = {"scenes": kind, "reading": {"kernel": kernel, "drop": drop, "choice": choice}}
+            grid.append({**row, "displacements": len(other.at), **fractions(pairs, other)})
     return points + grid
 
 
 def fractions(rows: Sequence[Row], plot: Plot) -> dict[str, float | None]:
     """The `FRACTIONS` that the conditions ask for, without intervals; None where nothing is asked."""
-    up, *others = (float(a.mean()) if len(a) else float("nan") for _, a in answers(rows, plot).values())
+    up, *others = (float(right.mean()) if len(right) else float("nan") for _, right in answers(rows, plot))
     values = dict(zip(FRACTIONS, (_slope(plot.middle_of_on), max(up, 1 - up), *others), strict=True))
     return {name: round(value, 4) if np.isfinite(value) else None for name, value in values.items()}

@@ -1,7 +1,6 @@
 """Seconds of each picture as a dot, and the median of each stage as a bar."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -10,15 +9,11 @@ from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.scatter import draw_scatter
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, house_style, new_figure
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
 MARKS = {"half a second": 0.5, "a second": 1.0}
 COLOURS = dict(zip(NAMES, (BLUE, ORANGE, GREEN), strict=True))
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     seconds = {row["images"]: np.array(row["seconds"]) for row in result["rows"] if "seconds" in row}
     points = {kind: result["measured"][f"points_{name}"]["median"] for kind, name in NAMES.items()}
     stages = [row for row in result["rows"] if "stage" in row]
@@ -36,7 +31,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def draw_seconds(axes: "Axes", seconds: Mapping[str, np.ndarray], points: Mapping[str, float]) -> None:
+def draw_seconds(axes, seconds: Mapping[str, np.ndarray], points: Mapping[str, float]) -> None:
     """A dot for each picture by kind, spread by rank; a line at the median and at each of `MARKS`."""
     for place, (kind, times) in enumerate(seconds.items()):
         # Ranks spread the dots, so that a crowd shows as a slope and not as a blot.

@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter2.c2_04_time_per_image.run import DENSE, KINDS
-from lifelore.experiments.chapter2.perception_stages import STAGES
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES
 from lifelore.experiments.engine.estimates import quantile_estimate
 from lifelore.experiments.engine.results_table import ResultsTable
 

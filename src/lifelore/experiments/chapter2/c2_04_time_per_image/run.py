@@ -18,8 +18,9 @@ from threadpoolctl import threadpool_limits
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.perception_stages import STAGES, timed_stages
-from lifelore.experiments.chapter2.tabletop_pairs import MIX
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import MIX
+from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
 
@@ -35,9 +36,7 @@ _alone = Lock()
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots of pictures, camera by camera."""
-    return [
-        {"camera": camera, "first": first} for camera in CAMERAS for first in range(0, settings["images"], LOT)
-    ]
+    return [lot for camera in CAMERAS for lot in lots(settings["images"], LOT, camera=camera)]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -47,7 +46,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     images = []
     with _alone, threadpool_limits(1):
         model = shipped_model()
-        for k in range(cell["first"], min(cell["first"] + LOT, settings["images"])):
+        for k in numbers_of(cell, LOT, settings["images"]):
             rng = stream(seed, "image timing", camera, k)
             cloud = sample_scene(int(rng.integers(2**31)), k, drawn).cloud
             if not images:
@@ -63,18 +62,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def timed_image(cloud: LabelledCloud, model: RelationClassifier, repeats: int) -> dict:
     """The seconds of a picture, from the repeat with the median time.
 
-    Returns
-    -------
-    dict
-        ``points`` in all and ``points_of_things``; ``seconds`` of each of `STAGES`; ``processor_seconds`` in all
-        threads over the same.
+    ``points`` in all and ``points_of_things``, the objects; ``seconds`` of each of `STAGES`; and
+    ``processor_seconds`` in all threads over the same.
     """
     rounds = []
     for _ in range(repeats):
         began = time.process_time()
         stages = timed_stages(cloud, model)
         rounds.append((sum(stages.values()), time.process_time() - began, stages))
-    rounds.sort(key=lambda one: one[0])
+    rounds.sort(key=lambda timed: timed[0])
     _, busy, stages = rounds[(len(rounds) - 1) // 2]
     return {
         "points": len(cloud.points),
@@ -93,9 +89,9 @@ def seconds_of_segmentation(cloud: LabelledCloud) -> float:
 
 def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) -> LabelledCloud:
     """The cloud with at least `n_points` points of objects: each repeated equally often and moved a little."""
-    things, rest = np.flatnonzero(cloud.labels > TABLE), np.flatnonzero(cloud.labels <= TABLE)
-    times = max(1, -(-n_points // max(len(things), 1)))
-    rows = np.concatenate([rest, np.repeat(things, times)])
+    objects, rest = np.flatnonzero(cloud.labels > TABLE), np.flatnonzero(cloud.labels <= TABLE)
+    times = max(1, -(-n_points // max(len(objects), 1)))
+    rows = np.concatenate([rest, np.repeat(objects, times)])
     points = cloud.points[rows]
     points[len(rest) :] += rng.normal(0, JITTER, (len(rows) - len(rest), 3))
     colours = None if cloud.colours is None else cloud.colours[rows]

@@ -1,16 +1,12 @@
 """Exact share while a cloud gets worse: points discarded, noise added, labels wrong at borders (§2.4.1)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter2.c2_05_discarded_points.measure import KINDS, LITERAL, OURS, THESIS
 from lifelore.experiments.chapter2.c2_05_discarded_points.run import BORDER, DISCARDED, MASKS, NOISE, WHOLE
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.object_palette import method_palette
 from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 SHOWN = {OURS: "lifelore", THESIS: "thesis", LITERAL: "thesis, every word"}
 PANELS = {
@@ -22,7 +18,7 @@ PANELS = {
 """Of each way a title, the label of its axis and the factor from its levels to that axis."""
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     rows = [row for row in result["rows"] if "method" in row]
     shown = [(kind, way) for way in PANELS for kind in KINDS if kind == "simulated" or way == DISCARDED]
     shown = [view for view in shown if any((row["scenes"], row["way"]) == view for row in rows)]

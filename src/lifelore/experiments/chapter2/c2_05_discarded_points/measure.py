@@ -7,7 +7,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
 from lifelore.experiments.chapter2.c2_05_discarded_points.run import DISCARDED, WHOLE, key_of
-from lifelore.experiments.chapter2.relation_scoring import (
+from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
     judged_scene,
@@ -24,6 +24,7 @@ from lifelore.perception.relations.relation_classifier import RelationClassifier
 
 OURS, THESIS, LITERAL = "lifelore", "thesis", "literal"
 METHODS = (OURS, THESIS, LITERAL)
+Views = dict[str, list[JudgedPair]]
 KINDS = ("simulated", "real")
 LOST = (
     *((level, THESIS, "simulated") for level in (0.3, 0.5, 0.7)),
@@ -46,9 +47,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 @computed_once
-def judged_by_view(
-    settings: Mapping, results: Sequence[Mapping]
-) -> dict[str, dict[str, dict[str, list[JudgedPair]]]]:
+def judged_by_view(settings: Mapping, results: Sequence[Mapping]) -> dict[str, dict[str, Views]]:
     """By kind of scenes, method and view the judged pairs."""
     lessons = [scene for result in results if result["kind"] == "lesson" for scene in result["scenes"]]
     models = {reading: taught(lessons, reading) for reading in (THESIS, LITERAL)}
@@ -68,37 +67,30 @@ def scenes_of(results: Sequence[Mapping], kind: str) -> list[Mapping]:
 
 def taught(lessons: Sequence[Mapping], reading: str) -> RelationClassifier:
     """The thesis's neighbours among the displacements of the lessons."""
+    scenes = [scene_of(lesson["view"][reading]) for lesson in lessons]
     model = RelationClassifier("displacement", symmetric=SYMMETRIC)
-    return model.fit_pairs(
-        [scene_of(lesson["view"][reading]) for lesson in lessons], [labels_of(lesson) for lesson in lessons]
-    )
+    return model.fit_pairs(scenes, [labels_of(lesson) for lesson in lessons])
 
 
-def judged_views(
-    scene: Mapping, kind: str, models: Mapping[str, RelationClassifier]
-) -> dict[str, dict[str, list[JudgedPair]]]:
+def judged_views(scene: Mapping, kind: str, models: Mapping[str, RelationClassifier]) -> dict[str, Views]:
     """By method and view, each labelled pair beside its predicted relation."""
     truth = labels_of(scene)
     gaps = {frozenset((a, b)): gap for a, b, gap in scene["gaps"]}
     found: dict[str, dict[str, list]] = {method: {} for method in METHODS}
     for key, view in scene["views"].items():
-        for method in METHODS:
-            if method in view:
-                predicted = _relations(view[method], models.get(method))
-                judged = judged_scene(f"{kind} {scene['name']}", truth, predicted, gaps)
-                found[method][key] = [pair for pair in judged if not (kind == "simulated" and pair.border)]
+        for method, rows in view.items():
+            if method in models:
+                predicted = models[method].predict_pairs(scene_of(rows)) if rows else ()
+            else:
+                predicted = tuple(Relation(a, b, name, 1.0, gap) for a, b, name, gap in rows)
+            judged = judged_scene(f"{kind} {scene['name']}", truth, predicted, gaps)
+            found[method][key] = [pair for pair in judged if not (kind == "simulated" and pair.border)]
     return found
 
 
 def labels_of(scene: Mapping) -> list[PairLabel]:
     """The true labels of a scene's row."""
     return [PairLabel(*row) for row in scene["truth"]]
-
-
-def _relations(rows: Sequence[Sequence], model: RelationClassifier | None) -> tuple[Relation, ...]:
-    if model is None:
-        return tuple(Relation(a, b, name, 1.0, gap) for a, b, name, gap in rows)
-    return model.predict_pairs(scene_of(rows)) if rows else ()
 
 
 def scene_of(rows: Sequence[Sequence]) -> ScenePairs:
@@ -149,10 +141,6 @@ def network_rows(settings: Mapping, scenes: Sequence[Mapping], kind: str) -> Ite
         same = [part["same"] for part in parts if part["same"]]
         shifts = [shift for part in parts for shift in part["shifts"]]
         stable = ratio_estimate([sum(s) for s in same], [len(s) for s in same]) if same else UNMEASURED
-        n = sum(len(s) for s in same)
-        yield {
-            "scenes": kind,
-            "discarded": level,
-            "same_nodes": Estimate(stable.value, stable.median, stable.ci95, n).to_dict(),
-            "median_shift": float(np.median(shifts)) if shifts else None,
-        }
+        same_nodes = Estimate(stable.value, stable.median, stable.ci95, sum(map(len, same))).to_dict()
+        shift = float(np.median(shifts)) if shifts else None
+        yield {"scenes": kind, "discarded": level, "same_nodes": same_nodes, "median_shift": shift}

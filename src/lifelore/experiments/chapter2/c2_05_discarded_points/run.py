@@ -19,12 +19,18 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.network_stability import contact_nodes, stability
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.perturbation import fewer_points, grown_masks, noisier_depth, swapped_border
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
-from lifelore.experiments.chapter2.tabletop_pairs import without_table
+from lifelore.experiments.chapter2.scenes.perturbation import (
+    fewer_points,
+    grown_masks,
+    noisier_depth,
+    swapped_border,
+)
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import without_table
+from lifelore.experiments.chapter2.scoring.network_stability import contact_nodes, stability
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.contacts.contact_points import contact_clusters
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
@@ -57,12 +63,9 @@ def cells(settings: Mapping) -> list[dict]:
     Cells name the shipped model, so that cells of another model are run anew.
     """
     model = shipped_model_digest()
-    lots = [{"lessons": k} for k in range(0, settings["lessons"], LESSON_LOT)]
-    lots += [{"first": k, "model": model} for k in range(0, settings["scenes"], LOT)]
-    if settings["real"] and real_scenes_folder() is not None:
-        names = [scene.name for scene in real_scenes()]
-        lots += [{"real": names[k : k + REAL_LOT], "model": model} for k in range(0, len(names), REAL_LOT)]
-    return lots
+    lessons = [{"lessons": k} for k in range(0, settings["lessons"], LESSON_LOT)]
+    held_out = lots(settings["scenes"], LOT, model=model)
+    return lessons + held_out + real_lots(settings, REAL_LOT, "real", model=model)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -74,7 +77,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         scenes = [scene for scene in real_scenes() if scene.name in cell["real"]]
         return {"kind": "real", "scenes": [_seen(settings, s.name, s.cloud, s.truth, {}) for s in scenes]}
     found = []
-    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+    for number in numbers_of(cell, LOT, settings["scenes"]):
         scene = _drawn(settings, seed, "held-out", number)
         gaps = {(gap.a, gap.b): gap.visible for gap in scene.gaps}
         found.append(_seen(settings, scene.name, scene.cloud, scene.truth, gaps))
@@ -96,13 +99,7 @@ def _lesson(settings: Mapping, seed: int, number: int) -> dict:
     }
 
 
-def _seen(
-    settings: Mapping,
-    name: str,
-    cloud: LabelledCloud,
-    truth: Sequence[PairLabel],
-    gaps: Mapping[tuple[int, int], float],
-) -> dict:
+def _seen(settings: Mapping, name: str, cloud: LabelledCloud, truth: Sequence[PairLabel], gaps: Mapping) -> dict:
     """A scene whole and perturbed; gaps of all views are those of the whole scene."""
     whole, found = _view(cloud, literal=True)
     nodes = contact_nodes(found, truth)
@@ -122,9 +119,7 @@ def _seen(
 
 def _truth_rows(truth: Sequence[PairLabel]) -> list[list]:
     """Labels of pairs of objects without the table."""
-    return [
-        [label.a, label.b, label.relation, label.confidence] for label in truth if TABLE not in (label.a, label.b)
-    ]
+    return [[t.a, t.b, t.relation, t.confidence] for t in truth if TABLE not in (t.a, t.b)]
 
 
 def _view(cloud: LabelledCloud, literal: bool) -> tuple[dict[str, Any], tuple[Interface, ...]]:
@@ -144,8 +139,11 @@ def _view(cloud: LabelledCloud, literal: bool) -> tuple[dict[str, Any], tuple[In
 
 def _contact_rows(found: Sequence[Interface]) -> list[list]:
     """``[a, b, gap, displacements]`` of each pair."""
-    sides = ([np.array([c.position for c in side]) for side in (one.contacts_a, one.contacts_b)] for one in found)
-    return [_row(one.a, one.b, one.gap, *pair) for one, pair in zip(found, sides, strict=True)]
+    rows = []
+    for pair in found:
+        first, second = ([contact.position for contact in side] for side in (pair.contacts_a, pair.contacts_b))
+        rows.append(_row(pair.a, pair.b, pair.gap, np.array(first), np.array(second)))
+    return rows
 
 
 def _row(a: int, b: int, gap: float, first: NDArray[np.float64], second: NDArray[np.float64]) -> list:
@@ -160,10 +158,10 @@ def literal_rows(bare: LabelledCloud, settings: ContactSettings = DEFAULT_CONTAC
     """
     rows = []
     for pair in near_pairs(split_objects(bare), settings.near, settings.table_margin):
-        one, two = pair.first.points, pair.second.points
-        found = separate(one, two, length=settings.length, cost=settings.cost)
-        first = strong_places(one[found.support_first], found.alpha_first, settings.linkage)
-        second = strong_places(two[found.support_second], found.alpha_second, settings.linkage)
+        a, b = pair.first.points, pair.second.points
+        found = separate(a, b, length=settings.length, cost=settings.cost)
+        first = strong_places(a[found.support_first], found.alpha_first, settings.linkage)
+        second = strong_places(b[found.support_second], found.alpha_second, settings.linkage)
         if len(first) and len(second):
             rows.append(_row(pair.first.label, pair.second.label, pair.gap, first, second))
     return rows

@@ -1,13 +1,16 @@
-"""Measures and rows of claim C2.6: scenes with a hole, by kind, and the form and place of the holes."""
+"""Measures, rows and pictures of claim C2.6: scenes with a hole, by kind, and the form and place of the holes."""
 
 from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_06_same_hole.run import ARRANGEMENTS
+from lifelore.experiments.chapter2.scenes.scene_example import draw_examples
+from lifelore.experiments.chapter2.scenes.scene_lots import tally_and_examples
 from lifelore.experiments.engine.estimates import exact_share
-from lifelore.experiments.engine.results_table import ResultsTable, tally
+from lifelore.experiments.engine.results_table import ResultsTable
 
 WITH_HOLE = ("hinged", "other")
+draw = draw_examples
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -26,9 +29,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How often each outcome came, by kind and object; and a picture of each kind."""
-    outcomes = (
-        {"kind": r["kind"], "thing": s.get("thing", ""), "cycles": s.get("loops"), "holes": s["holes"]}
-        for r in results
-        for s in r["scenes"]
-    )
-    return tally(outcomes, "scenes") + [example for result in results for example in result["examples"]]
+
+    def outcome(result: Mapping, scene: Mapping) -> dict:
+        found = {"kind": result["kind"], "thing": scene.get("thing", ""), "cycles": scene.get("loops")}
+        return found | {"holes": scene["holes"]}
+
+    return tally_and_examples(results, "scenes", outcome)

@@ -21,18 +21,9 @@ MARGIN = 0.002
 
 
 def passages(shapes: Sequence[Shape], poses: Sequence[Pose], axis: ArrayLike) -> list[NDArray[np.float64]]:
-    """Each passage as the places ``(k, 3)`` where its sticks cross a plane through the scene, metres.
+    """Each passage as the places ``(k, 3)`` where its sticks along `axis` cross a plane through the scene.
 
-    Parameters
-    ----------
-    shapes, poses
-        The true things, made of boxes and balls.
-    axis : (3,) array
-
-    Raises
-    ------
-    InputError
-        A shape has a part of another kind.
+    The true shapes must be made of boxes and balls, else `InputError` is raised.
     """
     along = np.asarray(axis, float) / np.linalg.norm(axis)
     across = _across(along)

@@ -9,14 +9,17 @@ from collections.abc import Mapping
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import KDTree
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopScene
-from lifelore.experiments.chapter2.arranged_scenes import arranged
 from lifelore.experiments.chapter2.c2_06_same_hole.passage import passages
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.perturbation import part_of
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.holes import Hole, contact_loops, find_holes
@@ -48,10 +51,9 @@ PICTURES = {"other": 2}
 
 def cells(settings: Mapping) -> list[dict]:
     """Scenes in lots, by kind; then the real scenes, where the settings ask for them and they are there."""
-    lots = [{"kind": kind, "first": k} for kind in ARRANGEMENTS for k in range(0, settings["scenes"], LOT)]
-    if not settings["real"] or real_scenes_folder() is None:
-        return lots
-    return lots + [{"kind": "real", "scene": scene.name} for scene in real_scenes()]
+    real = real_scenes() if uses_real(settings) else ()
+    simulated = [lot for kind in ARRANGEMENTS for lot in lots(settings["scenes"], LOT, kind=kind)]
+    return simulated + [{"kind": "real", "scene": scene.name} for scene in real]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -61,16 +63,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         scene = next(scene for scene in real_scenes() if scene.name == cell["scene"])
         found = find_holes(objects_only(scene.cloud))
         return {"kind": kind, "scenes": [{"scene": scene.name, "holes": len(found)}], "examples": []}
-    last = min(cell["first"] + LOT, settings["scenes"])
     rows, pictures = [], {}
-    for number in range(cell["first"], last):
+    for number in numbers_of(cell, LOT, settings["scenes"]):
         world = arranged(ARRANGEMENTS[kind], seed, number)
         cloud = split_contact(world.cloud, stream(seed, "split", number)) if kind == "split" else world.cloud
         scene = objects_only(cloud)
         rows.append({"scene": number, **findings(scene, world)})
-        thing = world.shapes[-1].kind
-        if cell["first"] == 0 and thing not in pictures and len(pictures) < PICTURES.get(kind, 1):
-            pictures[thing] = scene_row(scene, f"{CAPTIONS.get(kind) or CAPTIONS[thing]}: {_outcome(rows[-1])}")
+        shape = world.shapes[-1].kind
+        if cell["first"] == 0 and shape not in pictures and len(pictures) < PICTURES.get(kind, 1):
+            pictures[shape] = scene_row(scene, f"{CAPTIONS.get(kind) or CAPTIONS[shape]}: {_outcome(rows[-1])}")
     return {"kind": kind, "scenes": rows, "examples": list(pictures.values())}
 
 
@@ -82,7 +83,7 @@ def _outcome(row: Mapping) -> str:
 
 def objects_only(cloud: LabelledCloud) -> Scene:
     """The scene of the objects alone, without contacts with the table."""
-    return Scene(cloud, tuple(one for one in interfaces(cloud) if TABLE not in (one.a, one.b)))
+    return Scene(cloud, tuple(pair for pair in interfaces(cloud) if TABLE not in (pair.a, pair.b)))
 
 
 def findings(scene: Scene, world: TabletopScene) -> dict:
@@ -93,16 +94,12 @@ def findings(scene: Scene, world: TabletopScene) -> dict:
     """
     holes = find_holes(scene)
     ways = passages(world.shapes, world.poses, world.poses[0].rotation[:, 1])
-    row = {
-        "thing": world.shapes[-1].kind,
-        "loops": len(contact_loops(scene)),
-        "holes": len(holes),
-        "passages": len(ways),
-    }
+    row = {"thing": world.shapes[-1].kind, "loops": len(contact_loops(scene)), "holes": len(holes)}
+    row["passages"] = len(ways)
     if not holes:
         return row
     return row | {
-        "form": [sum(label == thing for label, _ in holes[0].nodes) for thing in (LOWER, UPPER)],
+        "form": [sum(label == own for label, _ in holes[0].nodes) for own in (LOWER, UPPER)],
         "size": round(1000 * holes[0].size, 1),
         "opening": round(1000 * holes[0].opening, 1),
         "real": any(lies_between(way, hole, scene) for way in ways for hole in holes),
@@ -123,10 +120,12 @@ def split_contact(cloud: LabelledCloud, rng: np.random.Generator) -> LabelledClo
     """The cloud of a long contact less a band across it.
 
     Half of the time all that lies in the band is missing, as behind a bar in front of the scene; else only what
-    lies close to the other thing, as where a shadow falls on the contact.
+    lies close to the other object, as where a shadow falls on the contact.
     """
-    one = next(one for one in interfaces(cloud) if (one.a, one.b) == (LOWER, UPPER))
-    near = _close_points(one)
+    contact = next(pair for pair in interfaces(cloud) if (pair.a, pair.b) == (LOWER, UPPER))
+    assert contact.pair is not None
+    lower, upper = contact.pair.first.points, contact.pair.second.points
+    near = upper[np.isfinite(KDTree(lower).query(upper, distance_upper_bound=_CLOSE)[0])]
     middle = near.mean(axis=0)
     along = np.append(np.linalg.svd(near[:, :2] - middle[:2], full_matrices=False)[2][0], 0.0)
     width = rng.uniform(*_BAND)
@@ -135,14 +134,4 @@ def split_contact(cloud: LabelledCloud, rng: np.random.Generator) -> LabelledClo
     gone = np.abs((cloud.points - middle) @ along - centre) < width / 2
     if rng.random() < 0.5:
         gone &= np.abs(cloud.points[:, 2] - middle[2]) < _CLOSE
-    gone &= cloud.labels > TABLE
-    return LabelledCloud(cloud.points[~gone], cloud.labels[~gone], None, cloud.camera)
-
-
-def _close_points(one) -> np.ndarray:
-    """Points of the upper thing that lie near the lower."""
-    from scipy.spatial import KDTree
-
-    lower, upper = one.pair.first.points, one.pair.second.points
-    distance = KDTree(lower).query(upper, distance_upper_bound=_CLOSE)[0]
-    return upper[np.isfinite(distance)]
+    return part_of(cloud, ~(gone & (cloud.labels > TABLE)))

@@ -1,13 +1,24 @@
-"""Measures and rows of claim C2.7: contact points of the middle object, skeletons and predicates, by kind."""
+"""Measures, rows and pictures of claim C2.7: contact points of the middle object, skeletons, predicates."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import KINDS
+from lifelore.experiments.chapter2.c2_07_oversegmented_stack.run import KINDS, REAL
+from lifelore.experiments.chapter2.scenes.scene_example import draw_examples
+from lifelore.experiments.chapter2.scenes.scene_lots import tally_and_examples
 from lifelore.experiments.engine.estimates import exact_share
-from lifelore.experiments.engine.results_table import ResultsTable, tally
+from lifelore.experiments.engine.results_table import ResultsTable
 
-REAL = ("real stack", "real cut")
+CAPTIONS = {
+    "stack": "three objects",
+    "cut": "two objects, segmented into three",
+    "row": "three in a row",
+    "two-on-one": "two on one",
+    "real stack": "three real objects",
+    "real cut": "two real objects, segmented into three",
+}
+draw = partial(draw_examples, captions=CAPTIONS)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -26,9 +37,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How often each set of networks came, by kind; and a picture of each."""
-    outcomes = (
-        {"kind": r["kind"], "points": s["nodes"], "path": s["path"], "stacked": s["stacked"]}
-        for r in results
-        for s in r["scenes"]
-    )
-    return tally(outcomes, "scenes") + [example for result in results for example in result["examples"]]
+
+    def outcome(result: Mapping, scene: Mapping) -> dict:
+        networks = {"points": scene["nodes"], "path": scene["path"], "stacked": scene["stacked"]}
+        return {"kind": result["kind"], **networks}
+
+    return tally_and_examples(results, "scenes", outcome)

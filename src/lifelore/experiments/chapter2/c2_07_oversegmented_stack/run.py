@@ -13,11 +13,12 @@ import numpy as np
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ON
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.perturbation import cut_object
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import (
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.perturbation import cut_object
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
+from lifelore.experiments.chapter2.scenes.skeletons import (
     NEAR,
     RELATED,
     Three,
@@ -32,6 +33,7 @@ from lifelore.experiments.chapter2.skeletons import (
 from lifelore.perception.scene import Scene
 
 KINDS = ("stack", "cut", "row", "two-on-one")
+REAL = ("real stack", "real cut")
 LOT = 15
 LOW_CUT, HIGH_CUT = 0.35, 0.65
 """Where an object is cut, of its visible height."""
@@ -41,16 +43,18 @@ TALL = 0.04
 
 def cells(settings: Mapping) -> list[dict]:
     """Scenes in lots, by kind; then the real ones, where the settings ask for them and they are there."""
-    lots = [{"kind": kind, "first": k} for kind in KINDS for k in range(0, settings["scenes"], LOT)]
-    if not settings["real"] or real_scenes_folder() is None:
-        return lots
-    return [*lots, {"kind": "real stack"}, {"kind": "real cut"}]
+    real = [{"kind": kind} for kind in REAL] if uses_real(settings) else []
+    return [lot for kind in KINDS for lot in lots(settings["scenes"], LOT, kind=kind)] + real
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Findings of a lot, and a picture from the first lot of each kind."""
+    if cell["kind"] in REAL:
+        threes = real_stacks() if cell["kind"] == REAL[0] else real_cuts(seed)
+    else:
+        threes = (simulated(cell["kind"], seed, n) for n in numbers_of(cell, LOT, settings["scenes"]))
     rows, examples = [], []
-    for number, three in enumerate(_threes(settings, cell, seed)):
+    for number, three in enumerate(threes):
         scene = perceived(three.cloud)
         rows.append(findings(scene, three))
         if number == 0 and cell.get("first", 0) == 0:
@@ -58,24 +62,10 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {"kind": cell["kind"], "scenes": rows, "examples": examples}
 
 
-def _threes(settings: Mapping, cell: Mapping, seed: int) -> Iterator[Three]:
-    if cell["kind"] == "real stack":
-        yield from real_stacks()
-    elif cell["kind"] == "real cut":
-        yield from real_cuts(seed)
-    else:
-        for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
-            yield simulated(cell["kind"], seed, number)
-
-
 def simulated(kind: str, seed: int, number: int) -> Three:
     """Scene `number` of one of `KINDS`."""
-    if kind == "stack":
-        return Three(arranged("stack", seed, number).cloud, 2, 3, 4)
-    if kind == "row":
-        return Three(arranged("row", seed, number).cloud, 2, 3, 4)
-    if kind == "two-on-one":
-        return Three(arranged("two-on-one", seed, number).cloud, 3, 2, 4)
+    if kind != "cut":
+        return Three(arranged(kind, seed, number).cloud, *((3, 2, 4) if kind == "two-on-one" else (2, 3, 4)))
     rng = stream(seed, "cut level", number)
     if number % 2:
         cloud, upper = level_cut(arranged("ball-on-block", seed, number).cloud, 2, rng)
@@ -113,11 +103,11 @@ def findings(scene: Scene, three: Three) -> dict:
     twice.
     """
     related, near = reading(scene), reading(scene, NEAR)
-    things = (three.below, three.middle, three.above)
+    labels = (three.below, three.middle, three.above)
     grounded = reading(scene, RELATED, ground=True)
     return {
-        "nodes": [len(related.networks[thing].nodes) for thing in things],
-        "near": [len(near.networks[thing].nodes) for thing in things],
+        "nodes": [len(related.networks[label].nodes) for label in labels],
+        "near": [len(near.networks[label].nodes) for label in labels],
         "grounded": len(grounded.networks[three.middle].nodes),
         "path": is_path(related, three),
         "stacked": predicates(related) == {(ON, three.above, three.middle), (ON, three.middle, three.below)},
@@ -126,13 +116,11 @@ def findings(scene: Scene, three: Three) -> dict:
 
 def is_path(scene: Scene, three: Three) -> bool:
     """Whether the networks have 1, 2 and 1 points and either point of the middle faces one neighbour."""
-    counts = [len(scene.networks[thing].nodes) for thing in (three.below, three.middle, three.above)]
-    facing = {
+    counts = [len(scene.networks[label].nodes) for label in (three.below, three.middle, three.above)]
+    faced = dict(
         (edge.node_a, edge.b) if edge.a == three.middle else (edge.node_b, edge.a)
         for edge in scene.contact_edges
         if three.middle in (edge.a, edge.b)
-    }
-    ends = dict(facing)
-    return (
-        counts == [1, 2, 1] and len(scene.contact_edges) == 2 and set(ends.values()) == {three.below, three.above}
     )
+    two_edges = len(scene.contact_edges) == 2
+    return counts == [1, 2, 1] and two_edges and set(faced.values()) == {three.below, three.above}

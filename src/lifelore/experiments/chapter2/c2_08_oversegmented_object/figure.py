@@ -1,22 +1,19 @@
 """Relations of the two parts of an object that was cut, by the tilt of the cut, with a picture of each kind."""
 
+from collections import Counter
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.scene_example import examples_of
+from lifelore.experiments.chapter2.scenes.scene_example import examples_of
 from lifelore.figures.gallery import gallery_above
 from lifelore.figures.stacked_bars import draw_stacked_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, ORANGE, PURPLE, VERMILION, house_style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 COLOURS = {"on": BLUE, "both": PURPLE, "adjacent": ORANGE, "none": GREY, "turned": VERMILION}
 """Colour by relation; *turned* is the lower part on the upper."""
 CAPTIONS = {kind: f"{kind} cut" for kind in ("level", "oblique", "upright")}
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     counts = [row for row in result["rows"] if "cut" in row]
     cuts = sorted({row["cut"] for row in counts}, key=_tilt)
     sets = [name for name in ("simulated", "real") if any(row["set"] == name for row in counts)]
@@ -25,17 +22,11 @@ def draw(result: Mapping) -> "Figure":
     with house_style():
         every = below.subplots(1, len(sets), squeeze=False, sharey=True)[0]
         for axes, name in zip(every, sets, strict=True):
-            parts = {
-                relation: [
-                    sum(
-                        r["cuts"]
-                        for r in counts
-                        if r["set"] == name and r["cut"] == cut and _word(r["said"]) == relation
-                    )
-                    for cut in cuts
-                ]
-                for relation in COLOURS
-            }
+            found = Counter()
+            for row in counts:
+                relation = "turned" if row["said"].endswith("turned") else row["said"]
+                found[row["set"], row["cut"], relation] += row["cuts"]
+            parts = {relation: [found[name, cut, relation] for cut in cuts] for relation in COLOURS}
             n = sum(map(sum, parts.values()))
             draw_stacked_bars(
                 axes, cuts, parts, COLOURS, shares=True, totals=True, title=f"{name} ({n:,} cuts)",
@@ -50,7 +41,3 @@ def _tilt(cut: str) -> float:
     """Order of the cuts: level, oblique by tilt, upright."""
     named = {"level": 0.0, "upright": 90.0}
     return named[cut] if cut in named else float(cut.partition("°")[0])
-
-
-def _word(relation: str) -> str:
-    return "turned" if relation.endswith("turned") else relation

@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_08_oversegmented_object.run import TRUE
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes
+from lifelore.experiments.chapter2.scenes.scene_lots import tally_and_examples
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
 from lifelore.experiments.engine.estimates import exact_share
-from lifelore.experiments.engine.results_table import ResultsTable, tally
+from lifelore.experiments.engine.results_table import ResultsTable
 
 SETS = {"simulated": False, "real": True}
 TABLE_TRUE = {"level": ["none", "on"], "upright": ["on", "on"]}
@@ -31,23 +32,19 @@ def share_by_scene(rows: Sequence[Mapping], answers: Sequence[bool]) -> Estimate
     """Share of true answers, scenes resampled; with the exact interval where all answers agree."""
     totals: dict[str, list[int]] = {}
     for row, answer in zip(rows, answers, strict=True):
-        sums = totals.setdefault(row["scene"], [0, 0])
-        sums[0] += answer
-        sums[1] += 1
+        right, asked = totals.get(row["scene"], (0, 0))
+        totals[row["scene"]] = [right + answer, asked + 1]
     right, asked = zip(*totals.values(), strict=True) if totals else ((), ())
     return share_over_scenes(right, asked, lambda *_: exact_share(answers).ci95 or (0.0, 1.0))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How often each relation came, by set of scenes and kind of cut (oblique in steps of 15°); and pictures."""
-    cuts = (
-        {"set": "real" if r["real"] else "simulated", "cut": _cut(row), "said": row["said"], "boxes": row["boxes"]}
-        for r in results
-        for row in r["rows"]
-    )
-    return tally(cuts, "cuts") + [example for result in results for example in result["examples"]]
 
+    def outcome(result: Mapping, row: Mapping) -> dict:
+        low = 15 * min(int(row["tilt"] // 15), 5)
+        cut = row["kind"] if row["kind"] in TRUE else f"{low}° to {low + 15}°"
+        name = "real" if result["real"] else "simulated"
+        return {"set": name, "cut": cut, "said": row["said"], "boxes": row["boxes"]}
 
-def _cut(row: Mapping) -> str:
-    low = 15 * min(int(row["tilt"] // 15), 5)
-    return row["kind"] if row["kind"] in TRUE else f"{low}° to {low + 15}°"
+    return tally_and_examples(results, "rows", outcome, "cuts")

@@ -15,12 +15,14 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
 from lifelore.core.streams import stream
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.domains.tabletop.tabletop import TabletopScene, sample_scene
-from lifelore.experiments.chapter2.perturbation import cut_object
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import perceived, reading
+from lifelore.domains.tabletop.tabletop import sample_scene
+from lifelore.experiments.chapter2.scenes.perturbation import cut_object
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
+from lifelore.experiments.chapter2.scenes.skeletons import perceived, reading
 from lifelore.perception.peers.bounding_box_rule import BoundingBoxRule
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
@@ -42,11 +44,7 @@ Row = dict[str, Any]
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots of simulated scenes; then of real ones, where the settings ask for them and they are there."""
-    lots: list[dict] = [{"first": k} for k in range(0, settings["scenes"], LOT)]
-    if not settings["real"] or real_scenes_folder() is None:
-        return lots
-    names = [scene.name for scene in real_scenes()]
-    return lots + [{"scenes": names[at : at + REAL_LOT]} for at in range(0, len(names), REAL_LOT)]
+    return lots(settings["scenes"], LOT) + real_lots(settings, REAL_LOT, "scenes")
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -61,7 +59,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         ]
         return {"real": True, "rows": rows, "examples": []}
     rows, examples = [], {}
-    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+    for number in numbers_of(cell, LOT, settings["scenes"]):
         for row, scene in simulated_cuts(seed, number):
             rows.append(row)
             if cell["first"] == 0 and row["kind"] not in examples:
@@ -75,15 +73,11 @@ def simulated_cuts(seed: int, number: int) -> list[tuple[Row, Scene]]:
     scene = sample_scene(own_seed, number, TabletopSettings(n_objects=(2, 4), shapes="all"))
     rng = stream(seed, "cuts", number)
     for label in rng.permutation(free_standing(scene.truth)).tolist():
-        cuts = cuts_of(scene.cloud, label, scene.name, rng, true_outline(scene, label))
+        outline = scene.poses[label - FIRST_OBJECT].apply(scene.shapes[label - FIRST_OBJECT].outline())
+        cuts = cuts_of(scene.cloud, label, scene.name, rng, outline)
         if cuts:
             return cuts
     return []
-
-
-def true_outline(scene: TabletopScene, label: int) -> NDArray[np.float64]:
-    """Points that span a true object, metres."""
-    return scene.poses[label - 2].apply(scene.shapes[label - 2].outline())
 
 
 def free_standing(truth: tuple[PairLabel, ...]) -> list[int]:
@@ -106,9 +100,8 @@ def cuts_of(
         found = _cut(cloud, label, tilt, rng, outline)
         if found is not None:
             scene = perceived(found[0])
-            cuts.append(
-                ({"scene": name, "kind": kind, "tilt": round(tilt, 1), **judged(scene, found[1], label)}, scene)
-            )
+            row = {"scene": name, "kind": kind, "tilt": round(tilt, 1), **judged(scene, found[1], label)}
+            cuts.append((row, scene))
     return cuts
 
 
@@ -125,19 +118,13 @@ def _cut(
         sides = (points - through) @ normal > 0
         if min(sides.sum(), (~sides).sum()) < FEWEST or (tilt > 45 and high - low < BROAD):
             continue
-        if tilt == TILTS["upright"][0] and not _both_reach(points, outline, normal, through):
-            continue
-        return cut_object(cloud, label, normal, through)
+        # Both parts must come down to the table: the true parts where known, else their visible points.
+        body, limit = (points, SEEN_TO_REACH) if outline is None else (outline, REACHES)
+        beyond = (body - through) @ normal > 0
+        both_reach = all(side.any() and body[side, 2].min() < limit for side in (beyond, ~beyond))
+        if tilt != TILTS["upright"][0] or both_reach:
+            return cut_object(cloud, label, normal, through)
     return None
-
-
-def _both_reach(
-    points: NDArray[np.float64], outline: NDArray | None, normal: NDArray[np.float64], through: NDArray[np.float64]
-) -> bool:
-    """Whether both parts come down to the table: the true parts where known, else their visible points."""
-    body, limit = (points, SEEN_TO_REACH) if outline is None else (outline, REACHES)
-    beyond = (body - through) @ normal > 0
-    return all(side.any() and body[side, 2].min() < limit for side in (beyond, ~beyond))
 
 
 def judged(scene: Scene, part: int, label: int) -> Row:
@@ -146,7 +133,7 @@ def judged(scene: Scene, part: int, label: int) -> Row:
     The direction counts: *on* is the upper part on the lower; *on, turned* is the reverse.
     """
     boxes = BoundingBoxRule().predict(scene.cloud)
-    tables = [scene.relation_of(thing, TABLE) for thing in (part, label)]
+    tables = [scene.relation_of(own, TABLE) for own in (part, label)]
     return {
         "said": relation_in_words(scene.relations, part, label),
         "boxes": relation_in_words(boxes, part, label),

@@ -1,9 +1,12 @@
-"""Measures and rows of claim C2.9: in which scenes the skeleton of a stack is found."""
+"""Measures, rows and pictures of claim C2.9: in which scenes the skeleton of a stack is found."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_09_substructure.run import HOSTS, READINGS
+from lifelore.experiments.chapter2.scenes.scene_example import draw_examples
+from lifelore.experiments.chapter2.scenes.scene_lots import examples_in
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import tally
 
@@ -17,6 +20,12 @@ ASKED = {
     "two_contacts_in_stack": ("connected", "things"),
 }
 """Readings of each search with an interval; the rows count all readings."""
+CAPTIONS = {
+    "stack": "a stack: its skeleton is part of …",
+    "two contacts": "… that of a stack with two contacts",
+    "row": "a row: alike but for what carries what",
+}
+draw = partial(draw_examples, captions=CAPTIONS)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -40,4 +49,4 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for search in SEARCHES.values()
         if search in row
     )
-    return tally(answers, "scenes") + [example for result in results for example in result["examples"]]
+    return tally(answers, "scenes") + examples_in(results)

@@ -9,10 +9,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.real_scenes import real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import RELATED, SUPPORT, perceived, reading, real_stacks
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
+from lifelore.experiments.chapter2.scenes.skeletons import RELATED, SUPPORT, perceived, reading, real_stacks
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.substructure import find_substructure
 
@@ -24,22 +24,17 @@ ARRANGEMENTS = dict(zip(HOSTS, ("stack-two-contacts", "no-hole", "row", "two-on-
 
 def cells(settings: Mapping) -> list[dict]:
     """Scenes in lots; then the real stacks, where the settings ask for them and they are there."""
-    lots = [{"first": k} for k in range(0, settings["scenes"], LOT)]
-    return [*lots, {"real": True}] if settings["real"] and real_scenes_folder() else lots
+    return lots(settings["scenes"], LOT) + ([{"real": True}] if uses_real(settings) else [])
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """For each number: in which scenes the stack's skeleton was found, and whether the witness is right."""
     if cell.get("real"):
         host = perceived(arranged(ARRANGEMENTS["two contacts"], seed, 0).cloud)
-        stacks = [perceived(three.cloud) for three in real_stacks()]
-        return {
-            "real": True,
-            "scenes": [{"two contacts": found_in(stack, host)} for stack in stacks],
-            "examples": [],
-        }
+        scenes = [{"two contacts": found_in(perceived(three.cloud), host)} for three in real_stacks()]
+        return {"real": True, "scenes": scenes, "examples": []}
     rows, examples = [], []
-    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+    for number in numbers_of(cell, LOT, settings["scenes"]):
         stack = perceived(arranged("stack", seed, number).cloud)
         hosts = {name: perceived(arranged(ARRANGEMENTS[name], seed, number).cloud) for name in HOSTS}
         row: dict[str, Any] = {name: found_in(stack, host) for name, host in hosts.items()}

@@ -1,11 +1,16 @@
-"""Measures and rows of claim C2.10: predicates and contact points of ball, block and ground, by camera."""
+"""Measures, rows and pictures of claim C2.10: predicates and contact points of ball, block and ground."""
 
 from collections.abc import Mapping, Sequence
+from functools import partial
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_10_ball_on_block.run import CAMERAS
+from lifelore.experiments.chapter2.scenes.scene_example import draw_examples
+from lifelore.experiments.chapter2.scenes.scene_lots import tally_and_examples
 from lifelore.experiments.engine.estimates import exact_share
-from lifelore.experiments.engine.results_table import ResultsTable, tally
+from lifelore.experiments.engine.results_table import ResultsTable
+
+draw = partial(draw_examples, columns=2)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -24,9 +29,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How often each set of predicates and points came, by camera; and a picture of each camera."""
-    outcomes = (
-        {"camera": r["camera"], "said": s["said"], "points of B towards A and G": s["points"]}
-        for r in results
-        for s in r["scenes"]
-    )
-    return tally(outcomes, "scenes") + [example for result in results for example in result["examples"]]
+
+    def outcome(result: Mapping, scene: Mapping) -> dict:
+        found = {"said": scene["said"], "points of B towards A and G": scene["points"]}
+        return {"camera": result["camera"], **found}
+
+    return tally_and_examples(results, "scenes", outcome)

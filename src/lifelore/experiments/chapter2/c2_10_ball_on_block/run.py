@@ -6,10 +6,11 @@ from dataclasses import replace
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import ON
 from lifelore.domains.tabletop.settings import TabletopSettings
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.skeletons import (
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, uses_real
+from lifelore.experiments.chapter2.scenes.skeletons import (
     NEAR,
     carried_pairs,
     only,
@@ -26,8 +27,8 @@ CAMERAS = ("kinect", "stereo")
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots by camera; then the real scenes at once, where the settings ask for them and they are there."""
-    lots = [{"camera": camera, "first": k} for camera in CAMERAS for k in range(0, settings["scenes"], LOT)]
-    return [*lots, {"camera": "real"}] if settings["real"] and real_scenes_folder() else lots
+    real = [{"camera": "real"}] if uses_real(settings) else []
+    return [lot for camera in CAMERAS for lot in lots(settings["scenes"], LOT, camera=camera)] + real
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -37,7 +38,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         return {"camera": camera, "scenes": real_findings(), "examples": []}
     drawn = replace(TabletopSettings(), camera=camera)
     rows, examples = [], []
-    for number in range(cell["first"], min(cell["first"] + LOT, settings["scenes"])):
+    for number in numbers_of(cell, LOT, settings["scenes"]):
         cloud = arranged("ball-on-block", seed, number, drawn).cloud
         rows.append(findings(cloud, BALL, BLOCK))
         if number == 0:
@@ -49,8 +50,7 @@ def real_findings() -> list[dict]:
     """Of every object on a single object on the table, by the hand-made labels; other objects are removed."""
     found = []
     for scene in real_scenes():
-        pairs = carried_pairs(scene.truth)
-        on_table = standing(scene.truth)
+        pairs, on_table = carried_pairs(scene.truth), standing(scene.truth)
         for upper, lower in sorted(pairs):
             if lower in on_table and sum(a == upper for a, _ in pairs) == 1:
                 found.append(findings(only(scene.cloud, (upper, lower)), upper, lower))
@@ -66,12 +66,11 @@ def findings(cloud: LabelledCloud, upper: int, lower: int) -> dict:
     """
     scene = perceived(cloud)
     names = {upper: "A", lower: "B", TABLE: "G"}
-    network, above = reading(scene, ground=True).networks[lower], reading(scene, ground=True).networks[upper]
-    towards = [sum(node.other == other for node in network.nodes) for other in (upper, TABLE)]
+    networks = reading(scene, ground=True).networks
     return {
         "said": ", ".join(sorted(f"{word}({names[a]}, {names[b]})" for word, a, b in predicates(scene))),
         "right": predicates(scene) == {(ON, upper, lower), (ON, lower, TABLE)},
-        "points": towards,
-        "upper_points": len(above.nodes),
+        "points": [sum(node.other == other for node in networks[lower].nodes) for other in (upper, TABLE)],
+        "upper_points": len(networks[upper].nodes),
         "near_points": len(reading(scene, NEAR, ground=True).networks[upper].nodes),
     }

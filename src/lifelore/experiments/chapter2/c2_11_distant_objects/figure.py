@@ -1,14 +1,10 @@
 """Support vectors and contact points of objects moved apart: a column for each cost, a line for each length."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter2.tabletop_pairs import kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import kernel_name
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREEN, LIGHT, ORANGE, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
 COLOURS = (BLUE, ORANGE, GREEN, VERMILION)
 QUANTITIES = {
@@ -18,7 +14,7 @@ QUANTITIES = {
 }
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     rows = [row for row in result["rows"] if row.get("unit") in ("as seen", "metres")]
     lengths, costs = result["settings"]["lengths"], result["settings"]["costs"]
     with house_style():
@@ -31,9 +27,8 @@ def draw(result: Mapping) -> "Figure":
                     own = [row for row in rows if row["kernel"] == kernel_name(length, cost)]
                     name = f"{1000 * length:g} mm"
                     look = {"color": colour, "marker": "o", "markersize": 3.2, "linewidth": 1.5}
-                    draw_curves(
-                        axes, None, {name: quartiles(own, "simulated", key)}, looks={name: look}, legend=False
-                    )
+                    simulated = {name: quartiles(own, "simulated", key)}
+                    draw_curves(axes, None, simulated, looks={name: look}, legend=False)
                     real = quartiles(own, "real", key)
                     axes.plot(real["x"], real["mean"], "x", markersize=3.2, color=colour)
                 axes.grid(axis="y", color=LIGHT)
@@ -41,8 +36,8 @@ def draw(result: Mapping) -> "Figure":
                     axes.set_ylabel(label)
             grid[0, column].set_yscale("log")
             grid[0, column].set_title(f"C = {cost:g}" if cost < 1000 else f"C = {cost:g}, nearly hard")
-            grid[1, column].set_ylim(bottom=0)
-            grid[2, column].set_ylim(bottom=0)
+            for axes in grid[1:, column]:
+                axes.set_ylim(bottom=0)
             grid[2, column].set_xlabel("gap (m)")
         handles, names = grid[0, 0].get_legend_handles_labels()
         title = "length of the kernel (line: simulated, median and quartiles; cross: real, median)"

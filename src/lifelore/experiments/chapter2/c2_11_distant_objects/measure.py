@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter2.c2_11_distant_objects.run import FAR, kernels
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD, kernel_name
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, kernel_name
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
@@ -21,11 +21,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     measured = {f"{name}_standard_simulated": number for name, number in found.get(STANDARD, {}).items()}
     names = [kernel_name(*kernel) for kernel in kernels(settings)]
     # The best kernel tells the two apart: the smaller of its two shares is the largest.
-    best = max(
-        names, key=lambda name: min(found[name][key].value for key in ("contacts_as_seen", "no_contacts_far"))
-    )
-    for key in ("contacts_as_seen", "no_contacts_far"):
-        measured[f"{key}_best_kernel_simulated"] = found[best][key]
+    shares = ("contacts_as_seen", "no_contacts_far")
+    best = max(names, key=lambda name: min(found[name][key].value for key in shares))
+    measured |= {f"{key}_best_kernel_simulated": found[best][key] for key in shares}
     key = "no_support_vectors_on_a_side_far"
     return measured | {f"{key}_simulated": found["all"][key]}
 
@@ -69,13 +67,7 @@ def pairs_table(settings: Mapping, results: Sequence[Mapping]) -> ResultsTable:
 
 
 def pair_counts(counts: Sequence[float]) -> dict[str, float]:
-    """Means of the two objects, and the answers that shares count.
-
-    Parameters
-    ----------
-    counts : (7,)
-        Support vectors of a and of b, contacts of both, contacts of at least 7 support vectors of both, violation.
-    """
+    """Means of the two objects, and the answers that shares count, from counts as in `run.parted`."""
     support_a, support_b, contacts_a, contacts_b, strong_a, strong_b, violation = counts
     return {
         "support": (support_a + support_b) / 2,
@@ -91,11 +83,7 @@ def pair_counts(counts: Sequence[float]) -> dict[str, float]:
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Quartiles by kind of scenes, kernel and gap; then the estimates of each kernel and of all."""
     table, found = pairs_table(settings, results), []
-    units = [
-        "as seen",
-        *("metres" for _ in settings["gaps"]),
-        *(f"{times:g} sizes" for times in settings["sizes"]),
-    ]
+    units = ["as seen", *["metres"] * len(settings["gaps"]), *(f"{times:g} sizes" for times in settings["sizes"])]
     for kind in table.distinct("kind"):
         for number, kernel in enumerate(kernels(settings)):
             for gap, unit in enumerate(units):
@@ -108,16 +96,12 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
                     "unit": unit,
                     "pairs": len(own),
                 }
-                line |= {name: _quartiles(own.values(name)) for name in QUARTILES}
-                line |= {"none_of_7": round(float(own.values("none_of_7").mean()), 4)}
+                for name in QUARTILES:  # median, lower and upper quartile
+                    line[name] = np.round(np.quantile(own.values(name), [0.5, 0.25, 0.75]), 2).tolist()
+                line["none_of_7"] = round(float(own.values("none_of_7").mean()), 4)
                 found.append(line | {"violation": float(own.values("violation").max())})
     for kind, by_kernel in findings(settings, results).items():
         for kernel, numbers in by_kernel.items():
             plain = {name: number.to_dict() for name, number in numbers.items()}
             found.append({"scenes": kind, "estimates of kernel": kernel, **plain})
     return found
-
-
-def _quartiles(values: np.ndarray) -> list[float]:
-    """Median, lower and upper quartile."""
-    return np.round(np.quantile(values, [0.5, 0.25, 0.75]), 2).tolist()

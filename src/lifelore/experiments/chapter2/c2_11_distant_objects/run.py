@@ -18,9 +18,10 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import NONE, ON, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.real_scenes import real_scenes, real_scenes_folder
-from lifelore.experiments.chapter2.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import LEAST_CONFIDENCE, MIX, without_table
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_points import linked
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS
@@ -34,11 +35,7 @@ Points = NDArray[np.float64]
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots of simulated pairs, then of real scenes where the settings ask for them and they are there."""
-    lots = [{"first": k} for k in range(0, settings["pairs"], LOT)]
-    if not settings["real"] or real_scenes_folder() is None:
-        return lots
-    names = [scene.name for scene in real_scenes()]
-    return lots + [{"real": names[k : k + REAL_LOT]} for k in range(0, len(names), REAL_LOT)]
+    return lots(settings["pairs"], LOT) + real_lots(settings, REAL_LOT, "real")
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
@@ -46,10 +43,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     if "real" in cell:
         scenes = [(scene.cloud, scene.truth) for scene in real_scenes() if scene.name in cell["real"]]
     else:
-        last = min(cell["first"] + LOT, settings["pairs"])
         drawn = TabletopSettings(arrangement="pair", mix=MIX, shapes="all", camera=settings["camera"])
-        own = int(stream(seed, "parted pairs").integers(2**31))
-        scenes = [(s.cloud, s.truth) for s in (sample_scene(own, k, drawn) for k in range(cell["first"], last))]
+        own, numbers = int(stream(seed, "parted pairs").integers(2**31)), numbers_of(cell, LOT, settings["pairs"])
+        scenes = [(s.cloud, s.truth) for s in (sample_scene(own, k, drawn) for k in numbers)]
     found = [parted(settings, *pair) for cloud, truth in scenes for pair in bearing_pairs(cloud, truth)]
     return {"kind": "real" if "real" in cell else "simulated", "pairs": found}
 
@@ -65,13 +61,9 @@ def bearing_pairs(cloud: LabelledCloud, truth: Sequence[PairLabel]) -> Iterator[
 def parted(settings: Mapping, a: Points, b: Points, relation: str) -> dict:
     """Support vectors and contacts at every gap and kernel.
 
-    Returns
-    -------
-    dict
-        ``relation``; ``size``, the diagonal of the larger object's box, metres; ``gaps``, metres, first as seen,
-        then those of ``settings["gaps"]``, then ``settings["sizes"]`` times the size; ``found``, ``[gap, kernel,
-        support vectors of a, of b, contacts of a, of b, contacts of 7 of a, of b, violation]`` with gap and kernel
-        by number.
+    ``relation``; ``size``, the diagonal of the larger object's box, metres; ``gaps``, metres, first as seen, then
+    those of ``settings["gaps"]``, then ``settings["sizes"]`` times the size; ``found``, ``[gap, kernel, support
+    vectors of a, of b, contacts of a, of b, contacts of 7 of a, of b, violation]`` with gap and kernel by number.
     """
     size = max(float(np.linalg.norm(np.ptp(points, axis=0))) for points in (a, b))
     tree = KDTree(b)
@@ -79,11 +71,11 @@ def parted(settings: Mapping, a: Points, b: Points, relation: str) -> dict:
     way = away(a, b, relation)
     moved = [a, *(a + shift_to(a, tree, way, gap) * way for gap in wanted)]
     found = [
-        [number, kernel, *counts(one, b, length, cost)]
-        for number, one in enumerate(moved)
+        [number, kernel, *counts(points, b, length, cost)]
+        for number, points in enumerate(moved)
         for kernel, (length, cost) in enumerate(kernels(settings))
     ]
-    gaps = [round(float(tree.query(one)[0].min()), 5) for one in moved]
+    gaps = [round(_gap(points, tree), 5) for points in moved]
     return {"relation": relation, "size": round(size, 4), "gaps": gaps, "found": found}
 
 
@@ -121,9 +113,8 @@ def counts(a: Points, b: Points, length: float, cost: float) -> list:
     found = separate(a, b, length=length, cost=cost)
     sides = [a[found.support_first], b[found.support_second]]
     sizes = [np.bincount(linked(np.ascontiguousarray(side), DEFAULT_CONTACT_SETTINGS.linkage)) for side in sides]
-    contacts = [len(one) for one in sizes]
-    strong = [int((one >= THRESHOLD).sum()) for one in sizes]
-    return [*map(len, sides), *contacts, *strong, round(found.max_violation, 5)]
+    strong = [int((own >= THRESHOLD).sum()) for own in sizes]
+    return [*map(len, sides), *map(len, sizes), *strong, round(found.max_violation, 5)]
 
 
 FAR = 1.0

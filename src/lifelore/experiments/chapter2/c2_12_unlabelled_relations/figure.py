@@ -1,22 +1,18 @@
 """Displacements by relation and by the clusters found in them, and how well those agree (thesis §2.3.5)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter2.c2_12_unlabelled_relations.measure import REAL, underscored
 from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters import METHODS, X_MEANS
-from lifelore.experiments.chapter2.method_panels import draw_method_panels
+from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
 from lifelore.figures.object_palette import RELATION_MARKERS, object_palette, relation_palette
 from lifelore.figures.scatter import draw_scatter
 from lifelore.figures.style import house_style, new_figure
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure, SubFigure
 
-
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     panels = {}
     for title, ending in (("simulated", ""), (REAL, f"_{REAL}")):
         of = [row for row in result["rows"] if "method" in row and (row["data_set"] == REAL) == (title == REAL)]
@@ -33,7 +29,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def draw_points(figure: "SubFigure", row: Mapping) -> None:
+def draw_points(figure, row: Mapping) -> None:
     """The displacements, coloured by relation, then by cluster of each method; markers show the relation."""
     at, relations = np.asarray(row["displacements"], float), np.array(row["relations"])
     every = figure.subplots(1, 1 + len(row["clusters"]), sharex=True, sharey=True, squeeze=False)[0]

@@ -1,4 +1,4 @@
-"""Measures and rows of claim C2.12: clusters by method and data set, and how well they agree with the labels."""
+"""Claim C2.12: clusters of pairs by method and data set, and how well they agree with the labels (§2.3.5)."""
 
 from collections.abc import Mapping, Sequence
 from itertools import product
@@ -22,12 +22,14 @@ from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters 
     rand_index_by_scene,
     sighted,
 )
-from lifelore.experiments.chapter2.pair_validation import DROPS, Reading
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, data_sets, kernel_name
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, data_sets, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, Reading
 from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.experiments.engine.results_table import computed_once
 
 REAL = "real"
+cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
 Clustered = tuple[Sighted, dict[str, list[Labels]]]
 """The near pairs of a data set, and by method their clusters from each start."""
 
@@ -39,10 +41,8 @@ def clusters(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Cluster
     for name, rows in data_sets(results).items():
         if any(row["gap"] is not None for row in rows):
             seen = sighted(rows)
-            found[str(name)] = (
-                seen,
-                {method: clustered(seen, method, settings["starts"], str(name)) for method in METHODS},
-            )
+            by_method = {method: clustered(seen, method, settings["starts"], str(name)) for method in METHODS}
+            found[str(name)] = seen, by_method
     return found
 
 
@@ -54,8 +54,8 @@ def underscored(method: str) -> str:
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Clusters of X-means, the adjusted Rand index (ARI) of each method, simulated and real; and *both*."""
     found = clusters(settings, results)
-    simulated = [one for name, one in found.items() if name != REAL]
-    indices = {method: [rand_indices(one, method) for one in simulated] for method in METHODS}
+    simulated = [clustered_set for name, clustered_set in found.items() if name != REAL]
+    indices = {method: [rand_indices(own, method) for own in simulated] for method in METHODS}
     measured = {f"ari_{underscored(method)}": mean_estimate(values) for method, values in indices.items()}
     numbers = [np.mean([len(set(labels)) for labels in by_method[X_MEANS]]) for _, by_method in simulated]
     measured["clusters_x_means"] = mean_estimate(numbers)
@@ -65,9 +65,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     if REAL in found:
         seen, by_method = found[REAL]
         for method, starts in by_method.items():
-            measured[f"ari_{underscored(method)}_{REAL}"] = rand_index_by_scene(
-                seen.scenes, seen.relations, starts[0]
-            )
+            index = rand_index_by_scene(seen.scenes, seen.relations, starts[0])
+            measured[f"ari_{underscored(method)}_{REAL}"] = index
     return measured
 
 
@@ -79,12 +78,11 @@ def rand_indices(found: Clustered, method: str) -> float:
 
 def both_in_a_cluster_of_both(sets: Sequence[Clustered]) -> Estimate:
     """Share of *both* pairs in clusters of X-means whose most frequent relation is *both*; mean over starts."""
-    all_both, inside = [], []
+    all_both = [int((seen.relations == BOTH).sum()) for seen, _ in sets]
+    inside = []
     for seen, by_method in sets:
-        both = seen.relations == BOTH
-        named = [cluster_names(seen.relations, labels) for labels in by_method[X_MEANS]]
-        all_both.append(int(both.sum()))
-        inside.append(float(np.mean([(both & (names == BOTH)).sum() for names in named])))
+        named = [cluster_names(seen.relations, labels) == BOTH for labels in by_method[X_MEANS]]
+        inside.append(float(np.mean([(inside_both & (seen.relations == BOTH)).sum() for inside_both in named])))
     return ratio_estimate(inside, all_both) if sum(all_both) else UNMEASURED
 
 
@@ -113,14 +111,11 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             rows.append(row | {"relations of clusters": cluster_counts(seen.relations, starts[0])})
     if settings["grid"]:
         rows += every_word_rows(results)
-    return rows + [points(*one) for one in list(found.values())[:1]]
-
-
-def points(seen: Sighted, by_method: Mapping[str, list[Labels]]) -> dict:
-    """The scatter plot: displacements in mm, relations, and the clusters of three methods."""
-    shown = {method: by_method[method][0].tolist() for method in (X_MEANS, K_MEANS, OURS)}
-    at = np.round(1000 * seen.displacements, 1).tolist()
-    return {"displacements": at, "relations": seen.relations.tolist(), "clusters": shown}
+    for seen, by_method in list(found.values())[:1]:
+        shown = {method: by_method[method][0].tolist() for method in (X_MEANS, K_MEANS, OURS)}
+        at = np.round(1000 * seen.displacements, 1).tolist()
+        rows.append({"displacements": at, "relations": seen.relations.tolist(), "clusters": shown})
+    return rows
 
 
 def every_word_rows(results: Sequence[Mapping]) -> list[dict]:
@@ -128,8 +123,8 @@ def every_word_rows(results: Sequence[Mapping]) -> list[dict]:
     found = []
     for kernel, drop in product((kernel_name(*kernel) for kernel in KERNELS), DROPS):
         for name, rows in data_sets(results).items():
-            one = every_word(rows, Reading(kernel, drop), str(name))
-            if one:
-                shares = {key: round(one[key], 4) for key in ("ari_x_means", "ari_k_means")}
-                found.append({"every word": kernel, "drop": drop, "data_set": str(name), **one, **shares})
+            numbers = every_word(rows, Reading(kernel, drop), str(name))
+            if numbers:
+                shares = {key: round(numbers[key], 4) for key in ("ari_x_means", "ari_k_means")}
+                found.append({"every word": kernel, "drop": drop, "data_set": str(name), **numbers, **shares})
     return found

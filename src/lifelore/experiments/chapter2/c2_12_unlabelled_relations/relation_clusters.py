@@ -10,12 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ADJACENT, CORE_RELATIONS
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.pair_validation import Reading, as_scene, displacements
-from lifelore.experiments.chapter2.tabletop_pairs import Row
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import Row
+from lifelore.experiments.chapter2.scoring.pair_validation import Reading, as_scene, joined_displacements
 from lifelore.perception.pairs.pair_features import PairFeatures
 from lifelore.perception.relations.discovery import DISPLACEMENT, discover, discover_by_displacement, upright_rows
 from lifelore.perception.relations.x_means import x_means
@@ -30,15 +31,9 @@ Names = NDArray[np.str_]
 
 @dataclass(frozen=True, eq=False)
 class Sighted:
-    """The near pairs of a data set, the object with the higher centre first.
+    """The n near pairs of a data set, the object with the higher centre first.
 
-    Parameters
-    ----------
-    scenes, relations : (n,) str
-    features : list of PairFeatures
-        One of each pair.
-    displacements : (n, 2) float64
-        To the right as the camera sees it, and up, metres.
+    `displacements` are ``(n, 2)``: to the right as the camera sees it, and up, metres.
     """
 
     scenes: Names
@@ -85,8 +80,6 @@ METHODS: dict[str, Callable[[Sighted, np.random.Generator], Labels]] = {
 
 def clustered(seen: Sighted, method: str, starts: int, name: str) -> list[Labels]:
     """Clusters of a data set called `name` from several random starts."""
-    from threadpoolctl import threadpool_limits
-
     # With matrices of four rows, threads mostly wait for each other.
     with threadpool_limits(1):
         return [METHODS[method](seen, stream(start, "relation clusters", method, name)) for start in range(starts)]
@@ -132,13 +125,10 @@ def every_word(rows: Sequence[Row], reading: Reading, name: str) -> dict | None:
 
     ``{"displacements", "clusters", "ari_x_means", "ari_k_means"}``; None where there is no displacement.
     """
-    from threadpoolctl import threadpool_limits
-
-    each = [displacements(row, reading.kernel, reading.drop) for row in rows]
-    moved = np.concatenate(each)
+    moved, owner = joined_displacements(rows, reading.kernel, reading.drop)
     if not len(moved):
         return None
-    relations = np.repeat([row["relation"] for row in rows], [len(one) for one in each])
+    relations = np.array([row["relation"] for row in rows])[owner]
     rng = stream(0, "every word", name)
     found = x_means(moved, rng, most=min(MOST, len(moved)))
     with threadpool_limits(1):

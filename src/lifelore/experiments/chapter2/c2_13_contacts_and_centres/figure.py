@@ -1,20 +1,16 @@
 """Networks with every contact and with strong ones, nodes by kernel, share of *on* by method (thesis Fig 2.1)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import CENTRES, CONTACTS, OURS
-from lifelore.experiments.chapter2.method_panels import draw_method_panels
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.scene_example import examples_of
-from lifelore.experiments.chapter2.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scenes.scene_example import examples_of
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.figures.gallery import gallery_above
 from lifelore.figures.object_palette import mixed
 from lifelore.figures.stacked_bars import draw_stacked_bars
 from lifelore.figures.style import BLUE, INK, ORANGE, PAPER, house_style
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure, SubFigure
 
 SHOWN = {
     CONTACTS: "thesis",
@@ -35,7 +31,7 @@ NODES: dict[str, str] = {
 """Colour by number of nodes."""
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     measured, cameras = result["measured"], result["settings"]["cameras"]
     counts = [row for row in result["rows"] if "kernel" in row and row["camera"] == cameras[0]]
     panels = {
@@ -50,7 +46,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def draw_nodes(figure: "SubFigure", rows: Sequence[Mapping], camera: str) -> None:
+def draw_nodes(figure, rows: Sequence[Mapping], camera: str) -> None:
     """Scenes by number of nodes of the block and kernel, of all contacts and of strong ones; ours in bold."""
     kernels = [row["kernel"] for row in rows]
     every = figure.subplots(1, len(TITLES), squeeze=False, sharey=True)[0]

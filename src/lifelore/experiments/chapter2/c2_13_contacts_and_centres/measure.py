@@ -9,18 +9,17 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.relations import ON, SYMMETRIC
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import LESSON, NODES, SCENE
-from lifelore.experiments.chapter2.pair_validation import (
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
+from lifelore.experiments.chapter2.scoring.pair_validation import (
     THRESHOLD,
     Reading,
     as_scene,
     as_seen,
-    gap_of,
-    label_of,
+    classified,
     votes_of_neighbours,
     votes_on,
 )
-from lifelore.experiments.chapter2.relation_scoring import JudgedPair, difference
-from lifelore.experiments.chapter2.tabletop_pairs import KERNELS, STANDARD, Row, kernel_name
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference
 from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier
@@ -62,18 +61,16 @@ def node_measures(scenes: Sequence[Row]) -> dict[str, Estimate]:
         "rank_of_three_nodes": mean_or_unmeasured((k < NODES) + 0.5 * (k == NODES) for k in n),
         "several_nodes_without_threshold": exact_share(k > 1 for k in n),
         "one_node_with_threshold": exact_share(k == 1 for k in left),
-        "kept_node_is_topmost": exact_share(topmost_alone_remains(one) for one in found),
+        "kept_node_is_topmost": exact_share(map(topmost_alone_remains, found)),
     }
 
 
 def node_counts(scenes: Sequence[Row], kernel: str) -> dict[str, list[int]]:
     """How many scenes have 0, 1, 2, 3, and more nodes, of all contacts and of strong ones."""
     found = [nodes(row, kernel) for row in scenes]
-    counted = {"every contact": map(len, found), "strong": (len(strong(one)) for one in found)}
-    return {
-        words: np.bincount([min(k, NODES + 1) for k in n], minlength=NODES + 2).tolist()
-        for words, n in counted.items()
-    }
+    counted = {"every contact": map(len, found), "strong": (len(strong(own)) for own in found)}
+    capped = {name: [min(k, NODES + 1) for k in n] for name, n in counted.items()}
+    return {name: np.bincount(n, minlength=NODES + 2).tolist() for name, n in capped.items()}
 
 
 def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[JudgedPair]]:
@@ -85,18 +82,12 @@ def inferred(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[Ju
         OURS: (RelationClassifier(symmetric=SYMMETRIC), as_scene),
         **{name: (PEERS[peer](), as_seen(peer)) for name, peer in OTHERS.items()},
     }
-    near = [row for row in lessons if row["gap"] is not None]
-    truths = [[label_of(row)] for row in near]
     found = {}
     for name, (model, look) in models.items():
-        model.fit_pairs([look(row) for row in near], truths)
-        predicted = [
-            next(iter(model.predict_pairs(look(row))), None) if row["gap"] is not None else None for row in scenes
-        ]
-        found[name] = [
-            JudgedPair(row["scene"], label_of(row), relation, gap_of(row))
-            for row, relation in zip(scenes, predicted, strict=True)
-        ]
+        viewed = (
+            [(row, look(row) if row["gap"] is not None else None) for row in rows] for rows in (lessons, scenes)
+        )
+        found[name] = classified(model, *viewed)
     return found
 
 
@@ -107,10 +98,8 @@ def given(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, list[str]]
     owner = np.arange(len(rows))
     by_contacts = votes_of_neighbours(rows, Reading(), train)
     by_centres = votes_on(np.array([centres_apart(row) for row in rows]), owner, rows, Reading(), train)
-    return {
-        name: [relation for relation, known in zip(votes.relations(len(rows)), train, strict=True) if not known]
-        for name, votes in ((CONTACTS, by_contacts), (CENTRES, by_centres))
-    }
+    first = int(train.sum())
+    return {CONTACTS: by_contacts.relations(len(rows))[first:], CENTRES: by_centres.relations(len(rows))[first:]}
 
 
 def centres_apart(row: Row) -> np.ndarray:

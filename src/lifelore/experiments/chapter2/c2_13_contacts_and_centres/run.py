@@ -8,18 +8,13 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings
-from lifelore.experiments.chapter2 import tabletop_pairs
-from lifelore.experiments.chapter2.arranged_scenes import arranged
-from lifelore.experiments.chapter2.pair_validation import THRESHOLD
-from lifelore.experiments.chapter2.scene_example import scene_row
-from lifelore.experiments.chapter2.tabletop_pairs import (
-    STANDARD,
-    Row,
-    contacts_of,
-    loose_settings,
-    pair_rows,
-    without_table,
-)
+from lifelore.experiments.chapter2.scenes import tabletop_pairs
+from lifelore.experiments.chapter2.scenes.arranged_scenes import arranged
+from lifelore.experiments.chapter2.scenes.perturbation import without_table
+from lifelore.experiments.chapter2.scenes.scene_example import scene_row
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, Row, loose_settings, pair_rows
+from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, interfaces
 from lifelore.perception.scene import Scene
 
@@ -32,12 +27,12 @@ NODES = 3
 
 def cells(settings: Mapping) -> list[dict]:
     """Lots of lessons, then of scenes, camera by camera."""
-    lots = ((LESSON, settings["lessons"], tabletop_pairs.LOT), (SCENE, settings["scenes"], LOT))
+    sizes = ((LESSON, settings["lessons"], tabletop_pairs.LOT), (SCENE, settings["scenes"], LOT))
     return [
-        {"kind": kind, "camera": camera, "first": first}
+        lot
         for camera in settings["cameras"]
-        for kind, n, lot in lots
-        for first in range(0, n, lot)
+        for kind, n, size in sizes
+        for lot in lots(n, size, kind=kind, camera=camera)
     ]
 
 
@@ -50,9 +45,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         found = tabletop_pairs.run_cell(asked, {"data_set": 0, "first": first}, seed)
         return {**head, "rows": found["rows"], "examples": []}
     drawn = replace(TabletopSettings(), camera=camera)
-    worlds = [
-        arranged("ball-at-l-block", seed, k, drawn) for k in range(first, min(first + LOT, settings["scenes"]))
-    ]
+    worlds = [arranged("ball-at-l-block", seed, k, drawn) for k in numbers_of(cell, LOT, settings["scenes"])]
     rows = [row for world in worlds for row in pair_rows(world.name, world.cloud, world.truth)]
     examples = pictures(worlds, rows) if first == 0 else []
     return {**head, "rows": rows, "examples": examples}
@@ -68,7 +61,7 @@ def pictures(worlds: list[TabletopScene], rows: list[Row]) -> list[dict]:
         (f"of at least {THRESHOLD}", DEFAULT_CONTACT_SETTINGS),
     ):
         between = interfaces(without_table(world.cloud), settings)
-        n = len(contacts_of(between[0])["a"])
+        n = len(between[0].contacts_a)
         caption = f"{words}: {n} node{'s' * (n != 1)}"
         found.append(scene_row(Scene(world.cloud, between), caption))
     return found

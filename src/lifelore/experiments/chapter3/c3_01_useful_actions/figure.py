@@ -1,35 +1,30 @@
 """Figure of claim C3.1: two mazes with their useful actions, and the useful shares of all mazes."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
 from lifelore.figures.prior_arrows import draw_prior
-from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, house_style, new_figure
 
 
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result: examples that its rows hold, then the spread of shares."""
     examples = [row for row in result["rows"] if "example" in row]
-    with house_style():
-        figure = new_figure(9.2, 2.9)
-        widths = [1.0] * len(examples) + [1.75]
-        panels = figure.subplots(1, len(widths), squeeze=False, gridspec_kw={"width_ratios": widths})[0]
-        for axes, row in zip(panels, examples, strict=False):
-            draw_prior(axes, row["shape"], row["cells"], row["probs"], row["counted"], negligible=0.0)
-            axes.set_anchor("N")
-            axes.set_title(f"{row['example']} of {4 * len(row['cells'])} actions useful")
-        _draw_shares(panels[-1], result)
+    figure = new_figure(9.2, 2.9)
+    widths = [1.0] * len(examples) + [1.75]
+    panels = figure.subplots(1, len(widths), squeeze=False, gridspec_kw={"width_ratios": widths})[0]
+    for axes, row in zip(panels, examples, strict=False):
+        draw_prior(axes, row["shape"], row["cells"], row["probs"], row["counted"], negligible=0.0)
+        axes.set_anchor("N")
+        axes.set_title(f"{row['example']} of {4 * len(row['cells'])} actions useful")
+    _draw_shares(panels[-1], result)
     return figure
 
 
-def _draw_shares(axes: "Axes", result: Mapping) -> None:
+def _draw_shares(axes: Axes, result: Mapping) -> None:
     """Shares of mazes by useful share, bars for each generator; a line for each printed share."""
     from matplotlib.ticker import MaxNLocator
 

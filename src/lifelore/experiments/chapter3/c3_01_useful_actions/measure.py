@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
-from lifelore.experiments.engine.results_table import ResultsTable
+from lifelore.experiments.engine.results_table import ResultsTable, tally
 
 
 def _columns(results: Sequence[Mapping], generator: str) -> dict[str, NDArray[np.float64]]:
@@ -38,12 +38,10 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """How many mazes have each number of useful actions, and one maze for each printed share."""
     found = []
     for generator in settings["generators"]:
-        counts = _columns(results, generator)
-        pairs, mazes = np.unique(
-            np.column_stack([counts["useful"], counts["actions"]]).astype(int), axis=0, return_counts=True
+        mazes = ResultsTable.nested(results, "mazes", keys=(), outer=("generator",)).select(generator=generator)
+        found += tally(
+            [{key: maze[key] for key in ("generator", "useful", "actions")} for maze in mazes.records], "mazes"
         )
-        for (useful, actions), n in zip(pairs.tolist(), mazes.tolist(), strict=True):
-            found.append({"generator": generator, "useful": useful, "actions": actions, "mazes": n})
     for printed in map(str, PRINTED):
         examples = (r["examples"][printed] for r in results if printed in r["examples"])
         found += [{"example": int(printed), **example} for example in examples][:1]

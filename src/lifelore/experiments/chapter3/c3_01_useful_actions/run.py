@@ -34,11 +34,14 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Counts of actions in each maze of a chunk, and an example of each printed share."""
-    last = min(cell["first"] + CHUNK, settings["mazes"])
-    found = {"generator": cell["generator"], "mazes": [], "examples": {}}
-    for number in range(cell["first"], last):
-        random = stream(seed, "C3.1", cell["generator"], number)
-        world = _maze(settings, cell["generator"], random)
+    generator, (size, obstacles) = cell["generator"], (settings["size"], settings["obstacles"])
+    found = {"generator": generator, "mazes": [], "examples": {}}
+    for number in range(cell["first"], min(cell["first"] + CHUNK, settings["mazes"])):
+        random = stream(seed, "C3.1", generator, number)
+        if generator == "walled up":
+            world = noise_maze(random, size, obstacles=obstacles, discount=settings["discount"])
+        else:
+            world = uniform_maze(random, size, obstacles, settings["discount"])
         goals = random.integers(world.n_states, size=settings["tasks"])
         prior = prior_of(world, goals)
         found["mazes"].append(_counts(world, prior, goals))
@@ -46,13 +49,6 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         if useful in PRINTED:
             found["examples"].setdefault(str(useful), _example(world, prior))
     return found
-
-
-def _maze(settings: Mapping, generator: str, random: np.random.Generator) -> GridWorld:
-    size, obstacles = settings["size"], settings["obstacles"]
-    if generator == "walled up":
-        return noise_maze(random, size, obstacles=obstacles, discount=settings["discount"])
-    return uniform_maze(random, size, obstacles, settings["discount"])
 
 
 def uniform_maze(random: np.random.Generator, size: int, obstacles: int, discount: float) -> GridWorld:

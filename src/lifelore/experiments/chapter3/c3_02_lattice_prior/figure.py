@@ -1,16 +1,12 @@
 """Figure of claim C3.2: learning curves under each schedule of ε, and the grid of choices left open."""
 
-from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 from lifelore.experiments.chapter3.c3_02_lattice_prior.run import KEYS
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.reward_curves import MethodCurve, draw_return_curves
+from lifelore.experiments.chapter3.figures.choice_grid import RATIO, draw_choice_grid
+from lifelore.experiments.chapter3.figures.reward_curves import MethodCurve, draw_return_curves
 from lifelore.experiments.engine.results_table import ResultsTable
-from lifelore.figures.style import GREY, colour_of, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, Figure, SubFigure, colour_of, house_style, new_figure, two_rows
 
 LABELS = {
     None: ("Q-learning", "q-learning"),
@@ -20,28 +16,23 @@ LABELS = {
 """Label and style of a learner by its ties."""
 
 
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    schedules = result["settings"]["schedules"]
-    with house_style():
-        figure = new_figure(10.4, 8.2)
-        upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.0, 0.92], hspace=0.02)[:, 0]
-        panels = upper.subplots(2, len(schedules), squeeze=False, height_ratios=[1, 0.26], sharey="row")
-        for column, schedule in zip(panels.T, schedules, strict=True):
-            draw_return_curves(column, result, schedule, _methods(result, schedule))
-        panels[0, 0].set_ylabel("return of an episode")
-        upper.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
-        _draw_grids(lower.subplots(1, 2, sharey=True), result)
-        lower.supxlabel(
-            f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
-            "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
-            "Bars and ratios: runs that never arrive count as the cap.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.2)
+    upper, lower = two_rows(figure, (1.0, 0.92))
+    draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.26, ncols=4)
+    _draw_grids(lower, result)
+    lower.supxlabel(
+        f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
+        "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
+        "Bars and ratios: runs that never arrive count as the cap.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _methods(result: Mapping, schedule: list[float]) -> list[MethodCurve]:
+def _methods(result: Mapping, schedule: Sequence[float]) -> list[MethodCurve]:
     cells = ResultsTable([row for row in result["rows"] if "to_80" in row], ("schedule", *KEYS))
     found = []
     for row in result["rows"]:
@@ -52,20 +43,16 @@ def _methods(result: Mapping, schedule: list[float]) -> list[MethodCurve]:
     return found
 
 
-def _draw_grids(panels, result: Mapping) -> None:
+def _draw_grids(figure: SubFigure, result: Mapping) -> None:
+    settings, side = result["settings"], ("form", "alpha0")
     cells = [row for row in result["rows"] if row.get("form") and "to_80" in row]
 
     def name(form: str, alpha0: float | None) -> str:
         return form if alpha0 is None else f"{form}, α⁰ {alpha0:g}"
 
-    grid = (result["settings"], cells)
-    first, ratio = panels
-    draw_choice_grid(
-        first, *grid, "first", ("form", "alpha0"), name, neutral=0.0, spread=40.0, words="{:+.1f}".format
-    )
-    draw_choice_grid(
-        ratio, *grid, "to_80_ratio", ("form", "alpha0"), name,
-        neutral=1.0, spread=4.0, ratio=True, good="low", words="{:.2f}".format,
-    )  # fmt: skip
+    first, ratio = figure.subplots(1, 2, sharey=True)
+    look = {"neutral": 0.0, "spread": 40.0, "words": "{:+.1f}".format}
+    draw_choice_grid(first, settings, cells, "first", side, name, **look)
+    draw_choice_grid(ratio, settings, cells, "to_80_ratio", side, name, **RATIO)
     first.set_title("Return of the first episode")
     ratio.set_title("Episodes to 80 % of optimal, as a ratio to Q-learning")

@@ -1,6 +1,7 @@
 """Measures and rows of claim C3.2."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
@@ -48,17 +49,13 @@ def _grid_shares(settings: Mapping, table: ResultsTable) -> dict[str, Estimate]:
 
 def _online_measures(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     plain, optimal = (np.array([r[key] for r in results]) for key in ("plain", "optimal"))
-    gain = {
-        (source, n): np.array([r["first_ten"][f"{source}_{n}"] for r in results]) - plain
-        for source in ("learnt", "exact")
-        for n in settings["online_tasks"]
-    }
+    keys = list(product(("learnt", "exact"), settings["online_tasks"]))
+    gain = {(s, n): np.array([r["first_ten"][f"{s}_{n}"] for r in results]) - plain for s, n in keys}
     n_tasks = settings["training_tasks"]
+    beyond_exact = (gain["learnt", n_tasks] - gain["exact", n_tasks]) / optimal
     return {
         **{f"online_gain_after_{n}_{source}": mean_estimate(g) for (source, n), g in gain.items()},
-        "online_minus_exact_of_optimal": mean_estimate(
-            (gain["learnt", n_tasks] - gain["exact", n_tasks]) / optimal
-        ),
+        "online_minus_exact_of_optimal": mean_estimate(beyond_exact),
         "q_learning_is_uniform_prior": mean_estimate([float(r["same"]) for r in results]),
     }
 
@@ -78,8 +75,6 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             grid.append({**where, **numbers, "never_80": never, "to_80_ratio": ratio})
         for how in shown:
             where = _where(schedule, how)
-            curve_of = {key: how[key] for key in KEYS}
-            curves.append(
-                {"curve_of": curve_of, "schedule": schedule, **table.curve("curve", parts=BAND, **where)}
-            )
+            about = {"curve_of": {key: how[key] for key in KEYS}, "schedule": schedule}
+            curves.append(about | table.curve("curve", parts=BAND, **where))
     return [*grid, {"curve_edges": block_edges(settings["episodes"]).tolist()}, *curves]

@@ -4,44 +4,35 @@ Thesis: §3.4.1, Figure 3.3.
 """
 
 from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
-from lifelore.core.learning.q_learning import Rows, Schedule
+from lifelore.core.learning.q_learning import Schedule
 from lifelore.core.planning.planning import learnt_best_actions, mean_start_value
+from lifelore.core.streams import stream
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.lattice import lattice
-from lifelore.experiments.chapter3.lattice_learning import (
-    Problem,
-    Run,
-    exact_prior,
-    learn_task,
-    mean_returns,
-    rows_of,
-    run_of,
-    schedule_of,
-    start_values,
-    summary,
-)
+from lifelore.experiments.chapter3.learning import grid_tasks
+from lifelore.experiments.chapter3.learning.grid_tasks import Problem, exact_prior, learn_task, rows_of
+from lifelore.experiments.chapter3.learning.grid_tasks import prior_choices as configurations
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_means
 
-READ_ALPHA0 = ("proportion", "dirichlet", "tempered")
-"""Forms that α⁰ enters; the others are measured once, with α⁰ None."""
 KEYS = ("ties", "alpha0", "form")
 """Keys of a configuration."""
 PLAIN = dict.fromkeys(KEYS)
 """The configuration that is Q-learning."""
 
 
-def configurations(settings: Mapping) -> list[dict]:
-    """Configurations of a prior: form × α⁰ × ties; α⁰ is None where the form does not read it."""
-    return [
-        {"ties": ties, "alpha0": alpha0, "form": form}
-        for form in settings["forms"]
-        for alpha0 in (settings["alpha0"] if form in READ_ALPHA0 else [None])
-        for ties in settings["ties"]
-    ]
+class Tasks(NamedTuple):
+    """A lattice with the tasks whose policies make the prior, and those that are learnt."""
+
+    world: GridWorld
+    training: list[Problem]
+    testing: list[Problem]
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -59,36 +50,42 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "optimal": optimal, **found}
 
 
-def _grid(settings: Mapping, run: Run, epsilon: Sequence[float]) -> dict:
-    schedule = schedule_of(settings, epsilon)
-    best = np.mean([start_values(p, settings["episodes"]) for p in run.testing], axis=0)
-    plain = mean_returns(run.testing, lambda p: None, schedule)
-    found = [{**PLAIN, **summary(settings, plain, best), "curve": block_means(plain)}]
-    for how in configurations(settings):
-        prior = exact_prior(run.training[: settings["training_tasks"]], how["alpha0"] or 1.0)
-        returns = mean_returns(run.testing, _guided(prior, how), schedule)
-        kept = {**how, **summary(settings, returns, best)}
-        if _is_headline(settings, how):
-            kept["curve"] = block_means(returns)
-        found.append(kept)
+def run_of(settings: Mapping, seed: int, number: int) -> Tasks:
+    """Run `number`: goals are drawn without repeats, for training and for testing apart."""
+    world = lattice(settings["size"], settings["discount"])
+    most = max(settings["training_tasks"], *settings["online_tasks"])
+    tasks = []
+    for name, n_tasks in (("training", most), ("testing", settings["test_tasks"])):
+        own = (seed, "C3.2", number, name)
+        goals = stream(*own).permutation(world.n_states)[:n_tasks]
+        tasks.append([grid_tasks.problem_of(world, int(goal), (*own, i)) for i, goal in enumerate(goals)])
+    return Tasks(world, *tasks)
+
+
+def _mean_returns(run: Tasks, prior: ActionPrior | None, how: Mapping, schedule: Schedule) -> np.ndarray:
+    """Mean learning curve with a prior used in one way, or with none, (n_episodes,)."""
+
+    def rows_for(problem: Problem):
+        return None if prior is None else rows_of(problem, prior, how["form"], how["ties"])
+
+    return grid_tasks.mean_returns(run.testing, rows_for, schedule)
+
+
+def _grid(settings: Mapping, run: Tasks, epsilon: Sequence[float]) -> dict:
+    """Every configuration, with the curves of the default's form and α⁰."""
+    schedule, found = schedule_of(settings, epsilon), []
+    best = np.mean([grid_tasks.start_values(p, settings["episodes"]) for p in run.testing], axis=0)
+    for how in (PLAIN, *configurations(settings)):
+        training = run.training[: settings["training_tasks"]]
+        prior = None if how == PLAIN else exact_prior(training, how["alpha0"] or 1.0)
+        returns = _mean_returns(run, prior, how, schedule)
+        found.append({**how, **grid_tasks.summary(settings, returns, best)})
+        if prior is None or all(how[key] == settings["default"][key] for key in ("alpha0", "form")):
+            found[-1]["curve"] = block_means(returns)
     return {"methods": found}
 
 
-def _guided(prior: ActionPrior, how: Mapping):
-    """The rows that each problem gets from a prior used in one way."""
-
-    def rows_for(problem: Problem) -> Rows:
-        return rows_of(problem, prior, how["form"], how["ties"])
-
-    return rows_for
-
-
-def _is_headline(settings: Mapping, how: Mapping) -> bool:
-    """Whether a configuration's curve is kept: the default's form and α⁰, ties in every way."""
-    return all(how[key] == settings["default"][key] for key in ("alpha0", "form"))
-
-
-def _online(settings: Mapping, run: Run) -> dict:
+def _online(settings: Mapping, run: Tasks) -> dict:
     """First ten returns with the prior after so many tasks, from exact policies and from the learner's own."""
     default = settings["default"]
     schedule = schedule_of(settings, default["schedule"])
@@ -97,13 +94,12 @@ def _online(settings: Mapping, run: Run) -> dict:
     for n_tasks in settings["online_tasks"]:
         exact = exact_prior(run.training[:n_tasks], default["alpha0"])
         for source, prior in (("exact", exact), ("learnt", own[n_tasks])):
-            returns = mean_returns(run.testing, _guided(prior, default), schedule)
-            found[f"{source}_{n_tasks}"] = float(returns[:10].mean())
-    plain = mean_returns(run.testing, lambda p: None, schedule)
+            found[f"{source}_{n_tasks}"] = float(_mean_returns(run, prior, default, schedule)[:10].mean())
+    plain = _mean_returns(run, None, default, schedule)
     return {"first_ten": found, "plain": float(plain[:10].mean()), "same": _same_bits(settings, run)}
 
 
-def online_priors(run: Run, settings: Mapping, schedule: Schedule) -> list[ActionPrior]:
+def online_priors(run: Tasks, settings: Mapping, schedule: Schedule) -> list[ActionPrior]:
     """Priors after 0, 1, 2 … training tasks, each learnt with the prior so far, each policy the learner's own.
 
     A learnt policy is known in states where some action has been found to lead to the goal (Q > 0).
@@ -111,16 +107,14 @@ def online_priors(run: Run, settings: Mapping, schedule: Schedule) -> list[Actio
     default = settings["default"]
     prior = ActionPrior(4, default["alpha0"])
     after = [ActionPrior.merged([prior])]
-    states = np.arange(run.world.n_states)
     for problem in run.training[: max(settings["online_tasks"])]:
-        rows = rows_of(problem, prior, default["form"], default["ties"])
-        q = learn_task(problem, rows, schedule)[1].q
-        prior.update(states, learnt_best_actions(q))
+        q = learn_task(problem, rows_of(problem, prior, default["form"], default["ties"]), schedule)[1].q
+        prior.update(np.arange(len(q)), learnt_best_actions(q))
         after.append(ActionPrior.merged([prior]))
     return after
 
 
-def _same_bits(settings: Mapping, run: Run) -> bool:
+def _same_bits(settings: Mapping, run: Tasks) -> bool:
     """Whether ε-QSAP with a prior that has seen nothing is Q-learning to the last bit, curve and values."""
     default = settings["default"]
     schedule = schedule_of(settings, default["schedule"])

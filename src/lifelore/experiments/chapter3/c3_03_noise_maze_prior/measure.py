@@ -22,10 +22,10 @@ def _table(results: Sequence[Mapping]) -> ResultsTable:
 def _compare(table: ResultsTable, grid: Grid, cell: Mapping) -> dict[str, Estimate]:
     """First returns as differences and episodes to 80 % as ratios, paired by run, in a cell of the grid."""
     compared = {}
-    for one, other in PAIRS:
-        pair = grid.where(one, cell), grid.where(other, cell)
-        compared[f"first_{one}_minus_{other}"] = table.difference("first", *pair)
-        compared[f"to_80_ratio_{one}_to_{other}"] = table.ratio("to_80", *pair)
+    for ours, theirs in PAIRS:
+        pair = grid.where(ours, cell), grid.where(theirs, cell)
+        compared[f"first_{ours}_minus_{theirs}"] = table.difference("first", *pair)
+        compared[f"to_80_ratio_{ours}_to_{theirs}"] = table.ratio("to_80", *pair)
     return compared
 
 

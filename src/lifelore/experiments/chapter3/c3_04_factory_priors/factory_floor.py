@@ -1,33 +1,23 @@
 """A prior over the cells of a factory, drawn on its points and routes in the colours of Figure 3.6."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.domains.factory.factory import PROCURE, Factory
 from lifelore.domains.factory.picture import ASSEMBLE_COLOUR, EXPRESS_COLOUR, PROCURE_COLOUR
 from lifelore.figures.prior_arrows import draw_prior
-from lifelore.figures.style import INK
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import INK, Axes
 
 
 def draw_factory_prior(
-    axes: "Axes", factory: Factory, probs: Sequence[Sequence[float] | None], components: Sequence[int]
+    axes: Axes, factory: Factory, probs: Sequence[Sequence[float] | None], components: Sequence[int]
 ) -> None:
     """Draw a prior over the cells of one configuration.
 
-    Parameters
-    ----------
-    axes : matplotlib axes
-    factory : Factory
-    probs : (n_cells,) of (n_actions,) floats, or None
-        None where the prior has no counts: such cells are shaded.
-    components : sequence of int
-        The task's; its points are drawn in full colour, the others pale. A dot on a point grows with the mass of
-        the use that belongs there.
+    `probs` has six numbers for each cell, or None where the prior has no counts: such cells are shaded. Points of
+    the task's `components` are drawn in full colour, the others pale. A dot on a point grows with the mass of the
+    use that belongs there.
     """
     counted = np.array([row is not None for row in probs])
     mass = np.array([row if row is not None else [0.0] * 6 for row in probs])
@@ -43,7 +33,7 @@ def draw_factory_prior(
             axes.scatter(column, row, s=area, color=INK, linewidths=0, zorder=4)
 
 
-def _fill(axes: "Axes", factory: Factory, cell: int, colour: tuple[int, int, int], alpha: float) -> None:
+def _fill(axes: Axes, factory: Factory, cell: int, colour: tuple[int, int, int], alpha: float) -> None:
     from matplotlib.patches import Rectangle
 
     row, column = factory.floor.cells[cell]

@@ -1,50 +1,53 @@
 """Figure of claim C3.4: learning with each prior, the invariances that the learnt prior has, and the grid."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.c3_04_factory_priors.factory_floor import draw_factory_prior
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE
-from lifelore.experiments.chapter3.choice_grid import draw_choice_grid
-from lifelore.experiments.chapter3.factory_learning import ENCODINGS, LEARNT, PLAIN
-from lifelore.experiments.chapter3.reward_curves import curve_edges, schedule_in_words
+from lifelore.experiments.chapter3.factory.learning import ENCODINGS, LEARNT, PLAIN
+from lifelore.experiments.chapter3.figures.choice_grid import RATIO, draw_choice_grid
+from lifelore.experiments.chapter3.figures.reward_curves import curve_edges
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words
 from lifelore.experiments.engine.curve_blocks import block_centres
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure, width_of
+from lifelore.figures.style import (
+    GREY,
+    LIGHT,
+    Axes,
+    Figure,
+    colour_of,
+    house_style,
+    new_figure,
+    two_rows,
+    width_of,
+)
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
-
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(11.6, 9.0)
-        upper, lower = figure.subfigures(2, 1, squeeze=False, height_ratios=[1.0, 0.98], hspace=0.02)[:, 0]
-        curves, raw, procured = upper.subplots(1, 3, width_ratios=[1.2, 0.95, 0.95])
-        masses, grid = lower.subplots(1, 2, width_ratios=[0.8, 1.5])
-        _draw_curves(curves, result)
-        drawn = next(row["drawn"] for row in result["rows"] if "drawn" in row)
-        for axes, name in ((raw, "raw"), (procured, "procured")):
-            draw_factory_prior(axes, factory(), drawn[name], drawn["components"])
-        raw.set_title("The learnt prior, nothing procured")
-        procured.set_title("… and all procured (grey: no counts)")
-        upper.legend(*curves.get_legend_handles_labels(), loc="outside upper left", ncols=4)
-        _draw_masses(masses, result)
-        draw_choice_grid(
-            grid,
-            {**settings, "default": {**settings["default"], "prior": LEARNT}},
-            [row for row in result["rows"] if "loss_ratio" in row and row["prior"] != PLAIN],
-            "loss_ratio",
-            ("prior", "encoding", "alpha0"),
-            lambda prior, encoding, alpha0: f"{encoding or prior}, α⁰ {alpha0:g}",
-            neutral=1.0, spread=8.0, ratio=True, good="low", words="{:.2f}".format,
-        )  # fmt: skip
-        grid.set_title("Loss against optimal in the early episodes, as a ratio to Q-learning's")
-        lower.supxlabel(_caption(settings), fontsize=8, color=GREY)
+    figure = new_figure(11.6, 9.0)
+    upper, lower = two_rows(figure, (1.0, 0.98))
+    curves, raw, procured = upper.subplots(1, 3, width_ratios=[1.2, 0.95, 0.95])
+    masses, grid = lower.subplots(1, 2, width_ratios=[0.8, 1.5])
+    _draw_curves(curves, result)
+    drawn = next(row["drawn"] for row in result["rows"] if "drawn" in row)
+    for axes, name in ((raw, "raw"), (procured, "procured")):
+        draw_factory_prior(axes, factory(), drawn[name], drawn["components"])
+    raw.set_title("The learnt prior, nothing procured")
+    procured.set_title("… and all procured (grey: no counts)")
+    upper.legend(*curves.get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    _draw_masses(masses, result)
+    cells = [row for row in result["rows"] if "loss_ratio" in row and row["prior"] != PLAIN]
+    draw_choice_grid(
+        grid, {**settings, "default": {**settings["default"], "prior": LEARNT}}, cells, "loss_ratio",
+        ("prior", "encoding", "alpha0"), lambda prior, code, alpha0: f"{code or prior}, α⁰ {alpha0:g}",
+        **{**RATIO, "spread": 8.0},
+    )  # fmt: skip
+    grid.set_title("Loss against optimal in the early episodes, as a ratio to Q-learning's")
+    lower.supxlabel(_caption(settings), fontsize=8, color=GREY)
     return figure
 
 
@@ -61,29 +64,19 @@ def _caption(settings: Mapping) -> str:
     )
 
 
-def _draw_curves(axes: "Axes", result: Mapping) -> None:
-    rows = [row for row in result["rows"] if "curve_of" in row]
-    names = [row["encoding"] or ("q-learning" if row["curve_of"] == PLAIN else row["curve_of"]) for row in rows]
-    labels = [
-        f"learnt, {ENCODINGS[name]}" if name in ENCODINGS else name.replace("q-learning", "uniform (Q-learning)")
-        for name in names
-    ]
+def _draw_curves(axes: Axes, result: Mapping) -> None:
+    series, looks = {}, {}
+    for row in (row for row in result["rows"] if "curve_of" in row):
+        name = row["encoding"] or ("q-learning" if row["curve_of"] == PLAIN else row["curve_of"])
+        label = f"learnt, {ENCODINGS[name]}" if name in ENCODINGS else name
+        label = label.replace("q-learning", "uniform (Q-learning)")
+        series[label] = row
+        looks[label] = {"color": colour_of(name), "linewidth": width_of(name), "zorder": 10 - width_of(name)}
     optimal = result["measured"]["optimal_reward"]["value"]
     draw_curves(
-        axes,
-        block_centres(curve_edges(result)),
-        dict(zip(labels, rows, strict=True)),
-        looks={
-            label: {"color": colour_of(name), "linewidth": width_of(name), "zorder": 10 - width_of(name)}
-            for label, name in zip(labels, names, strict=True)
-        },
-        title="Learning curves at the default",
-        xlabel="episode",
-        ylabel="reward of an episode",
-        logarithmic="x",
-        level=(optimal, "optimal"),
-        legend=False,
-    )
+        axes, block_centres(curve_edges(result)), series, looks=looks, title="Learning curves at the default",
+        xlabel="episode", ylabel="reward of an episode", logarithmic="x", level=(optimal, "optimal"), legend=False,
+    )  # fmt: skip
     axes.set_yscale("symlog", linthresh=200, linscale=0.6)
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     axes.xaxis.set_major_formatter("{x:g}")
@@ -91,7 +84,7 @@ def _draw_curves(axes: "Axes", result: Mapping) -> None:
     axes.set_ylim(top=2.5 * optimal)
 
 
-def _draw_masses(axes: "Axes", result: Mapping) -> None:
+def _draw_masses(axes: Axes, result: Mapping) -> None:
     """A line for each invariance, a mark for each prior."""
     found = {(row["mass_on"], row["of"]): row["mass"] for row in result["rows"] if "mass_on" in row}
     names = list(dict.fromkeys(name for name, _ in found))

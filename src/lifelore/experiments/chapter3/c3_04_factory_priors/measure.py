@@ -1,13 +1,14 @@
 """Measures and rows of claim C3.4."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE
-from lifelore.experiments.chapter3.factory_learning import KEYS, LEARNT, PLAIN, grid_of
+from lifelore.experiments.chapter3.factory.learning import KEYS, LEARNT, PLAIN, grid_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.estimates import interval_or_value, share_of
 from lifelore.experiments.engine.results_table import BAND, ResultsTable
@@ -38,9 +39,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     table, grid = _table(results), grid_of(settings, ADVICE)
     reward, optimal = (_column(results, key) for key in ("optimal_reward", "optimal_return"))
     at = {prior: grid.where(prior, grid.default, "prior") for prior in PRIORS}
-    early, last, greedy = (
-        {prior: table.values(number, **at[prior]) for prior in PRIORS} for number in ("early", "last", "greedy")
-    )
+    numbers = ("early", "last", "greedy")
+    early, last, greedy = ({prior: table.values(name, **at[prior]) for prior in PRIORS} for name in numbers)
     measured = {
         "learnt_minus_expert_of_optimal": mean_estimate((early[LEARNT] - early["expert"]) / reward),
         "learnt_minus_uniform": mean_estimate(early[LEARNT] - early[PLAIN]),
@@ -52,10 +52,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     }
     for prior in ("incorrect", PLAIN, LEARNT):
         measured[f"greedy_{prior}_of_optimal"] = ratio_estimate(greedy[prior], optimal)
-    for encoding in settings["encodings"]:
-        for states in ("all", "way"):
-            unseen = [r["unseen"][encoding][states] for r in results]
-            measured[f"unseen_{states}_{encoding}"] = mean_estimate(unseen)
+    for encoding, states in product(settings["encodings"], ("all", "way")):
+        measured[f"unseen_{states}_{encoding}"] = mean_estimate([r["unseen"][encoding][states] for r in results])
     return measured | _invariances(settings, results) | _grid_shares(settings, table, reward)
 
 
@@ -63,10 +61,8 @@ def _invariances(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Est
     """The share of the invariances on which the learnt prior's mass lies on the right side of a uniform one's."""
     right = []
     for name, favoured in INVARIANCES.items():
-        learnt, even = (
-            np.array([r["masses"][prior][name] for r in results])
-            for prior in (settings["default"]["encoding"], PLAIN)
-        )
+        priors = (settings["default"]["encoding"], PLAIN)
+        learnt, even = (np.array([r["masses"][prior][name] for r in results]) for prior in priors)
         low, high = interval_or_value(mean_estimate(learnt - even))
         right.append(low > 0 if favoured else high < 0)
     return {"invariances_learnt": share_of(right)}
@@ -106,12 +102,10 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     shown = [(prior, grid.default) for prior in (PLAIN, *ADVICE)]
     for prior, cell in [*shown, *((LEARNT, {**grid.default, "encoding": e}) for e in settings["encodings"])]:
         where = grid.where(prior, cell, "prior")
-        found.append(
-            {"curve_of": prior, "encoding": where["encoding"], **table.curve("curve", parts=BAND, **where)}
-        )
-    for prior in results[0]["masses"]:
-        for name in INVARIANCES:
-            masses = [r["masses"][prior][name] for r in results if name in r["masses"][prior]]
-            if masses:
-                found.append({"mass_on": name, "of": prior, "mass": mean_estimate(masses).to_dict()})
+        curve = table.curve("curve", parts=BAND, **where)
+        found.append({"curve_of": prior, "encoding": where["encoding"], **curve})
+    for prior, name in product(results[0]["masses"], INVARIANCES):
+        masses = [r["masses"][prior][name] for r in results if name in r["masses"][prior]]
+        if masses:
+            found.append({"mass_on": name, "of": prior, "mass": mean_estimate(masses).to_dict()})
     return found + [{"drawn": r["drawn"]} for r in results if "drawn" in r]

@@ -6,32 +6,14 @@ Thesis: §3.4.3, Figure 3.7.
 from collections.abc import Iterator, Mapping
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.streams import stream
 from lifelore.domains.factory.contexts import state_contexts
 from lifelore.domains.factory.knowledge import expert_actions, incorrect_actions, invariances
-from lifelore.experiments.chapter3.factory_learning import (
-    KEYS,
-    LEARNT,
-    N_ACTIONS,
-    PLAIN,
-    Problem,
-    exact_prior,
-    floor,
-    greedy_return,
-    grid_of,
-    hand_made_prior,
-    hand_made_rows,
-    learn_task,
-    learnt_rows,
-    problem_of,
-    solved,
-    tasks_of,
-    with_pseudo_count,
-)
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.factory import learning
+from lifelore.experiments.chapter3.factory.learning import KEYS, LEARNT, N_ACTIONS, PLAIN, Problem, contexts_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.experiments.engine.grid import run_grid
 
@@ -41,19 +23,14 @@ DRAWN = 0
 """The run whose learnt prior the figure shows."""
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """One cell a run."""
-    return [{"run": run} for run in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: training tasks, and one test task learnt with every prior in every cell of the grid."""
     run, k, default = cell["run"], settings["components"], settings["default"]
-    training = tasks_of(settings, seed, k, run, settings["training_tasks"])
-    components = floor(settings["discount"]).draw_components(stream(seed, "factory", k, run, "test"), k)
-    problem = problem_of(settings, components, (seed, "factory", k, run, "test"))
+    training = learning.tasks_of(settings, seed, k, run, settings["training_tasks"])
+    components = learning.floor(settings["discount"]).draw_components(stream(seed, "factory", k, run, "test"), k)
+    problem = learning.problem_of(settings, components, (seed, "factory", k, run, "test"))
     priors = _priors(settings, training, problem)
-    at_default = {name: with_pseudo_count(prior, default["alpha0"]) for name, prior in priors.items()}
+    at_default = {name: learning.with_pseudo_count(prior, default["alpha0"]) for name, prior in priors.items()}
     found = {
         **cell,
         "optimal_return": problem.solved.optimal_return,
@@ -70,10 +47,10 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem) -> dict[str, ActionPrior]:
     """Learnt priors by encoding, and hand-made ones, which count as much as the training tasks."""
-    known = [solved(components, settings["discount"]) for components in training]
-    found = {encoding: exact_prior(known, encoding, 1.0) for encoding in settings["encodings"]}
+    known = [learning.solved(components, settings["discount"]) for components in training]
+    found = {encoding: learning.exact_prior(known, encoding, 1.0) for encoding in settings["encodings"]}
     for name, advice_of in ADVICE.items():
-        found[name] = hand_made_prior(advice_of(problem.solved.task), len(training), 1.0)
+        found[name] = learning.hand_made_prior(advice_of(problem.solved.task), len(training), 1.0)
     return found
 
 
@@ -84,50 +61,40 @@ def _methods(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPri
     def numbers(name: str, cell: Mapping) -> dict:
         rows = None
         if name != PLAIN:
-            prior = with_pseudo_count(priors[cell["encoding"] or name], cell["alpha0"])
-            rows = (
-                hand_made_rows(problem, prior, cell["ties"])
-                if name in ADVICE
-                else learnt_rows(problem, prior, cell["encoding"], cell["ties"])
-            )
-        curve, learner = learn_task(problem, rows, schedule_of(settings, cell["schedule"]))
+            prior = learning.with_pseudo_count(priors[cell["encoding"] or name], cell["alpha0"])
+            rows = learning.rows_of(problem, prior, cell["encoding"], cell["ties"])
+        curve, learner = learning.learn_task(problem, rows, schedule_of(settings, cell["schedule"]))
         rewards = curve.rewards
         shown = all(cell[key] in (None, default[key]) for key in KEYS[1:])
         return {
             "first": float(rewards[0]),
             "early": float(rewards[:early].mean()),
             "last": float(rewards[-last:].mean()),
-            "greedy": greedy_return(problem, learner.q),
+            "greedy": learning.greedy_return(problem, learner.q),
             **({"curve": block_means(rewards)} if shown else {}),
         }
 
-    yield from run_grid(grid_of(settings, ADVICE), "prior", PLAIN, (*ADVICE, LEARNT), numbers)
-
-
-def _contexts(problem: Problem, name: str) -> NDArray[np.int64]:
-    if name in ADVICE:
-        return np.arange(problem.tables.n_states)
-    return state_contexts(problem.solved.task, name)
+    yield from run_grid(learning.grid_of(settings, ADVICE), "prior", PLAIN, (*ADVICE, LEARNT), numbers)
 
 
 def _masses(problem: Problem, priors: Mapping[str, ActionPrior]) -> dict[str, dict]:
     """The mass of each prior on each invariance of §3.4.2, in all states and in those it has counts of."""
     held = invariances(problem.solved.task)
     probs = np.full((problem.tables.n_states, N_ACTIONS), 1 / N_ACTIONS)
-    found = {"uniform": {name: one.mass(probs) for name, one in held.items()}}
+    found = {"uniform": {name: invariance.mass(probs) for name, invariance in held.items()}}
     for make, prior in priors.items():
-        contexts = _contexts(problem, make)
+        contexts = contexts_of(problem, None if make in ADVICE else make)
         probs, seen = prior.probs(contexts), ~prior.unseen(contexts)
-        found[make] = {name: one.mass(probs) for name, one in held.items()}
+        found[make] = {name: invariance.mass(probs) for name, invariance in held.items()}
         if make not in ADVICE:
-            among = {name: one._replace(states=one.states & seen).mass(probs) for name, one in held.items()}
+            among = {name: i._replace(states=i.states & seen).mass(probs) for name, i in held.items()}
             found[f"{make}, seen"] = {name: mass for name, mass in among.items() if np.isfinite(mass)}
     return found
 
 
 def _unseen(problem: Problem, prior: ActionPrior, encoding: str) -> dict[str, float]:
     """Shares without counts: of all states in which something is left to do, and of those on an optimal way."""
-    unseen = prior.unseen(state_contexts(problem.solved.task, encoding))
+    unseen = prior.unseen(contexts_of(problem, encoding))
     acting = ~problem.solved.task.completed
     return {"all": float(unseen[acting].mean()), "way": float(unseen[problem.solved.way].mean())}
 

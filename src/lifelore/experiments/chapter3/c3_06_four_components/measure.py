@@ -3,18 +3,18 @@
 from collections.abc import Mapping, Sequence
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter3 import factory_gains
-from lifelore.experiments.chapter3.factory_gains import Series, rows
+from lifelore.experiments.chapter3.c3_05_one_component import measure as one_component
+from lifelore.experiments.chapter3.c3_05_one_component.measure import Series, rows
 
 __all__ = ["measure", "rows"]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """The measures of C3.5 for four components, and the difference from one component."""
-    many, one = (Series.of(results, k) for k in settings["components"])
+    many, single = (Series.of(results, k) for k in settings["components"])
     found = {}
     for encoding in settings["encodings"]:
-        closed, closed_one = (series.closed(f"exact {encoding}", settings["late"]) for series in (many, one))
-        found[f"closed_minus_one_component_{encoding}"] = mean_estimate(closed - closed_one)
+        closed, closed_single = (series.closed(f"exact {encoding}", settings["late"]) for series in (many, single))
+        found[f"closed_minus_one_component_{encoding}"] = mean_estimate(closed - closed_single)
     default = found[f"closed_minus_one_component_{settings['default']['encoding']}"]
-    return {**factory_gains.measure(settings, results), "closed_minus_one_component": default, **found}
+    return {**one_component.measure(settings, results), "closed_minus_one_component": default, **found}

@@ -6,14 +6,14 @@ Thesis: §3.4.3, Figure 3.9.
 from collections.abc import Mapping
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3 import factory_series
-from lifelore.experiments.chapter3.factory_series import cells, run_cell
+from lifelore.experiments.chapter3.c3_05_one_component import run as one_component
+from lifelore.experiments.chapter3.c3_05_one_component.run import cells, run_cell
 
 __all__ = ["cells", "check", "run_cell"]
 
 
 def check(settings: Mapping) -> None:
     """Refuse settings without one component to compare with."""
-    factory_series.check(settings)
+    one_component.check(settings)
     if settings["components"][1] != 1:
         raise InputError(f"components must be a number and 1 to compare it with, got {settings['components']}")

@@ -1,15 +1,12 @@
 """Figure of claim C3.7: rewards with priors over features, over states and without a prior; the grid."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.chapter3.figures.choice_grid import other_choice, place_of_default
+from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import GREY, VERMILION, colour_of, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, VERMILION, Axes, Figure, colour_of, house_style, new_figure, two_rows
 
 LABELS = {
     "uniform": "no prior",
@@ -24,37 +21,32 @@ BANDED = ("uniform", "state", "phi3")
 """Methods whose deviation is shaded; six bands would hide one another."""
 
 
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(10.6, 8.4)
-        upper, lower = two_rows(figure, (1.0, 0.82))
-        panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
-        for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            draw_reward_curves(axes, result, schedule, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
-        panels[0].set_ylabel("reward of an episode")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
-        _draw_grid(lower.subplots(), result)
-        lower.supxlabel(
-            f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
-            "runs, of three methods. Bold: the 95 % interval over runs excludes 0. Framed, at φ3: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.6, 8.4)
+    upper, lower = two_rows(figure, (1.0, 0.82))
+    draw_reward_curves(upper, result, COLOURS, LABELS, banded=BANDED, dashed=("phi2",))
+    _draw_grid(lower.subplots(), result)
+    lower.supxlabel(
+        f"{settings['runs']} runs of {settings['test_tasks']} tasks. Shaded: one standard deviation between "
+        "runs, of three methods. Bold: the 95 % interval over runs excludes 0. Framed, at φ3: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
-    default, methods = result["settings"]["default"], list(LABELS)[1:]
+def _draw_grid(axes: Axes, result: Mapping) -> None:
+    settings, methods = result["settings"], list(LABELS)[1:]
     cells = [row for row in result["rows"] if "closed_phi1" in row]
-    is_default = [all(row[key] == value for key, value in default.items()) for row in cells]
     draw_estimate_grid(
         axes,
         [[row[f"closed_{method}"] for method in methods] for row in cells],
-        [_name(row, default) for row in cells],
+        [_name(row, settings["default"]) for row in cells],
         [LABELS[method] for method in methods],
         neutral=0.0, scale=100.0, spread=100.0, words="{:.0f}".format,
-        outlined=(is_default.index(True), methods.index("phi3")),
+        outlined=(place_of_default(cells, settings), methods.index("phi3")),
     )  # fmt: skip
     axes.set_title("Distance from no prior to the optimum that is closed, all episodes (%)")
 
@@ -65,5 +57,4 @@ def _name(row: Mapping, default: Mapping) -> str:
         "encoding": "states coded '{}'", "alpha0": "α⁰ {:g}", "max_steps": "cap of {:,} steps",
         "policies": "from {} policies",
     }  # fmt: skip
-    changed = (words.format(row[key]) for key, words in others.items() if row[key] != default[key])
-    return next(changed, f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}")
+    return other_choice(row, default, others) or f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}"

@@ -32,11 +32,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         mean = {method: float(table.values("all", **grid.where(method, cell)).mean()) for method in METHODS}
         above.append(min(mean[phi] for phi in PHI) > mean[STATE] > mean[PLAIN])
         best.append(max(mean[phi] for phi in PHI) == mean["phi3"])
-    return {
-        **measured,
-        "grid_features_above_state_above_uniform": share_of(above),
-        "grid_phi3_best": share_of(best),
-    }
+    shares = {"grid_features_above_state_above_uniform": share_of(above), "grid_phi3_best": share_of(best)}
+    return measured | shares
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

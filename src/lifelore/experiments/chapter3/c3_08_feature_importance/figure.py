@@ -1,48 +1,41 @@
 """Figure of claim C3.8: how much entropy each feature saves in each set, and over the choices left open."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
+from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.experiments.chapter3.figures.choice_grid import place_of_default
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, LIGHT, colour_of, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, colour_of, house_style, new_figure
 
 OVER = {"all": "all states", "way": "states of an optimal way"}
 ACTIONS = {"tied": "all best actions", "first": "the first best action"}
 
 
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    with house_style():
-        figure = new_figure(10.2, 7.6)
-        upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
-        cells, default = result["rows"], result["settings"]["default"]
-        at = [all(row[key] == value for key, value in default.items()) for row in cells].index(True)
-        _draw_bars(upper, cells[at]["increase"])
-        _draw_grid(lower, cells, at)
-        for axes in (upper, lower):
-            axes.axvline(3.5, color=GREY, linewidth=0.8)
-        figure.supxlabel(
-            f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
-            "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.2, 7.6)
+    upper, lower = figure.subplots(2, 1, height_ratios=[1.0, 0.9])
+    cells, at = result["rows"], place_of_default(result["rows"], result["settings"])
+    _draw_bars(upper, cells[at]["increase"])
+    _draw_grid(lower, cells, at)
+    for axes in (upper, lower):
+        axes.axvline(3.5, color=GREY, linewidth=0.8)
+    figure.supxlabel(
+        f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
+        "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_bars(axes: "Axes", increase: Mapping[str, Mapping]) -> None:
-    groups = {
-        phi.replace("phi", "φ"): [of_feature.get(name) for name in FEATURES]
-        for phi, of_feature in increase.items()
-    }
-    colours = {phi.replace("phi", "φ"): colour_of(phi) for phi in increase}
+def _draw_bars(axes: Axes, increase: Mapping[str, Mapping]) -> None:
+    names = {phi: phi.replace("phi", "φ") for phi in increase}
+    groups = {names[phi]: [of_feature.get(name) for name in FEATURES] for phi, of_feature in increase.items()}
+    colours = {name: colour_of(phi) for phi, name in names.items()}
     draw_interval_bars(
         axes, FEATURES, groups, colours=colours, horizontal=False, words=None,
         title="Importance of each feature in the sets that contain it", label="Δ, bits lost without the feature",
@@ -53,7 +46,7 @@ def _draw_bars(axes: "Axes", increase: Mapping[str, Mapping]) -> None:
     axes.legend(loc="upper right", ncols=4)
 
 
-def _draw_grid(axes: "Axes", cells: list[Mapping], at: int) -> None:
+def _draw_grid(axes: Axes, cells: list[Mapping], at: int) -> None:
     values = [[1000 * row["increase"]["phi4"][f]["value"] for f in FEATURES] for row in cells]
     selected = [[row["selected"][f] >= 0.95 for f in FEATURES] for row in cells]
     sides = [f"{row['policies']} policies, {OVER[row['over']]},\n{ACTIONS[row['actions']]}" for row in cells]

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_08_feature_importance.run import KEYS, grid_of
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, DIAGONALS, ITEMS, OWN_CELL
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, DIAGONALS, ITEMS, OWN_CELL
 from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -31,11 +31,8 @@ def gaps(runs: Runs) -> dict[str, Estimate]:
     found = {}
     for name, (ours, theirs) in pairs.items():
         others = [feature for feature in PHI[theirs] if feature not in CARDINALS]
-        least, largest = (
-            _increases(runs, ours, CARDINALS).min(axis=0),
-            _increases(runs, theirs, others).max(axis=0),
-        )
-        found[f"gap_{name}"] = mean_estimate(least - largest)
+        largest = _increases(runs, theirs, others).max(axis=0)
+        found[f"gap_{name}"] = mean_estimate(_increases(runs, ours, CARDINALS).min(axis=0) - largest)
     return found
 
 
@@ -44,15 +41,12 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     grid = grid_of(settings)
     runs = _runs(results, grid.default)
     least = _increases(runs, "phi4", CARDINALS).min(axis=0)
-    groups = {"diagonal": DIAGONALS, "own_cell": (OWN_CELL,), "items": (ITEMS,)}
+    groups = (("diagonal", DIAGONALS), ("own_cell", (OWN_CELL,)), ("items", (ITEMS,)))
     chosen = [set(numbers["chosen"]["phi4"]) == set(CARDINALS) for numbers in runs]
     consistent = [all(is_above(gap, 0.0) for gap in gaps(_runs(results, c)).values()) for c in grid.cells]
     return {
         **{f"entropy_{phi}": mean_estimate([numbers["entropy"][phi] for numbers in runs]) for phi in PHI},
-        **{
-            f"{name}_share_phi4": ratio_estimate(_increases(runs, "phi4", features).max(axis=0), least)
-            for name, features in groups.items()
-        },
+        **{f"{n}_share_phi4": ratio_estimate(_increases(runs, "phi4", g).max(axis=0), least) for n, g in groups},
         "exactly_four_selected": exact_share(chosen),
         **gaps(runs),
         "grid_consistent": share_of(consistent),
@@ -68,9 +62,8 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             phi: {name: mean_estimate(_increases(runs, phi, [name])[0]).to_dict() for name in names}
             for phi, names in PHI.items()
         }
-        selected = {
-            name: float(np.mean([name in numbers["chosen"]["phi4"] for numbers in runs])) for name in PHI["phi4"]
-        }
+        chosen = [numbers["chosen"]["phi4"] for numbers in runs]
+        selected = {name: float(np.mean([name in names for names in chosen])) for name in PHI["phi4"]}
         own_gaps = {name: gap.to_dict() for name, gap in gaps(runs).items()}
         found.append({**cell, "increase": increase, "selected": selected, **own_gaps})
     return found

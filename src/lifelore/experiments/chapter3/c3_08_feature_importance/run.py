@@ -15,13 +15,8 @@ from lifelore.action.features.counted_features import CountedFeatures
 from lifelore.action.features.feature_selection import independent_features
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.domains.factory.contexts import PHI
-from lifelore.experiments.chapter3.modified_factory_tasks import (
-    FULL_SET,
-    N_ACTIONS,
-    Problem,
-    contexts_of,
-    problem_of,
-)
+from lifelore.experiments.chapter3.factory import modified_tasks
+from lifelore.experiments.chapter3.factory.modified_tasks import FULL_SET, Problem
 from lifelore.experiments.engine.grid import Grid
 
 KEYS = ("policies", "over", "actions")
@@ -33,21 +28,16 @@ def grid_of(settings: Mapping) -> Grid:
     return Grid.crossed(settings, KEYS, {key: key for key in KEYS})
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: Δ of every feature in every set, in every cell of the grid."""
     return {**cell, "found": list(_found(settings, (seed, "C3.8", cell["run"])))}
 
 
 def _found(settings: Mapping, own: tuple) -> Iterator[dict]:
-    priors = {key: ActionPrior(N_ACTIONS) for key in product(settings["over"], settings["actions"])}
+    priors = {key: ActionPrior(modified_tasks.N_ACTIONS) for key in product(settings["over"], settings["actions"])}
     for i in range(max(settings["policies"])):
-        problem = problem_of(settings, (*own, "training", i))
-        codes = contexts_of(problem, "phi4")
+        problem = modified_tasks.problem_of(settings, (*own, "training", i))
+        codes = modified_tasks.contexts_of(problem, "phi4")
         for (over, actions), prior in priors.items():
             states = counted_states(problem, over)
             prior.update(codes[states], counted_actions(problem.best[states], actions))

@@ -1,50 +1,43 @@
 """Figure of claim C3.9: first and last episode of each task, with selected features, with all ten and without."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.chapter3.figures.choice_grid import other_choice, place_of_default
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import BLUE, GREY, PURPLE, house_style, new_figure, two_rows
+from lifelore.figures.style import BLUE, GREY, PURPLE, Axes, Figure, house_style, new_figure, two_rows
 
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
-
-METHODS = {
-    "uniform": ("no prior", GREY),
-    "full": ("all ten features", PURPLE),
-    "selected": ("selected features", BLUE),
-}
+METHODS = {"uniform": ("no prior", GREY), "full": ("all ten features", PURPLE)}
+METHODS |= {"selected": ("selected features", BLUE)}
 """Label and colour by method."""
 DASHES = {"first": "-", "last": (0, (4, 2))}
 
 
-def draw(result: Mapping) -> "Figure":
+@house_style()
+def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(11.0, 6.8)
-        upper, lower = two_rows(figure, (1.0, 0.62))
-        panels = upper.subplots(1, len(settings["sources"]), squeeze=False, sharey=True)[0]
-        for axes, source in zip(panels, settings["sources"], strict=True):
-            _draw_source(axes, result, source)
-        panels[0].set_ylabel("reward of an episode, thousands")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
-        for axes, part in zip(lower.subplots(1, 2, sharey=True), DASHES, strict=True):
-            _draw_grid(axes, result, part)
-        lower.supxlabel(
-            f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
-            f"{settings['episodes']}. Means over the tasks after the first; framed: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(11.0, 6.8)
+    upper, lower = two_rows(figure, (1.0, 0.62))
+    panels = upper.subplots(1, len(settings["sources"]), squeeze=False, sharey=True)[0]
+    for axes, source in zip(panels, settings["sources"], strict=True):
+        _draw_source(axes, result, source)
+    panels[0].set_ylabel("reward of an episode, thousands")
+    upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
+    for axes, part in zip(lower.subplots(1, 2, sharey=True), DASHES, strict=True):
+        _draw_grid(axes, result, part)
+    lower.supxlabel(
+        f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
+        f"{settings['episodes']}. Means over the tasks after the first; framed: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_source(axes: "Axes", result: Mapping, source: str) -> None:
+def _draw_source(axes: Axes, result: Mapping, source: str) -> None:
     series, looks = {}, {}
     for row in result["rows"]:
         if row.get("of_source") == source:
@@ -58,10 +51,9 @@ def _draw_source(axes: "Axes", result: Mapping, source: str) -> None:
     )  # fmt: skip
 
 
-def _draw_grid(axes: "Axes", result: Mapping, part: str) -> None:
+def _draw_grid(axes: Axes, result: Mapping, part: str) -> None:
     default = result["settings"]["default"]
     cells = [row for row in result["rows"] if "of_source" not in row]
-    is_default = [all(row[key] == value for key, value in default.items()) for row in cells]
     values = np.array([[row[f"{part}_{method}"] for method in METHODS] for row in cells]) / 1000
     # Shaded by the share of the row's own worst value: rows differ by the cap and ε.
     worst = np.maximum(np.abs(values).max(axis=1, keepdims=True), 1e-9)
@@ -69,17 +61,14 @@ def _draw_grid(axes: "Axes", result: Mapping, part: str) -> None:
     draw_heat_grid(
         axes, 1 - np.abs(values) / worst, np.zeros(values.shape, bool), [_name(row, default) for row in cells],
         [label for label, _ in METHODS.values()], neutral=0.0, spread=1.0, words=lambda _: next(words),
-        outlined=(is_default.index(True), 2),
+        outlined=(place_of_default(cells, result["settings"]), 2),
     )  # fmt: skip
     axes.set_title(f"Reward of the {part} episode, thousands")
 
 
 def _name(row: Mapping, default: Mapping) -> str:
     """The choice in which a row of the grid differs from the default."""
-    words = {
-        "source": f"policies {row['source']}",
-        "schedule": schedule_in_brief(row["schedule"]),
-        "ties": f"ties {row['ties']}",
-        "max_steps": f"cap of {row['max_steps']:,} steps",
-    }
-    return next((words[key] for key in words if row[key] != default[key]), f"default: {words['source']}")
+    words = {"source": "policies {}", "ties": "ties {}", "max_steps": "cap of {:,} steps"}
+    if row["schedule"] != default["schedule"]:
+        return schedule_in_brief(row["schedule"])
+    return other_choice(row, default, words) or f"default: policies {row['source']}"

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter3.c3_09_online_features.run import ASKED, KEYS, METHODS, grid_of
-from lifelore.experiments.chapter3.online_selection import FULL, SELECTED, UNIFORM
+from lifelore.experiments.chapter3.factory.online_selection import FULL, SELECTED, UNIFORM
 from lifelore.experiments.engine.estimates import share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 

@@ -5,18 +5,11 @@ Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.13.
 
 from collections.abc import Mapping
 
-import numpy as np
-
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import Problem, learn_problem, problem_of
-from lifelore.experiments.chapter3.online_selection import (
-    FULL,
-    SELECTED,
-    UNIFORM,
-    Counting,
-    OnlineAgent,
-)
+from lifelore.experiments.chapter3.factory import online_selection
+from lifelore.experiments.chapter3.factory.modified_tasks import learn_problem, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import FULL, SELECTED, UNIFORM, Counting
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid
 
 METHODS = (UNIFORM, FULL, SELECTED)
@@ -38,46 +31,31 @@ def grid_of(settings: Mapping) -> Grid:
     return Grid.crossed(settings, KEYS, {}, singly, {UNIFORM: READ_WITHOUT_PRIOR})
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: rewards of first and last episodes, of every method in every cell of the grid."""
     grid = grid_of(settings)
-    learners = [_Series(settings, method, choice) for method in METHODS for choice in grid.cells_of(method)]
+    found = [{"method": method, **choice} for method in METHODS for choice in grid.cells_of(method)]
+    agents = [_agent(settings, series) for series in found]
+    for series in found:
+        series |= {"first": [], "last": [], "n_features": []}
     optimal = []
     for i in range(settings["tasks"]):
         problem = problem_of(settings, (seed, "C3.9", cell["run"], i))
         optimal.append(problem.optimal)
-        for learner in learners:
-            learner.learn(problem)
-    return {**cell, "optimal": optimal, "found": [learner.found() for learner in learners]}
+        for series, agent in zip(found, agents, strict=True):
+            schedule = schedule_of({**settings, "max_steps": series["max_steps"]}, series["schedule"])
+            curve = agent.learn(problem, schedule) if agent else learn_problem(problem, None, schedule)[0]
+            series["first"].append(float(curve.rewards[0]))
+            series["last"].append(float(curve.rewards[-1]))
+            series["n_features"].append(len(agent.chosen) if agent else 0)
+    return {**cell, "optimal": optimal, "found": found}
 
 
-class _Series:
-    """A method that goes from task to task in a cell of the grid."""
-
-    def __init__(self, settings: Mapping, method: str, choice: Mapping) -> None:
-        self.labels = {"method": method, **choice}
-        self.schedule = schedule_of({**settings, "max_steps": choice["max_steps"]}, choice["schedule"])
-        self.agent = None
-        if method != UNIFORM:
-            counting = SOURCES[choice["source"]]
-            self.agent = OnlineAgent(method == SELECTED, counting, settings["alpha0"], choice["ties"])
-        self.rewards: list[np.ndarray] = []
-        self.n_features: list[int] = []
-
-    def learn(self, problem: Problem) -> None:
-        agent = self.agent
-        curve = agent.learn(problem, self.schedule) if agent else learn_problem(problem, None, self.schedule)[0]
-        self.rewards.append(curve.rewards[[0, -1]])
-        self.n_features.append(len(agent.chosen) if agent else 0)
-
-    def found(self) -> dict:
-        first, last = np.array(self.rewards).T
-        return {**self.labels, "first": first.tolist(), "last": last.tolist(), "n_features": self.n_features}
+def _agent(settings: Mapping, series: Mapping) -> online_selection.OnlineAgent | None:
+    if series["method"] == UNIFORM:
+        return None
+    counting, selects = SOURCES[series["source"]], series["method"] == SELECTED
+    return online_selection.OnlineAgent(selects, counting, settings["alpha0"], series["ties"])
 
 
 def check(settings: Mapping) -> None:

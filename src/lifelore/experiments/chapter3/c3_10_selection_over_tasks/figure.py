@@ -1,15 +1,11 @@
 """Figure of claim C3.10: the share of runs in which each feature is chosen, after each task."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.modified_factory_tasks import FEATURES
-from lifelore.figures.style import BLUE, GREY, PAPER, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.figures.style import BLUE, GREY, PAPER, Axes, Figure, house_style, new_figure
 
 COLUMNS = 4
 TITLES = {
@@ -21,29 +17,29 @@ TITLES = {
 }
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """A panel for each series, a row for each feature."""
     series, settings = result["rows"], result["settings"]
     n_rows = -(-len(series) // COLUMNS)
-    with house_style():
-        figure = new_figure(12.6, 0.7 + 2.5 * n_rows)
-        panels = figure.subplots(n_rows, COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
-        images = [_draw_series(axes, row) for axes, row in zip(panels, series, strict=False)]
-        for axes in panels[len(series) :]:
-            axes.set_axis_off()
-        for axes in panels[max(0, len(series) - COLUMNS) : len(series)]:
-            axes.set_xlabel("tasks")
-            axes.tick_params(labelbottom=True)
-        figure.colorbar(images[0], ax=list(panels), shrink=0.5, pad=0.01, label="share of runs")
-        figure.supxlabel(
-            f"{settings['runs']} runs. Learnt: {settings['episodes']} episodes a task, longer: "
-            f"{settings['long_episodes']}. Above the line: N, W, E and S, the features of φ2.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(12.6, 0.7 + 2.5 * n_rows)
+    panels = figure.subplots(n_rows, COLUMNS, squeeze=False, sharex=True, sharey=True).ravel()
+    images = [_draw_series(axes, row) for axes, row in zip(panels, series, strict=False)]
+    for axes in panels[len(series) :]:
+        axes.set_axis_off()
+    for axes in panels[max(0, len(series) - COLUMNS) : len(series)]:
+        axes.set_xlabel("tasks")
+        axes.tick_params(labelbottom=True)
+    figure.colorbar(images[0], ax=list(panels), shrink=0.5, pad=0.01, label="share of runs")
+    figure.supxlabel(
+        f"{settings['runs']} runs. Learnt: {settings['episodes']} episodes a task, longer: "
+        f"{settings['long_episodes']}. Above the line: N, W, E and S, the features of φ2.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_series(axes: "Axes", row: Mapping):
+def _draw_series(axes: Axes, row: Mapping):
     from matplotlib.colors import LinearSegmentedColormap
 
     shares = np.array([row["shares"][feature] for feature in FEATURES])

@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, mask_of
-from lifelore.experiments.chapter3.modified_factory_tasks import CARDINALS, FULL_SET
+from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
 from lifelore.experiments.engine.estimates import exact_share
 
 GOAL = mask_of(CARDINALS)
@@ -25,9 +25,7 @@ def shares(masks: np.ndarray) -> np.ndarray:
 
 def settled_after(masks: np.ndarray) -> list[int]:
     """Number of tasks of each run after which the set is φ2 to the end; n_tasks + 1 where it never is."""
-    others = [np.flatnonzero(run != GOAL) for run in masks]
-    last = [int(of_run[-1]) + 1 if of_run.size else 0 for of_run in others]
-    return [1 + n for n in last]
+    return [1 + max((np.flatnonzero(run != GOAL) + 1).tolist(), default=0) for run in masks]
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -36,9 +34,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for series in SERIES:
         masks, name = _masks(results, series), series.replace(",", "").replace(" ", "_")
         of_feature = dict(zip(FULL_SET.names, shares(masks)[:, -1], strict=True))
-        others = [feature for feature in FULL_SET.names if feature not in CARDINALS]
         four = [feature for feature in FULL_SET.names if feature in CARDINALS]
-        least, largest = min(four, key=of_feature.__getitem__), max(others, key=of_feature.__getitem__)
+        largest = max((f for f in FULL_SET.names if f not in CARDINALS), key=of_feature.__getitem__)
+        least = min(four, key=of_feature.__getitem__)
         for group, feature in (("least_share_of_four", least), ("largest_share_of_others", largest)):
             chosen = masks[:, -1] >> FULL_SET.names.index(feature) & 1
             measured[f"{name}_{group}"] = exact_share(chosen.tolist())

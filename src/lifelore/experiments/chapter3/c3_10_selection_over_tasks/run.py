@@ -6,9 +6,9 @@ Thesis: §3.3.3, Alg. 6, §3.4.6, Figure 3.14.
 from collections.abc import Mapping
 from typing import NamedTuple
 
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import FULL_SET, Problem, problem_of
-from lifelore.experiments.chapter3.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.factory.modified_tasks import FULL_SET, problem_of
+from lifelore.experiments.chapter3.factory.online_selection import Counting, OnlineAgent
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 
 
 class Series(NamedTuple):
@@ -35,11 +35,6 @@ SERIES = {
 """The conditions read the first two."""
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: the features chosen after each task as a bit mask, and states counted of each policy."""
     agents = {
@@ -49,18 +44,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     for i in range(settings["tasks"]):
         problem = problem_of(settings, (seed, "C3.10", cell["run"], i))
         for name, agent in agents.items():
-            _learn_or_count(settings, agent, SERIES[name], problem)
+            series = SERIES[name]
+            if series.counting.source == "exact":
+                agent.count(problem, None)
+            else:
+                episodes = settings["long_episodes" if series.long else "episodes"]
+                schedule = schedule_of({**settings, "episodes": episodes}, settings["schedule"])
+                agent.learn(problem, schedule, explores=series.explores)
             chosen[name].append(mask_of(agent.chosen))
     return {**cell, "chosen": chosen}
-
-
-def _learn_or_count(settings: Mapping, agent: OnlineAgent, series: Series, problem: Problem) -> None:
-    if series.counting.source == "exact":
-        agent.count(problem, None)
-    else:
-        episodes = settings["long_episodes"] if series.long else settings["episodes"]
-        schedule = schedule_of({**settings, "episodes": episodes}, settings["schedule"])
-        agent.learn(problem, schedule, explores=series.explores)
 
 
 def mask_of(names) -> int:

@@ -16,17 +16,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.learning.q_learning import Rows
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
-    N_ACTIONS,
-    Problem,
-    contexts_of,
-    learn_problem,
-    problem_of,
-)
+from lifelore.experiments.chapter3.factory import modified_tasks
+from lifelore.experiments.chapter3.factory.learning import with_pseudo_count
+from lifelore.experiments.chapter3.factory.modified_tasks import Problem
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import Grid, run_grid
 
 WITHOUT_PRIOR, PROPORTION, DIRICHLET, AS_PRINTED = "uniform", "proportion", "dirichlet", "softmax of counts"
@@ -36,7 +31,7 @@ SOFTMAXES = FORMS[2:]
 KEYS = ("features", "schedule", "ties", "alpha0", "max_steps", "policies")
 
 
-class Run(NamedTuple):
+class Tasks(NamedTuple):
     """Priors by set of features and number of policies, with α⁰ of 1, and test tasks."""
 
     priors: dict[tuple[str, int], ActionPrior]
@@ -49,51 +44,32 @@ def grid_of(settings: Mapping) -> Grid:
     return Grid.crossed(settings, KEYS, crossed, {key: key for key in ("alpha0", "max_steps", "policies")})
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every form in every cell of the grid."""
     run, grid = run_of(settings, seed, cell["run"]), grid_of(settings)
 
     def numbers(form: str, how: Mapping) -> dict:
+        prior = None
+        if form != WITHOUT_PRIOR:
+            prior = with_pseudo_count(run.priors[how["features"], how["policies"]], how["alpha0"])
+
+        def rows_for(problem: Problem) -> Rows | None:
+            return None if prior is None else rows_of(problem, prior, form, how)
+
         schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
-        rows_for = rows_maker(run, form, how)
-        rewards = np.array(
-            [learn_problem(problem, rows_for(problem), schedule)[0].rewards for problem in run.testing]
-        )
-        found = summary(rewards, settings["early"])
-        if grid.is_default_but_for_schedule(how):
-            found |= {"mean": rewards.mean(axis=0).tolist(), "deviation": rewards.std(axis=0, ddof=1).tolist()}
-        return found
+        rewards = modified_tasks.rewards_of(run.testing, rows_for, schedule)
+        curve = modified_tasks.curve_across(rewards) if grid.is_default_but_for_schedule(how) else {}
+        return {**summary(rewards, settings["early"]), **curve}
 
     optimal = float(np.mean([problem.optimal for problem in run.testing]))
     return {**cell, "optimal": optimal, "found": list(run_grid(grid, "form", WITHOUT_PRIOR, FORMS, numbers))}
 
 
-def run_of(settings: Mapping, seed: int, number: int) -> Run:
-    """Run `number`; more training or test tasks leave the first ones as they are."""
+def run_of(settings: Mapping, seed: int, number: int) -> Tasks:
+    """Run `number`."""
     own = (seed, "C3.11", number)
-    counting = {name: ActionPrior(N_ACTIONS, 1.0, name) for name in settings["features"]}
-    priors = {}
-    for i in range(max(settings["policies"])):
-        problem = problem_of(settings, (*own, "training", i))
-        for name, prior in counting.items():
-            prior.update(contexts_of(problem, name), problem.best)
-            if i + 1 in settings["policies"]:
-                priors[name, i + 1] = ActionPrior.merged([prior])
-    return Run(priors, [problem_of(settings, (*own, "testing", i)) for i in range(settings["test_tasks"])])
-
-
-def rows_maker(run: Run, form: str, how: Mapping):
-    """The function from a problem to the rows of a form in a cell of the grid; None without a prior."""
-    if form == WITHOUT_PRIOR:
-        return lambda problem: None
-    counts = run.priors[how["features"], how["policies"]].fixed_point_counts()
-    prior = ActionPrior.from_fixed_point_counts(*counts, how["alpha0"])
-    return lambda problem: rows_of(problem, prior, form, how)
+    priors = modified_tasks.exact_priors(settings, (*own, "training"), settings["features"])
+    return Tasks(priors, modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"]))
 
 
 def rows_of(problem: Problem, prior: ActionPrior, form: str, how: Mapping) -> Rows:
@@ -103,7 +79,7 @@ def rows_of(problem: Problem, prior: ActionPrior, form: str, how: Mapping) -> Ro
     def probs(codes):
         return probs_of(prior, codes, form, how["policies"], random)
 
-    return prior_rows(problem.tables, contexts_of(problem, how["features"]), probs, how["ties"])
+    return modified_tasks.rows_of(problem, how["features"], probs, how["ties"])
 
 
 def probs_of(

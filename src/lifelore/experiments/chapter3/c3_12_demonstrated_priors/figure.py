@@ -2,45 +2,38 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter3.reward_curves import draw_reward_curves, schedule_in_brief
+from lifelore.experiments.chapter3.figures.reward_curves import draw_reward_curves
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.heat_grid import draw_estimate_grid
-from lifelore.figures.style import BLUE, GREEN, GREY, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, Axes, Figure, house_style, new_figure, two_rows
 
 COLOURS = {"uniform": GREY, "self-trained": BLUE, "shown": GREEN}
 LOOK = {"neutral": 0.0, "spread": 20.0, "scale": 100.0, "words": "{:+.1f}".format}
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Learning curves by schedule above; the grid of open choices and the groups of people below."""
     settings = result["settings"]
     labels = {"shown": f"shown by one person ({settings['default']['people']}, simulated)"}
-    with house_style():
-        figure = new_figure(12.4, 7.6)
-        upper, lower = two_rows(figure, (1.0, 1.05))
-        panels = upper.subplots(1, len(settings["schedules"]), squeeze=False, sharey=True)[0]
-        for axes, schedule in zip(panels, settings["schedules"], strict=True):
-            draw_reward_curves(axes, result, schedule, COLOURS, labels, banded=COLOURS)
-        panels[0].set_ylabel("reward of an episode")
-        upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=8)
-        grid, people = lower.subplots(1, 2, width_ratios=[1.1, 1.0])
-        _draw_grid(grid, result)
-        _draw_people(people, result)
-        lower.supxlabel(
-            "Below: mean reward of an episode minus that with the self-trained prior, in % of the distance from "
-            "no prior to the optimum.\nBold: the 95 % interval excludes 0. Framed: the default. Shaded: one "
-            f"standard deviation across the {settings['test_tasks']} tasks of a run. People are simulated.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(12.4, 7.6)
+    upper, lower = two_rows(figure, (1.0, 1.05))
+    draw_reward_curves(upper, result, COLOURS, labels, banded=COLOURS)
+    grid, people = lower.subplots(1, 2, width_ratios=[1.1, 1.0])
+    _draw_grid(grid, result)
+    _draw_people(people, result)
+    lower.supxlabel(
+        "Below: mean reward of an episode minus that with the self-trained prior, in % of the distance from "
+        "no prior to the optimum.\nBold: the 95 % interval excludes 0. Framed: the default. Shaded: one "
+        f"standard deviation across the {settings['test_tasks']} tasks of a run. People are simulated.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     settings, default = result["settings"], result["settings"]["default"]
     keys = ("features", "schedule", "ties", "alpha0", "trajectories")
     table = ResultsTable((row for row in result["rows"] if "features" in row), keys)
@@ -62,7 +55,7 @@ def _draw_grid(axes: "Axes", result: Mapping) -> None:
     axes.set_title("The default person, by choices left open")
 
 
-def _draw_people(axes: "Axes", result: Mapping) -> None:
+def _draw_people(axes: Axes, result: Mapping) -> None:
     table = ResultsTable((row for row in result["rows"] if "weight" in row), ("people", "weight"))
     people, weights = table.distinct("people"), table.distinct("weight")
     numbers = [[table.record(people=group, weight=w)["of_distance"] for w in weights] for group in people]

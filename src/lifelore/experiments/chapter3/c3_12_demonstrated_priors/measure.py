@@ -6,16 +6,8 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import (
-    KEYS,
-    PEOPLE,
-    SELF,
-    SHOWN,
-    VARIED,
-    WEIGHTS,
-    WITHOUT_PRIOR,
-    grid_of,
-)
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors import run
+from lifelore.experiments.chapter3.c3_12_demonstrated_priors.run import PEOPLE, SELF, SHOWN, WEIGHTS, WITHOUT_PRIOR
 from lifelore.experiments.engine.estimates import is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -26,8 +18,8 @@ class Compared:
     """The results as tables, and a prior's rewards beside those of the self-trained one and of none."""
 
     def __init__(self, settings: Mapping, results: Sequence[Mapping]) -> None:
-        self.grid = grid_of(settings)
-        self.table = ResultsTable.nested(results, "found", ("method", *KEYS))
+        self.grid = run.grid_of(settings)
+        self.table = ResultsTable.nested(results, "found", ("method", *run.KEYS))
         self.groups = ResultsTable.nested(results, "groups", ("people", "weight"))
         self.optimal = np.array([result["optimal"] for result in results])
 
@@ -55,7 +47,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """Priors compared at the default and over the grid, and the people's demonstrations."""
     compared = Compared(settings, results)
     default = compared.grid.default
-    varied = compared.groups.values("all", people=VARIED, weight="equal")
+    varied = compared.groups.values("all", people=run.VARIED, weight="equal")
     shown = compared.shown(default)
     measured = {
         "optimal_reward": mean_estimate(compared.optimal),
@@ -85,10 +77,9 @@ def _demonstrations(settings: Mapping, results: Sequence[Mapping]) -> dict[str, 
         name = people.replace(" ", "_")
         found[f"given_up_{name}"] = table.mean("given_up", people=people)
         found[f"steps_{name}"] = table.mean("steps", people=people)
-        given = table.select(people=people).records
         for weight, turn in product(WEIGHTS[1:], range(len(PEOPLE[people]))):
-            person = f"person {turn}"
-            values = [one["weights"][weight][person] for one in given if person in one["weights"][weight]]
+            weights = [group["weights"][weight] for group in table.select(people=people).records]
+            values = [of_run[f"person {turn}"] for of_run in weights if f"person {turn}" in of_run]
             if values:
                 found[f"weight_{name}_{turn}_{weight.replace(' ', '_')}"] = mean_estimate(values)
     return found

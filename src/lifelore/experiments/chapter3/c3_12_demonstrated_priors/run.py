@@ -18,17 +18,11 @@ from lifelore.action.demonstrations.competence import competence_by_paths, compe
 from lifelore.action.demonstrations.demonstrations import Demonstration, count_demonstrations
 from lifelore.action.demonstrations.simulated_person import simulated_demonstration
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.exploration import prior_rows
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
-from lifelore.experiments.chapter3.modified_factory_tasks import (
-    N_ACTIONS,
-    Problem,
-    contexts_of,
-    learn_problem,
-    problem_of,
-)
+from lifelore.experiments.chapter3.factory import modified_tasks
+from lifelore.experiments.chapter3.factory.modified_tasks import N_ACTIONS, Problem, contexts_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.grid import Grid, run_grid
 
 WITHOUT_PRIOR, SELF, SHOWN = "uniform", "self-trained", "shown"
@@ -48,7 +42,7 @@ PATIENCE = 4000
 """Steps after which a person gives up."""
 
 
-class Run(NamedTuple):
+class Tasks(NamedTuple):
     """Training tasks, demonstrations by group (None: given up), w(π) by group and kind of weight, test tasks."""
 
     training: list[Problem]
@@ -57,20 +51,19 @@ class Run(NamedTuple):
     testing: list[Problem]
 
 
-def run_of(settings: Mapping, seed: int, number: int) -> Run:
+def run_of(settings: Mapping, seed: int, number: int) -> Tasks:
     """Run `number`."""
     own = (seed, "C3.12", number)
-    training = [problem_of(settings, (*own, "training", i)) for i in range(max(settings["trajectories"]))]
-    best = {str(i): problem.best for i, problem in enumerate(training)}
+    training = modified_tasks.problems_of(settings, (*own, "training"), max(settings["trajectories"]))
     shown, weights = {}, {}
     for people in settings["people"]:
         shown[people] = [demonstrate(problem, people, i) for i, problem in enumerate(training)]
-        done = [one for one in shown[people] if one]
-        weights[people, "equal"] = dict.fromkeys({one.agent for one in done}, 1.0)
-        weights[people, "by steps"] = competence_by_steps(done, lambda name: best[name])
+        done = [demonstration for demonstration in shown[people] if demonstration]
+        weights[people, "equal"] = dict.fromkeys({demonstration.agent for demonstration in done}, 1.0)
+        weights[people, "by steps"] = competence_by_steps(done, lambda task: training[int(task)].best)
         weights[people, "by ways"] = competence_by_paths(done)
-    testing = [problem_of(settings, (*own, "testing", i)) for i in range(settings["test_tasks"])]
-    return Run(training, shown, weights, testing)
+    testing = modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"])
+    return Tasks(training, shown, weights, testing)
 
 
 def demonstrate(problem: Problem, people: str, number: int) -> Demonstration | None:
@@ -83,7 +76,7 @@ def demonstrate(problem: Problem, people: str, number: int) -> Demonstration | N
     )  # fmt: skip
 
 
-def self_trained(run: Run, how: Mapping) -> ActionPrior:
+def self_trained(run: Tasks, how: Mapping) -> ActionPrior:
     """The prior from the exact policies of the training tasks, every state counted (Eq. 3.7)."""
     prior = ActionPrior(N_ACTIONS, how["alpha0"])
     for problem in run.training[: how["trajectories"]]:
@@ -91,12 +84,12 @@ def self_trained(run: Run, how: Mapping) -> ActionPrior:
     return prior
 
 
-def from_shown(run: Run, how: Mapping, people: str, weight: str) -> ActionPrior:
+def from_shown(run: Tasks, how: Mapping, people: str, weight: str) -> ActionPrior:
     """The prior from demonstrations, each step weighed by its person's w(π) (Eq. 3.3)."""
     prior = ActionPrior(N_ACTIONS, how["alpha0"])
-    done = [one for one in run.shown[people][: how["trajectories"]] if one]
-    codes = {one.task: contexts_of(run.training[int(one.task)], how["features"]) for one in done}
-    count_demonstrations(prior, done, lambda one: codes[one.task][one.states], run.weights[people, weight])
+    done = [shown for shown in run.shown[people][: how["trajectories"]] if shown]
+    codes = {shown.task: contexts_of(run.training[int(shown.task)], how["features"]) for shown in done}
+    count_demonstrations(prior, done, lambda shown: codes[shown.task][shown.states], run.weights[people, weight])
     return prior
 
 
@@ -106,35 +99,27 @@ def grid_of(settings: Mapping) -> Grid:
     return Grid.crossed(settings, KEYS, crossed, {key: key for key in ("alpha0", "trajectories")})
 
 
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
-
-
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: all methods with the default people in every cell of the grid; all people at the default."""
     run, grid = run_of(settings, seed, cell["run"]), grid_of(settings)
 
     def learn(how: Mapping, prior: ActionPrior | None) -> dict:
-        schedule, rewards = schedule_of(settings, how["schedule"]), []
-        for problem in run.testing:
-            rows = None
-            if prior is not None:
-                rows = prior_rows(problem.tables, contexts_of(problem, how["features"]), prior.probs, how["ties"])
-            rewards.append(learn_problem(problem, rows, schedule)[0].rewards)
-        rewards = np.array(rewards)
-        found = {"all": float(rewards.mean()), "early": float(rewards[:, : settings["early"]].mean())}
-        if grid.is_default_but_for_schedule(how):
-            found |= {"mean": rewards.mean(axis=0).tolist(), "deviation": rewards.std(axis=0, ddof=1).tolist()}
-        return found
+        def rows_for(problem: Problem):
+            return (
+                None
+                if prior is None
+                else modified_tasks.rows_of(problem, how["features"], prior.probs, how["ties"])
+            )
+
+        rewards = modified_tasks.rewards_of(run.testing, rows_for, schedule_of(settings, how["schedule"]))
+        curve = modified_tasks.curve_across(rewards) if grid.is_default_but_for_schedule(how) else {}
+        return {"all": float(rewards.mean()), "early": float(rewards[:, : settings["early"]].mean()), **curve}
 
     def numbers(method: str, how: Mapping) -> dict:
-        if method == WITHOUT_PRIOR:
-            return learn(how, None)
-        if method == SELF:
-            return learn(how, self_trained(run, how))
-        people = settings["default"]["people"]
-        return {"people": people, "weight": "equal", **learn(how, from_shown(run, how, people, "equal"))}
+        if method == SHOWN:
+            people = settings["default"]["people"]
+            return {"people": people, "weight": "equal", **learn(how, from_shown(run, how, people, "equal"))}
+        return learn(how, self_trained(run, how) if method == SELF else None)
 
     found = list(run_grid(grid, "method", WITHOUT_PRIOR, (SELF, SHOWN), numbers))
     groups = [
@@ -145,11 +130,11 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "optimal": optimal, "found": found, "groups": groups, "people": _competence(settings, run)}
 
 
-def _competence(settings: Mapping, run: Run) -> list[dict]:
+def _competence(settings: Mapping, run: Tasks) -> list[dict]:
     """Tasks that people gave up, lengths of their demonstrations, and the weights of each person."""
     found = []
     for people in settings["people"]:
-        steps = [len(one.states) for one in run.shown[people] if one]
+        steps = [len(shown.states) for shown in run.shown[people] if shown]
         weights = {w: dict(sorted(run.weights[people, w].items())) for w in WEIGHTS}
         given_up = len(run.shown[people]) - len(steps)
         found.append({"people": people, "given_up": given_up, "steps": sum(steps), "weights": weights})

@@ -1,43 +1,39 @@
 """Figure of claim C3.13: Eq. 3.6 against what is measured, and how near worlds as found come to it."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, Axes, Figure, house_style, new_figure
 
 COLOURS = (BLUE, ORANGE, GREEN)
 NO_TASK = 0.35
 """Place of "no task" on the logarithmic axis."""
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Constructed worlds by states and by percepts, then worlds as found."""
     settings, default = result["settings"], result["settings"]["default"]
     table = ResultsTable((r for r in result["rows"] if "alike" in r), ("actions", "alike", "alpha0", "tasks"))
-    with house_style():
-        figure = new_figure(12.0, 4.1)
-        states, percepts, found = figure.subplots(1, 3, width_ratios=[1, 1, 1.05])
-        _draw_cases(states, table.select(alike=1, actions=default["actions"]), "alpha0", "α⁰ = {:g}")
-        states.set(title=f"By states, {default['actions']} actions", ylabel="probability of the one action")
-        _draw_cases(percepts, table.select(**default), "alike", "|T| · {}")
-        percepts.set(title=f"By percepts of 1 or more states, α⁰ = {default['alpha0']:g}")
-        _draw_found(found, [row for row in result["rows"] if "kind" in row])
-        figure.supxlabel(
-            "Lines: Eq. 3.6, with tasks times states that look alike for percepts. Points: share of "
-            f"{settings['draws'] * settings['runs']:,} steps, exact 95 % intervals.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(12.0, 4.1)
+    states, percepts, found = figure.subplots(1, 3, width_ratios=[1, 1, 1.05])
+    _draw_cases(states, table.select(alike=1, actions=default["actions"]), "alpha0", "α⁰ = {:g}")
+    states.set(title=f"By states, {default['actions']} actions", ylabel="probability of the one action")
+    _draw_cases(percepts, table.select(**default), "alike", "|T| · {}")
+    percepts.set(title=f"By percepts of 1 or more states, α⁰ = {default['alpha0']:g}")
+    _draw_found(found, [row for row in result["rows"] if "kind" in row])
+    figure.supxlabel(
+        "Lines: Eq. 3.6, with tasks times states that look alike for percepts. Points: share of "
+        f"{settings['draws'] * settings['runs']:,} steps, exact 95 % intervals.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_cases(axes: "Axes", table: ResultsTable, key: str, words: str) -> None:
+def _draw_cases(axes: Axes, table: ResultsTable, key: str, words: str) -> None:
     """The formula as a line and the measured frequency as points, for each value of `key`."""
     formulas, looks = {}, {}
     for colour, value in zip(COLOURS, sorted(table.distinct(key)), strict=False):
@@ -55,7 +51,7 @@ def _draw_cases(axes: "Axes", table: ResultsTable, key: str, words: str) -> None
     axes.grid(color=LIGHT)
 
 
-def _draw_found(axes: "Axes", worlds: list[Mapping]) -> None:
+def _draw_found(axes: Axes, worlds: list[Mapping]) -> None:
     """A point for each world: its least probable way into a futile goal, over the bound."""
     for shift, key, colour, label in (
         (-0.17, "least", BLUE, "by states"), (0.17, "least_percepts", ORANGE, "by percepts")

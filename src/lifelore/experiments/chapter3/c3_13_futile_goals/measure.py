@@ -1,6 +1,7 @@
 """Measures and rows of claim C3.13."""
 
 from collections.abc import Callable, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from scipy.stats import binomtest
@@ -70,13 +71,12 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         numbers = {"measured": taken / draws, "low": float(low), "high": float(high)}
         found.append({**cell, "formula": case["formula"], **numbers})
     worlds = ResultsTable.nested(results, "found", ("kind", "tasks"))
-    for kind in settings["kinds"]:
-        for n_tasks in settings["found_tasks"]:
-            cases = worlds.select(kind=kind, tasks=n_tasks).records
-            row = {"kind": kind, "tasks": n_tasks, "worlds": len(cases)}
-            for name in ("entering", "below_states", "below_percepts", "below_percepts_pooled"):
-                row[name] = sum(case[name] for case in cases)
-            for name in ("least", "least_percepts"):
-                row[name] = [round(case[name] / case["bound"], 5) for case in cases]
-            found.append(row)
+    for kind, n_tasks in product(settings["kinds"], settings["found_tasks"]):
+        cases = worlds.select(kind=kind, tasks=n_tasks).records
+        row = {"kind": kind, "tasks": n_tasks, "worlds": len(cases)}
+        for name in ("entering", "below_states", "below_percepts", "below_percepts_pooled"):
+            row[name] = sum(case[name] for case in cases)
+        for name in ("least", "least_percepts"):
+            row[name] = [round(case[name] / case["bound"], 5) for case in cases]
+        found.append(row)
     return found

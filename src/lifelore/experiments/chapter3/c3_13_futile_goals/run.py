@@ -8,6 +8,7 @@ and starts again after every step. Thesis: §3.2.3, Eq. 3.6.
 """
 
 from collections.abc import Iterator, Mapping
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -37,14 +38,6 @@ class Constructed(NamedTuple):
     follow: NDArray[np.int32]
     goals: list[int]
     new_goal: int
-
-
-class World(NamedTuple):
-    """A world that was not constructed: successors, percepts of the states, and starts of episodes."""
-
-    follow: NDArray[np.int32]
-    percepts: NDArray[np.int64]
-    starts: NDArray[np.int32]
 
 
 def constructed(n_actions: int, n_tasks: int, alike: int, leading: int) -> Constructed:
@@ -85,54 +78,38 @@ def frequency(tables: Tables, rows: Rows, epsilon: float, draws: int, names: tup
 
 
 def constructed_cases(settings: Mapping, seed: int, run: int) -> Iterator[dict]:
-    """Every number of actions, α⁰, number of tasks and of junctions that look alike."""
-    for n_actions in settings["actions"]:
+    """Every number of actions, α⁰, number of tasks and of junctions that look alike.
+
+    At the default also how often the action is taken where only a tenth of the steps explore and Q is 0.
+    """
+    default, draws = settings["default"], settings["draws"]
+    for n_actions, alike in product(settings["actions"], (1, *settings["alike"])):
         leading = int(stream(seed, "C3.13", run, "leading", n_actions).integers(n_actions))
-        for alike in (1, *settings["alike"]):
-            world = constructed(n_actions, max(settings["tasks"]), alike, leading)
-            junctions = np.arange(alike)
-            solved = [best_in(goal_tables(world.follow, g, junctions), g) for g in world.goals]
-            contexts = np.maximum(np.arange(len(world.follow)) - alike + 1, 0)  # junctions are one percept
-            for alpha0 in settings["alpha0"]:
-                yield from _by_tasks(settings, world, (contexts, solved, alpha0), (seed, "C3.13", run, alike))
+        world = constructed(n_actions, max(settings["tasks"]), alike, leading)
+        solved = [best_in(goal_tables(world.follow, goal, np.arange(alike)), goal) for goal in world.goals]
+        contexts = np.maximum(np.arange(len(world.follow)) - alike + 1, 0)  # junctions are one percept
+        tables = goal_tables(world.follow, world.new_goal, [0])
+        for alpha0, n_tasks in product(settings["alpha0"], sorted(settings["tasks"])):
+            prior = ActionPrior(n_actions, alpha0)
+            for best in solved[:n_tasks]:
+                prior.update(contexts, best)
+            names = (seed, "C3.13", run, alike, n_actions, str(alpha0), n_tasks)
+            case = {"actions": n_actions, "alike": alike, "alpha0": alpha0, "tasks": n_tasks}
+            case["formula"] = float(futile_goal_probability(n_actions, n_tasks * alike, alpha0))
+            case["prior"] = float(prior.probs(contexts[:1])[0, leading])
+            case["taken"] = frequency(tables, prior_rows(tables, contexts, prior.probs), 1.0, draws, names)
+            if alike == 1 and (n_actions, alpha0) == (default["actions"], default["alpha0"]):
+                for ties in ("uniform", "prior"):
+                    rows = prior_rows(tables, contexts, prior.probs, ties)
+                    case[f"taken_{ties}_ties"] = frequency(tables, rows, 0.1, draws, names)
+            yield case
 
 
-def _by_tasks(settings: Mapping, world: Constructed, known: tuple, names: tuple) -> Iterator[dict]:
-    contexts, solved, alpha0 = known
-    n_actions, alike = world.follow.shape[1], names[-1]
-    tables = goal_tables(world.follow, world.new_goal, [0])
-    leading = int(np.flatnonzero(world.follow[0] == world.new_goal)[0])
-    prior, counted = ActionPrior(n_actions, alpha0), 0
-    for n_tasks in sorted(settings["tasks"]):
-        for best in solved[counted:n_tasks]:
-            prior.update(contexts, best)
-        counted = n_tasks
-        rows = prior_rows(tables, contexts, prior.probs)
-        draws = settings["draws"]
-        own = (*names, n_actions, str(alpha0), n_tasks)
-        yield {
-            "actions": n_actions,
-            "alike": alike,
-            "alpha0": alpha0,
-            "tasks": n_tasks,
-            "formula": float(futile_goal_probability(n_actions, n_tasks * alike, alpha0)),
-            "prior": float(prior.probs(contexts[:1])[0, leading]),
-            "taken": frequency(tables, rows, 1.0, draws, own),
-            **_unlearnt(settings, tables, prior, contexts, own),
-        }
+def world_of(kind: str, settings: Mapping, names: tuple) -> tuple[NDArray, NDArray, NDArray]:
+    """Successors, percepts and starts of a random world, a lattice or a noise maze.
 
-
-def _unlearnt(settings: Mapping, tables: Tables, prior: ActionPrior, contexts, names: tuple) -> dict:
-    """At the default, how often the action is taken where only a tenth of the steps explore and Q is 0."""
-    default = {key: settings["default"][key] for key in ("actions", "alpha0")}
-    if default != {"actions": tables.n_actions, "alpha0": prior.alpha0} or names[-4] != 1:
-        return {}
-    rows = {ties: prior_rows(tables, contexts, prior.probs, ties) for ties in ("uniform", "prior")}
-    return {f"taken_{t}_ties": frequency(tables, r, 0.1, settings["draws"], names) for t, r in rows.items()}
-
-
-def world_of(kind: str, settings: Mapping, names: tuple) -> World:
-    """A random world, a lattice or a noise maze, with few starts so that much of it is futile."""
+    It has few starts, so that much of it is futile.
+    """
     random = stream(*names, "world")
     if kind == "random":
         n_states, n_actions = settings["states"], int(random.choice([2, 4]))
@@ -144,27 +121,27 @@ def world_of(kind: str, settings: Mapping, names: tuple) -> World:
         here = np.arange(grid.n_states, dtype=np.int32)[:, None]
         follow, percepts = np.where(grid.neighbour < 0, here, grid.neighbour).astype(np.int32), grid.percepts
     starts = random.choice(len(follow), size=2, replace=False).astype(np.int32)
-    return World(follow, percepts, np.sort(starts))
+    return follow, percepts, np.sort(starts)
 
 
 def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict | None:
     """Actions that lead from kept states into goals futile so far, by both priors; None where there are none."""
-    world, alpha0 = world_of(kind, settings, names), settings["default"]["alpha0"]
-    n_states, n_actions = world.follow.shape
-    goals = stream(*names, "goals").permutation(n_states)[:n_tasks]
-    tasks = [goal_tables(world.follow, int(g), world.starts) for g in goals]
-    policies = [best_in(t, int(g)) for t, g in zip(tasks, goals, strict=True)]
+    (follow, percepts, starts), alpha0 = world_of(kind, settings, names), settings["default"]["alpha0"]
+    n_states, n_actions = follow.shape
+    goals = stream(*names, "goals").permutation(n_states)[:n_tasks].tolist()
+    tasks = [goal_tables(follow, goal, starts) for goal in goals]
+    policies = [best_in(task, goal) for task, goal in zip(tasks, goals, strict=True)]
     futile = domain_futile_states(tasks, policies)
-    entering = ~futile[:, None] & futile[world.follow]
+    entering = ~futile[:, None] & futile[follow]
     if not entering.any():
         return None
     probs = {}
-    for name, contexts in (("state", np.arange(n_states)), ("percept", world.percepts)):
+    for name, contexts in (("state", np.arange(n_states)), ("percept", percepts)):
         prior = ActionPrior(n_actions, alpha0)
         for best in policies:
             prior.update(contexts, best)
         probs[name] = prior.probs(contexts)
-    percept = np.unique(world.percepts, return_inverse=True)[1]
+    percept = np.unique(percepts, return_inverse=True)[1]
     alike = np.bincount(percept)[percept]
     bound = float(futile_goal_probability(n_actions, n_tasks, alpha0))
     pooled = futile_goal_probability(n_actions, n_tasks * alike, alpha0)[:, None]
@@ -172,7 +149,10 @@ def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict
     def below(name, least):
         return int((probs[name] < least * (1 - ROUNDING))[entering].sum())
 
-    s, a = np.unravel_index(np.where(entering, probs["state"], 2.0).argmin(), entering.shape)
+    s, a = map(int, np.unravel_index(np.where(entering, probs["state"], 2.0).argmin(), entering.shape))
+    # Steps from s that end where a leads, by whichever action.
+    step = goal_tables(follow, int(follow[s, a]), [s])
+    rows = uniform_rows(step, probs["state"])
     return {
         "kind": kind,
         "tasks": n_tasks,
@@ -183,28 +163,17 @@ def found_case(kind: str, settings: Mapping, names: tuple, n_tasks: int) -> dict
         "bound": bound,
         "least": float(probs["state"][s, a]),
         "least_percepts": float(probs["percept"][entering].min()),
-        "expected": float(probs["state"][s][world.follow[s] == world.follow[s, a]].sum()),
-        "taken": _taken(world, probs["state"], int(s), int(a), settings["draws"], names),
+        "expected": float(probs["state"][s][follow[s] == follow[s, a]].sum()),
+        "taken": frequency(step, rows, 1.0, settings["draws"], (*names, "taken")),
     }
-
-
-def _taken(world: World, probs: NDArray, s: int, a: int, draws: int, names: tuple) -> int:
-    """Steps from `s` that end where `a` leads, by whichever action."""
-    tables = goal_tables(world.follow, int(world.follow[s, a]), [s])
-    return frequency(tables, uniform_rows(tables, probs), 1.0, draws, (*names, "taken"))
-
-
-def cells(settings: Mapping) -> list[dict]:
-    """A run each."""
-    return [{"run": number} for number in range(settings["runs"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every constructed case, and some worlds of each kind with each number of tasks."""
+    names = (seed, "C3.13", cell["run"])
     found = [
-        found_case(kind, settings, (seed, "C3.13", cell["run"], kind, n_tasks, i), n_tasks)
-        for kind in settings["kinds"]
-        for n_tasks in settings["found_tasks"]
+        found_case(kind, settings, (*names, kind, n_tasks, i), n_tasks)
+        for kind, n_tasks in product(settings["kinds"], settings["found_tasks"])
         for i in range(settings["worlds"])
     ]
     cases = list(constructed_cases(settings, seed, cell["run"]))

@@ -2,19 +2,15 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter3.c3_14_minimised_domains.run import WITHIN
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.heat_grid import draw_estimate_grid, draw_heat_grid
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import BLUE, GREEN, GREY, LIGHT, Axes, Figure, house_style, new_figure
 
 KEPT = (
     ("printed", "defined", "printed:\ndefined"),
@@ -27,36 +23,40 @@ KEPT = (
     ("closed", "policy_kept", "closed:\npolicy"),
     ("closed", "no_more_traps", "no more\ntraps"),
 )
-EXPLORED = {("domain", ""): ("domain", GREY)}
-EXPLORED |= {("repaired", "stay"): ("repaired, stay", BLUE), ("closed", "stay"): ("closed, stay", GREEN)}
+EXPLORED = {
+    ("domain", ""): ("domain", GREY),
+    ("repaired", "stay"): ("repaired, stay", BLUE),
+    ("closed", "stay"): ("closed, stay", GREEN),
+}
+"""Label and colour by form and by what a state without kept actions does."""
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Shares of tasks and sets, collisions of exploring, episodes of learning: kinds of worlds downwards."""
     kinds = result["settings"]["kinds"]
     learning = (row for row in result["rows"] if "learnt_in" in row)
     table = ResultsTable(learning, ("learnt_in", "form", "dead_ends", "schedule"))
-    with house_style():
-        figure = new_figure(16.0, 1.5 + 0.42 * len(kinds))
-        kept, walks, learnt = figure.subplots(1, 3, sharey=True, width_ratios=[1.2, 0.75, 1.2])
-        _draw_walks(walks, result, table)
-        _draw_learning(learnt, result, table)
-        rows = [row for row in result["rows"] if "kind" in row]
-        shares = np.array([[100 * row[form][key] for form, key, _ in KEPT] for row in rows])
-        heads, nothing = [head for *_, head in KEPT], np.zeros_like(shares)
-        words = "{:.0f}".format
-        draw_heat_grid(kept, shares, nothing, kinds, heads, neutral=100.0, spread=100.0, words=words)
-        kept.set_title("Where it is so (% of tasks, of sets for defined)")
-        kept.set_ylim(len(kinds) - 0.5, -0.5)
-        figure.supxlabel(
-            "Lines: 95 % intervals over runs; bold: the interval excludes 1. Framed: the default. stay, free: "
-            "staying, or all actions, in a state without kept actions. Printed: actions with η = 1/0 left out.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(16.0, 1.5 + 0.42 * len(kinds))
+    kept, walks, learnt = figure.subplots(1, 3, sharey=True, width_ratios=[1.2, 0.75, 1.2])
+    _draw_walks(walks, result, table)
+    _draw_learning(learnt, result, table)
+    rows = [row for row in result["rows"] if "kind" in row]
+    shares = np.array([[100 * row[form][key] for form, key, _ in KEPT] for row in rows])
+    heads, nothing = [head for *_, head in KEPT], np.zeros_like(shares)
+    words = "{:.0f}".format
+    draw_heat_grid(kept, shares, nothing, kinds, heads, neutral=100.0, spread=100.0, words=words)
+    kept.set_title("Where it is so (% of tasks, of sets for defined)")
+    kept.set_ylim(len(kinds) - 0.5, -0.5)
+    figure.supxlabel(
+        "Lines: 95 % intervals over runs; bold: the interval excludes 1. Framed: the default. stay, free: "
+        "staying, or all actions, in a state without kept actions. Printed: actions with η = 1/0 left out.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_walks(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+def _draw_walks(axes: Axes, result: Mapping, table: ResultsTable) -> None:
     """Collisions in 100 steps of pure exploration, in the domain and within it."""
     kinds, schedule = result["settings"]["kinds"], result["settings"]["default"]["schedule"]
 
@@ -76,7 +76,7 @@ def _draw_walks(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.07), ncols=3, fontsize=7, columnspacing=1)
 
 
-def _draw_learning(axes: "Axes", result: Mapping, table: ResultsTable) -> None:
+def _draw_learning(axes: Axes, result: Mapping, table: ResultsTable) -> None:
     settings = result["settings"]
     columns: list[tuple] = [(*way, schedule) for schedule, way in product(settings["schedules"], WITHIN)]
     numbers = [

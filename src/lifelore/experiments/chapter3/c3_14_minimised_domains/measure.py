@@ -2,6 +2,7 @@
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -15,17 +16,15 @@ from lifelore.experiments.engine.results_table import ResultsTable
 REPAIRED, PRINTED, CLOSED = WITHIN[0], *WITHIN[2:]
 
 
-def _task_sets(results: Sequence[Mapping]) -> ResultsTable:
-    return ResultsTable.nested(results, "exact", (), ("kind",))
+def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable]:
+    """Sets of tasks, and learning in every domain under every schedule."""
+    learning = ResultsTable.nested(results, "learning", ("form", "dead_ends", "schedule"), ("kind",))
+    return ResultsTable.nested(results, "exact", (), ("kind",)), learning
 
 
 def _tasks(sets: ResultsTable, form: str) -> list[Mapping]:
     """All tasks of the sets in a minimised domain."""
-    return [task for one in sets.records for task in one[form]["tasks"]]
-
-
-def _learning(results: Sequence[Mapping]) -> ResultsTable:
-    return ResultsTable.nested(results, "learning", ("form", "dead_ends", "schedule"), ("kind",))
+    return [task for of_set in sets.records for task in of_set[form]["tasks"]]
 
 
 def _ratio(learning: ResultsTable, way: tuple[str, str], measure: str, kind: str, schedule) -> Estimate:
@@ -36,9 +35,8 @@ def _ratio(learning: ResultsTable, way: tuple[str, str], measure: str, kind: str
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """What the minimised domains keep, their traps, and the kinds of worlds in which the claim fares worst."""
-    sets, learning = _task_sets(results), _learning(results)
-    undefined = [one["printed"]["undefined"] > 0 for one in sets.records]
-    measured = {"undefined_printed": share_of(undefined)}
+    sets, learning = _tables(results)
+    measured = {"undefined_printed": share_of([r["printed"]["undefined"] > 0 for r in sets.records])}
 
     def worst_ratio(measure: str, way: tuple[str, str]) -> Estimate:
         schedule = settings["default"]["schedule"]
@@ -59,8 +57,8 @@ def _traps(settings: Mapping, sets: ResultsTable, form: str) -> dict[str, Estima
     """Changes in traps where the domain has some, a number for each set; new traps where it has none (E36)."""
     with_traps, new_traps = [], []
     for kind in settings["kinds"]:
-        for one in sets.select(kind=kind).records:
-            tasks = one[form]["tasks"]
+        for of_set in sets.select(kind=kind).records:
+            tasks = of_set[form]["tasks"]
             some = [t for t in tasks if t["traps"]]
             if kind in WITH_SINKS and some:
                 keys = ("traps", "traps_left", "traps_within")
@@ -85,26 +83,24 @@ def worst(ratios: Iterable[Estimate]) -> Estimate:
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Kind by kind: what is kept and traps; then every domain under every schedule."""
-    found, learning = [], _learning(results)
+    (all_sets, learning), found = _tables(results), []
     for kind in settings["kinds"]:
-        sets = _task_sets(results).select(kind=kind)
+        sets = all_sets.select(kind=kind)
         row: dict = {"kind": kind, "sets": len(sets)}
         for form in FORMS:
             tasks = _tasks(sets, form)
             row[form] = {key: float(np.mean([t[key] for t in tasks])) for key in ("return_kept", "policy_kept")}
-            row[form]["defined"] = float(np.mean([one[form]["undefined"] == 0 for one in sets.records]))
+            row[form]["defined"] = float(np.mean([r[form]["undefined"] == 0 for r in sets.records]))
             row[form]["no_more_traps"] = float(np.mean([t["traps_within"] <= t["traps"] for t in tasks]))
             for key in ("traps", "traps_left", "traps_within", "states"):
                 row[form][key] = float(np.mean([t[key] for t in tasks]))
         found.append(row)
-    for kind in settings["kinds"]:
-        for schedule in settings["schedules"]:
-            for way in ((WHOLE, ""), *WITHIN):
-                about = {"form": way[0], "dead_ends": way[1], "schedule": schedule}
-                of_way, row = learning.select(kind=kind, **about), {"learnt_in": kind, **about}
-                keys = ("explored_collisions", "explored_reached", "to_80", "first_ten", "regret", "collisions")
-                row |= {key: of_way.mean(key).to_dict() for key in keys}
-                row["never_80"] = int(of_way.values("never_80").sum())
-                row["to_80_ratio"] = _ratio(learning, way, "to_80", kind, schedule).to_dict()
-                found.append(row)
+    keys = ("explored_collisions", "explored_reached", "to_80", "first_ten", "regret", "collisions")
+    ways: list[tuple[str, str]] = [(WHOLE, ""), *WITHIN]
+    for (kind, schedule), way in product(product(settings["kinds"], settings["schedules"]), ways):
+        about = {"form": way[0], "dead_ends": way[1], "schedule": schedule}
+        of_way = learning.select(kind=kind, **about)
+        row = {"learnt_in": kind, **about, **{key: of_way.mean(key).to_dict() for key in keys}}
+        row["never_80"] = int(of_way.values("never_80").sum())
+        found.append(row | {"to_80_ratio": _ratio(learning, way, "to_80", kind, schedule).to_dict()})
     return found

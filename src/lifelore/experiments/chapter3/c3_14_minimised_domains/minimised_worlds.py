@@ -67,15 +67,16 @@ def task_set(kind: str, settings: Mapping, names: tuple) -> TaskSet:
     where, _, starts = kind.partition(", ")
     random = stream(*names, "world")
     if where == "factory":
-        return _in_factory(kind, int(starts[0]), settings, random, names)
+        tasks = _in_factory(int(starts[0]), random, names)
+        return TaskSet(kind, tasks, FACTORY_DISCOUNT, 2 * int(settings["max_steps"]))
     if where in ("random", "slippery"):
         tasks = _in_random(settings, SLIP if where == "slippery" else (1.0,), random, names)
-        return TaskSet(kind, tasks, GRID_DISCOUNT, int(settings["max_steps"]))
-    size = settings["size"]
-    grid = lattice(size, GRID_DISCOUNT) if where == "lattice" else noise_maze(random, size, discount=GRID_DISCOUNT)
-    return TaskSet(
-        kind, _in_grid(grid, starts, settings["tasks"], random, names), GRID_DISCOUNT, int(settings["max_steps"])
-    )
+    else:
+        size = settings["size"]
+        plain = where == "lattice"
+        grid = lattice(size, GRID_DISCOUNT) if plain else noise_maze(random, size, discount=GRID_DISCOUNT)
+        tasks = _in_grid(grid, starts, settings["tasks"], random, names)
+    return TaskSet(kind, tasks, GRID_DISCOUNT, int(settings["max_steps"]))
 
 
 def _in_random(settings: Mapping, outcomes: Sequence[float], random, names: tuple) -> list[Solved]:
@@ -95,9 +96,9 @@ def _in_random(settings: Mapping, outcomes: Sequence[float], random, names: tupl
 
 def _in_grid(grid: GridWorld, starts: str, n_tasks: int, random, names: tuple) -> list[Solved]:
     drawn = random.permutation(grid.n_states)[: n_tasks + 1]
-    one = None if starts == "every start" else drawn[-1:].astype(np.int32)
-    tables = [(int(goal), grid.task(int(goal), one).tables()) for goal in drawn[:-1]]
-    return [_solved(t, goal, (*names, i)) for i, (goal, t) in enumerate(tables)]
+    start = None if starts == "every start" else drawn[-1:].astype(np.int32)
+    goals = drawn[:-1].tolist()
+    return [_solved(grid.task(goal, start).tables(), goal, (*names, i)) for i, goal in enumerate(goals)]
 
 
 def _solved(tables: Tables, goal: int, names: tuple) -> Solved:
@@ -116,47 +117,33 @@ def random_tables(n_states: int, n_actions: int, random, outcomes: Sequence[floa
     event = np.where(refused, COLLISION, 0).astype(np.uint8)[:, :, None].repeat(len(outcomes), axis=2)
     cum = np.cumsum(outcomes)
     cum[-1] = 1.0
-    reward = np.where(event > 0, WALL, 0.0)
-    return Tables(follow.astype(np.int32), reward, event, cum, np.zeros(1, np.int32))
+    return Tables(follow.astype(np.int32), np.where(event > 0, WALL, 0.0), event, cum, np.zeros(1, np.int32))
 
 
 def with_goal(base: Tables, goal: int, starts) -> Tables:
     """The task of reaching `goal` from elsewhere, which pays and ends the episode."""
     there = (base.next_state == goal) & (np.arange(base.n_states) != goal)[:, None, None]
     event = np.where(there, base.event | TERMINAL, base.event).astype(np.uint8)
-    return base._replace(
-        reward=np.where(there, GOAL, base.reward), event=event, starts=np.asarray(starts, np.int32)
-    )
+    reward = np.where(there, GOAL, base.reward)
+    return base._replace(reward=reward, event=event, starts=np.asarray(starts, np.int32))
 
 
-# ---- factories -----------------------------------------------------------------------------------------
-
-
-def _in_factory(kind: str, k: int, settings: Mapping, random, names: tuple) -> TaskSet:
-    floor = factory(discount=FACTORY_DISCOUNT)
-    components = floor.draw_components(random, FACTORY_COMPONENTS)
-    whole = floor.task(components)
-    base, stages = whole.tables(), whole.stages
-    tasks = []
+def _in_factory(k: int, random, names: tuple) -> list[Solved]:
+    floor, tasks = factory(discount=FACTORY_DISCOUNT), []
+    whole = floor.task(floor.draw_components(random, FACTORY_COMPONENTS))
+    base = whole.tables()
     for i, listed in enumerate(combinations(range(FACTORY_COMPONENTS), k)):
-        tables, ended = with_list(base, stages, listed)
+        tables, ended = with_list(base, whole.stages, listed)
         q = layered_q(tables, floor.n_cells, FACTORY_DISCOUNT)
         tasks.append(Solved(tables, q, actions_to_count(q, "all", ended=ended), (*names, i)))
-    return TaskSet(kind, tasks, FACTORY_DISCOUNT, 2 * int(settings["max_steps"]))
+    return tasks
 
 
 def with_list(base: Tables, stages: NDArray[np.int8], listed: Sequence[int]) -> tuple[Tables, NDArray[np.bool_]]:
-    """A task of some of a factory's components, and in which states it is over.
+    """A task of the components at the places `listed` of a factory's, and in which states it is over.
 
-    Using another component's point works as in the domain, but serves no purpose: it is paid as a misuse.
-
-    Parameters
-    ----------
-    base : Tables
-        Of all components.
-    stages : (n_configurations, n_components)
-    listed : sequence of int
-        Places of the task's components among them.
+    Using another component's point works as in the domain, but serves no purpose: it is paid as a misuse. `base`
+    are the tables of all components, `stages` (n_configurations, n_components).
     """
     pay, n_cells = FactoryRewards(), base.n_states // len(stages)
     over = (stages[:, list(listed)] == ASSEMBLED).all(axis=1)

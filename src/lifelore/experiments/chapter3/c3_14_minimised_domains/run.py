@@ -13,15 +13,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.search.domain_reduction import (
-    FORMS,
-    MinimisedDomain,
-    minimised_domain,
-    reachable_states,
-    tables_within,
-    trap_states,
-)
-from lifelore.core.compiled.random_state import next_uniform, random_state
+from lifelore.action.search import domain_reduction
+from lifelore.action.search.domain_reduction import FORMS, MinimisedDomain, tables_within, trap_states
 from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import Curve, new_curve
 from lifelore.core.learning.learning_metrics import episodes_to_threshold
@@ -29,14 +22,10 @@ from lifelore.core.learning.q_learning import Schedule, learn, new_learner, unif
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import (
-    EVERY_START,
-    WITH_SINKS,
-    Solved,
-    TaskSet,
-    task_set,
-)
-from lifelore.experiments.chapter3.lattice_learning import schedule_of
+from lifelore.experiments.chapter3.c3_14_minimised_domains import minimised_worlds
+from lifelore.experiments.chapter3.c3_14_minimised_domains.minimised_worlds import Solved, TaskSet, task_set
+from lifelore.experiments.chapter3.learning.grid_tasks import drawn_starts
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 
 WHOLE = "domain"
 WITHIN = (("repaired", "stay"), ("repaired", "free"), ("printed", "stay"), ("closed", "stay"))
@@ -95,7 +84,7 @@ def kept(task: Solved, domain: MinimisedDomain, discount: float) -> dict:
     near = EQUAL * max(1.0, float(np.abs(task.tables.reward).max())) / (1 - discount)
     starts = task.tables.starts
     whole, within = task.q.max(axis=1), q.max(axis=1)
-    acting = reachable_states(task.tables, task.best) & task.best.any(axis=1)
+    acting = domain_reduction.reachable_states(task.tables, task.best) & task.best.any(axis=1)
     chosen = acting[:, None] & task.best
     lost = np.where(chosen, within[:, None] - np.where(np.isfinite(q), q, -1e300), 0.0)
     return {
@@ -117,16 +106,14 @@ def learn_within(
     task: Solved, pairs: NDArray[np.bool_] | None, dead_ends: str, schedule: Schedule, purpose: str
 ) -> Curve:
     """Learn a task in its domain, or with `pairs` alone to choose from; `purpose` names the streams."""
-    tables, shape = task.tables, task.tables.next_state.shape[:2]
-    allowed = np.ones(shape, bool) if pairs is None else pairs
+    tables = task.tables
+    allowed = np.ones((tables.n_states, tables.n_actions), bool)
     if pairs is not None:
         tables = tables_within(tables, pairs, dead_ends)
         allowed = pairs | ~pairs.any(axis=1, keepdims=True)
-    ties = np.where(allowed, 1.0, TRACE)
-    rows = uniform_rows(tables, allowed / allowed.sum(axis=1, keepdims=True), ties)
-    learner = new_learner(
-        shape[0], shape[1], stream(*task.stream, purpose, "world"), stream(*task.stream, purpose, "own")
-    )
+    rows = uniform_rows(tables, allowed / allowed.sum(axis=1, keepdims=True), np.where(allowed, 1.0, TRACE))
+    world, own = (stream(*task.stream, purpose, of) for of in ("world", "own"))
+    learner = new_learner(tables.n_states, tables.n_actions, world, own)
     learner.q[~allowed] = -np.inf
     curve = new_curve(schedule.epsilon.size)
     learn(tables, rows, schedule, learner, curve, schedule.epsilon.size * schedule.max_steps)
@@ -135,12 +122,9 @@ def learn_within(
 
 def best_returns(task: Solved, n_episodes: int, purpose: str) -> NDArray[np.float64]:
     """The optimal return from where each episode starts; worlds of one outcome draw nothing but starts."""
-    starts = task.tables.starts
     if task.tables.outcome_cum.size > 1:
-        return np.full(n_episodes, task.q[starts].max(axis=1).mean())
-    random = random_state(stream(*task.stream, purpose, "world"))
-    drawn = [starts[int(next_uniform(random) * starts.size)] for _ in range(n_episodes)]
-    return task.q[drawn].max(axis=1)
+        return np.full(n_episodes, task.q[task.tables.starts].max(axis=1).mean())
+    return task.q[drawn_starts(task.tables, (*task.stream, purpose), n_episodes)].max(axis=1)
 
 
 def explored(tasks: TaskSet, pairs: NDArray[np.bool_] | None, dead_ends: str, episodes: int) -> dict:
@@ -149,7 +133,7 @@ def explored(tasks: TaskSet, pairs: NDArray[np.bool_] | None, dead_ends: str, ep
     curves = [learn_within(task, pairs, dead_ends, flat, "explore") for task in tasks.tasks]
     collisions, steps = (sum(int(getattr(c, name).sum()) for c in curves) for name in ("collisions", "steps"))
     reached = float(np.mean([c.reached.mean() for c in curves]))
-    return {"collisions": collisions / steps, "reached": reached}
+    return {"explored_collisions": collisions / steps, "explored_reached": reached}
 
 
 def learnt(tasks: TaskSet, pairs, dead_ends: str, settings: Mapping, epsilon) -> dict:
@@ -158,18 +142,17 @@ def learnt(tasks: TaskSet, pairs, dead_ends: str, settings: Mapping, epsilon) ->
     Where that is below zero, to as much below it as a fifth of it. `regret` is what the last episodes miss of it.
     """
     schedule = schedule_of({**settings, "discount": tasks.discount, "max_steps": tasks.max_steps}, epsilon)
-    chosen = tasks.tasks[: settings["learnt_tasks"]]
+    chosen, last = tasks.tasks[: settings["learnt_tasks"]], settings["window"]
     curves = [learn_within(task, pairs, dead_ends, schedule, "learn") for task in chosen]
     returns = np.mean([curve.returns for curve in curves], axis=0)
     best = np.mean([best_returns(task, settings["episodes"], "learn") for task in chosen], axis=0)
-    reached = episodes_to_threshold(returns - best + 0.2 * np.abs(best), 0.0, settings["window"])
-    last = settings["window"]
+    reached = episodes_to_threshold(returns - best + 0.2 * np.abs(best), 0.0, last)
     return {
         "to_80": settings["episodes"] if reached is None else reached,
         "never_80": reached is None,
         "first_ten": float(returns[:10].mean()),
         "regret": float((best - returns)[-last:].sum() / np.abs(best)[-last:].sum()),
-        "collisions": int(sum(int(curve.collisions.sum()) for curve in curves)) / len(curves),
+        "collisions": sum(int(curve.collisions.sum()) for curve in curves) / len(curves),
     }
 
 
@@ -184,18 +167,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     For random worlds also `worlds` further sets, exactly alone.
     """
     names = (seed, "C3.14", cell["kind"], cell["run"])
-    tasks = task_set(cell["kind"], settings, names)
-    found = {**cell, "exact": [exact(tasks)], "learning": list(_learning(settings, tasks))}
-    if cell["kind"].endswith("few starts"):
-        more = (task_set(cell["kind"], settings, (*names, "exact", i)) for i in range(settings["worlds"]))
-        found["exact"] += [exact(other) for other in more]
-    return found
+    more = settings["worlds"] if cell["kind"].endswith("few starts") else 0
+    sets = [task_set(cell["kind"], settings, own) for own in (names, *((*names, "exact", i) for i in range(more)))]
+    return {**cell, "exact": [exact(tasks) for tasks in sets], "learning": list(_learning(settings, sets[0]))}
 
 
 def domains_of(tasks: TaskSet) -> dict[str, MinimisedDomain]:
     """The set's minimised domain by each definition."""
     tables, best = [t.tables for t in tasks.tasks], [t.best for t in tasks.tasks]
-    return {form: minimised_domain(tables, best, form) for form in FORMS}
+    return {form: domain_reduction.minimised_domain(tables, best, form) for form in FORMS}
 
 
 def exact(tasks: TaskSet) -> dict:
@@ -208,20 +188,18 @@ def exact(tasks: TaskSet) -> dict:
 
 
 def _learning(settings: Mapping, tasks: TaskSet) -> Iterator[dict]:
-    """Every schedule and domain: exploration once, learning under each schedule."""
+    """Every domain: exploration once, learning under each schedule."""
     domains = domains_of(tasks)
-    ways = [(WHOLE, "", None)]
-    ways += [(form, ends, domains[form].pairs & ~domains[form].without_successor) for form, ends in WITHIN]
-    for form, ends, pairs in ways:
-        wandering = explored(tasks, pairs, ends or "stay", settings["explored"])
+    for form, ends in ((WHOLE, ""), *WITHIN):
+        pairs = None if form == WHOLE else domains[form].pairs & ~domains[form].without_successor
+        walk = explored(tasks, pairs, ends, settings["explored"])
         for epsilon in settings["schedules"]:
-            numbers = learnt(tasks, pairs, ends or "stay", settings, epsilon)
-            walk = {f"explored_{name}": value for name, value in wandering.items()}
+            numbers = learnt(tasks, pairs, ends, settings, epsilon)
             yield {"form": form, "dead_ends": ends, "schedule": epsilon, **walk, **numbers}
 
 
 def check(settings: Mapping) -> None:
-    for group in (EVERY_START, WITH_SINKS):
+    for group in (minimised_worlds.EVERY_START, minimised_worlds.WITH_SINKS):
         if not set(group) & set(settings["kinds"]):
             raise InputError(f"kinds must hold one of {', '.join(group)}, got {', '.join(settings['kinds'])}")
     if settings["size"] % 2 == 0 or settings["size"] < 7:

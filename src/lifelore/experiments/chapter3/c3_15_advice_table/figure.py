@@ -1,24 +1,15 @@
 """Figure of claim C3.15: rewards with and without advice, the printed ones, and the grid of open choices."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import (
-    ADVISOR_COLOURS,
-    ADVISORS,
-    AGENTS,
-    EXPLORERS,
-    draw_maze_grid,
-)
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice import figures
+from lifelore.experiments.chapter3.advice.figures import ADVISORS, AGENTS, EXPLORERS
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure, two_rows
 
 PRINTED = {
     "random": (50, 900),
@@ -31,31 +22,31 @@ PRINTED = {
 """Table 3.1: without and with advice."""
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Bars at the default above, the grid of loop densities and experts below."""
     settings = result["settings"]
     table = ResultsTable(result["rows"], ("loops", "experts", "way", "agent"))
-    with house_style():
-        figure = new_figure(10.4, 8.4)
-        upper, lower = two_rows(figure, (1, 1.05))
-        axes = upper.subplots()
-        _draw_bars(axes, table.select(**settings["default"]))
-        upper.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=5)
-        above, below = lower.subplots(2, 1, sharex=True)
-        _draw_grid(above, result, table, {"thesis": AGENTS}, 0.0, "Gain by the thesis's advisor")
-        above.set_xlabel("")
-        better = {"better": [*EXPLORERS, "optimal"], "uniform only": EXPLORERS}
-        title = "Reward with the better advisor (goal: 700), and where Uniform is its only other model (*)"
-        _draw_grid(below, result, table, better, 700.0, title)
-        lower.supxlabel(
-            f"{settings['mazes']} mazes × {settings['tasks']} tasks a cell. Thin lines: 95 % interval over mazes; "
-            "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.4)
+    upper, lower = two_rows(figure, (1, 1.05))
+    axes = upper.subplots()
+    _draw_bars(axes, table.select(**settings["default"]))
+    upper.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=5)
+    above, below = lower.subplots(2, 1, sharex=True)
+    _draw_grid(above, result, table, {"thesis": AGENTS}, 0.0, "Gain by the thesis's advisor")
+    above.set_xlabel("")
+    better = {"better": [*EXPLORERS, "optimal"], "uniform only": EXPLORERS}
+    title = "Reward with the better advisor (goal: 700), and where Uniform is its only other model (*)"
+    _draw_grid(below, result, table, better, 700.0, title)
+    lower.supxlabel(
+        f"{settings['mazes']} mazes × {settings['tasks']} tasks a cell. Thin lines: 95 % interval over mazes; "
+        "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_bars(axes: "Axes", table: ResultsTable) -> None:
+def _draw_bars(axes: Axes, table: ResultsTable) -> None:
     def number(way: str, agent: str) -> Mapping | None:
         rows = table.select(way=way, agent=agent).records
         if not rows:
@@ -66,16 +57,9 @@ def _draw_bars(axes: "Axes", table: ResultsTable) -> None:
         return {"value": rows[0]["reward"], "ci95": rows[0]["ci95"], "words": words}
 
     groups = {label: [number(way, agent) for agent in AGENTS] for way, label in ADVISORS.items()}
-    colours = {label: ADVISOR_COLOURS[way] for way, label in ADVISORS.items()}
-    draw_interval_bars(
-        axes,
-        list(AGENTS.values()),
-        groups,
-        colours=colours,
-        horizontal=False,
-        label="reward, of 1000",
-        legend=False,
-    )
+    colours = {label: figures.ADVISOR_COLOURS[way] for way, label in ADVISORS.items()}
+    look = {"horizontal": False, "label": "reward, of 1000", "legend": False}
+    draw_interval_bars(axes, list(AGENTS.values()), groups, colours=colours, **look)
     places, printed = np.arange(len(AGENTS))[:, None] + [-0.3, -0.1], [PRINTED[agent] for agent in AGENTS]
     axes.hlines(np.ravel(printed), np.ravel(places) - 0.09, np.ravel(places) + 0.09, color=INK, lw=2, zorder=6)
     axes.plot(np.ravel(places), np.ravel(printed), "D", ms=4, color=INK, label="printed in Table 3.1", zorder=6)
@@ -83,9 +67,7 @@ def _draw_bars(axes: "Axes", table: ResultsTable) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(
-    axes: "Axes", result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str
-) -> None:
+def _draw_grid(axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str):
     columns = grid_of(result["settings"])
     key, certain = ("gain", "gain_is_certain") if neutral == 0 else ("reward", None)
     sides, values, bold = [], [], []
@@ -95,9 +77,9 @@ def _draw_grid(
             values.append([row[key] for row in found])
             bold.append([row[certain] if certain else row[key] >= neutral for row in found])
             sides.append(AGENTS[agent] + (" *" if way == "uniform only" else ""))
-    spread = 500.0 if neutral == 0 else 450.0
+    look = {"title": title, "neutral": neutral, "spread": 500.0 if neutral == 0 else 450.0}
 
     def words(value: float) -> str:
         return f"{value:+.0f}" if neutral == 0 and abs(value) >= 0.5 else f"{value:.0f}"
 
-    draw_maze_grid(axes, result, values, bold, sides, title=title, neutral=neutral, spread=spread, words=words)
+    figures.draw_maze_grid(axes, result, values, bold, sides, words=words, **look)

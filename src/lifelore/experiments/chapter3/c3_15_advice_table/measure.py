@@ -1,21 +1,16 @@
 """Measures and rows of claim C3.15."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import Any
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import (
-    AGENTS,
-    grid_of,
-    grid_share,
-    maze_estimate,
-    without_interval,
-)
+from lifelore.experiments.chapter3.advice.mazes import AGENTS, grid_of, grid_share, maze_estimate
 from lifelore.experiments.chapter3.c3_15_advice_table.run import BETTER, GOAL_UNKNOWN, NONE, THESIS, UNIFORM_ONLY
-from lifelore.experiments.engine.estimates import is_above
+from lifelore.experiments.engine.estimates import exact_value, is_above
 from lifelore.experiments.engine.results_table import ResultsTable
 
 
@@ -46,7 +41,7 @@ class Rewards:
 
     def least(self, way: str) -> Estimate:
         """The least mean reward of the explorers."""
-        return without_interval(min(self.of(way, agent).mean() for agent in EXPLORERS), len(EXPLORERS))
+        return exact_value(min(self.of(way, agent).mean() for agent in EXPLORERS), len(EXPLORERS))
 
     def raised(self) -> int:
         """Explorers whose reward the thesis's advisor raises for certain."""
@@ -66,7 +61,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """Rewards at the default by agent and advisor, Q-learning's, and the share of the grid."""
     at_default = Rewards(results, **settings["default"])
     found = {
-        "explorers_raised": without_interval(at_default.raised(), len(EXPLORERS)),
+        "explorers_raised": exact_value(at_default.raised(), len(EXPLORERS)),
         "optimal_thesis": maze_estimate(at_default.of(THESIS, "optimal")),
         "q_learning_thesis": maze_estimate(at_default.learning(THESIS)),
         "q_learning_gain": at_default.learning_gain(),
@@ -76,7 +71,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for agent in AGENTS:  # the rows leave this advisor out
         found[f"{agent}_goal_unknown"] = maze_estimate(at_default.of(GOAL_UNKNOWN, agent))
     most = [at_default.advised(BETTER, agent) for agent in EXPLORERS]
-    found["better_most_advised"] = without_interval(np.max(most), len(most[0]))
+    found["better_most_advised"] = exact_value(np.max(most), len(most[0]))
     all_raised = [Rewards(results, *cell).raised() == len(EXPLORERS) for cell in grid_of(settings)]
     return found | {"grid_all_raised": grid_share(all_raised)}
 
@@ -85,24 +80,24 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The whole grid: a row for each cell, advisor and agent, Q-learning last."""
     found = []
     for loops, experts in grid_of(settings):
-        rewards, cell = Rewards(results, loops, experts), {"loops": loops, "experts": experts}
-        for way in (NONE, THESIS, BETTER, UNIFORM_ONLY):
-            for agent in AGENTS:
-                gain = None if way == NONE else rewards.gain(way, agent)
-                row = _row({**cell, "way": way, "agent": agent}, maze_estimate(rewards.of(way, agent)), gain)
-                row["advised"] = round(float(rewards.advised(way, agent).mean(axis=1).mean()), 1)
-                row["median_steps"] = float(np.median(rewards.numbers("steps", way, agent)))
-                found.append(row)
+        rewards = Rewards(results, loops, experts)
+        for way, agent in product((NONE, THESIS, BETTER, UNIFORM_ONLY), AGENTS):
+            gain = None if way == NONE else rewards.gain(way, agent)
+            row = {"loops": loops, "experts": experts, "way": way, "agent": agent}
+            row |= _numbers(maze_estimate(rewards.of(way, agent)), gain)
+            row["advised"] = round(float(rewards.advised(way, agent).mean(axis=1).mean()), 1)
+            row["median_steps"] = float(np.median(rewards.numbers("steps", way, agent)))
+            found.append(row)
         for way in (NONE, THESIS):
             gain = None if way == NONE else rewards.learning_gain()
-            reward = maze_estimate(rewards.learning(way))
-            found.append(_row({**cell, "way": way, "agent": "q-learning"}, reward, gain))
+            row = {"loops": loops, "experts": experts, "way": way, "agent": "q-learning"}
+            found.append(row | _numbers(maze_estimate(rewards.learning(way)), gain))
     return found
 
 
-def _row(keys: Mapping[str, Any], reward: Estimate, gain: Estimate | None) -> dict[str, Any]:
-    row = {**keys, "reward": round(reward.value, 1)}
-    row["ci95"] = [round(end, 1) for end in reward.ci95] if reward.ci95 else None
+def _numbers(reward: Estimate, gain: Estimate | None) -> dict[str, Any]:
+    ends = [round(end, 1) for end in reward.ci95] if reward.ci95 else None
+    row: dict[str, Any] = {"reward": round(reward.value, 1), "ci95": ends}
     if gain is not None:
         certain = bool(gain.ci95 and gain.ci95[0] * gain.ci95[1] > 0)
         row |= {"gain": round(gain.value, 1), "gain_is_certain": certain}

@@ -15,18 +15,10 @@ from lifelore.action.advice.goal_model import GoalModel, extend_goal_models
 from lifelore.core.errors import InputError
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import GridWorld
-from lifelore.experiments.chapter3.advice_mazes import (
-    AGENTS,
-    Maze,
-    errands_of,
-    goal_models_of,
-    maze_of,
-    policy_of,
-    thesis_advisor,
-    walk,
-)
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice import mazes
+from lifelore.experiments.chapter3.advice.learning import learn_errands
+from lifelore.experiments.chapter3.advice.mazes import AGENTS, Maze, goal_models_of, thesis_advisor
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 
 __all__ = ["cells", "check", "run_cell"]
 NONE, THESIS, BETTER, UNIFORM_ONLY, GOAL_UNKNOWN = "none", "thesis", "better", "uniform only", "goal unknown"
@@ -37,9 +29,9 @@ Q_LEARNING = {"tasks", "episodes", "max_episode_steps", "learning_rate", "last",
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One maze: all agents unadvised and under each advisor of each kind of experts; and Q-learning."""
-    maze = maze_of(settings, cell, seed)
+    maze = mazes.maze_of(settings, cell, seed)
     silent = thesis_advisor(settings, goal_models_of(settings, maze, "policies"))
-    walks = _walks(settings, maze, dict.fromkeys(maze.errands, silent), None, NONE, heeds=False)
+    walks = _walks(settings, maze, silent, None, NONE, heeds=False)
     learners = [{"experts": None, "final": _final_rewards(settings, maze, None)}]
     for experts in settings["experts"]:
         purposes = goal_models_of(settings, maze, experts)
@@ -49,7 +41,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             UNIFORM_ONLY: better_advisor(settings, maze.world, purposes, explorers=False),
         }
         for way, advisor in advisors.items():
-            walks += _walks(settings, maze, dict.fromkeys(maze.errands, advisor), experts, way)
+            walks += _walks(settings, maze, advisor, experts, way)
         if {"loops": cell["loops"], "experts": experts} == settings["default"]:
             others = {goal: [p for p in purposes if goal not in p.goals] for goal in maze.errands}
             lacking = {goal: better_advisor(settings, maze.world, known) for goal, known in others.items()}
@@ -58,9 +50,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {**cell, "walks": walks, "learners": learners}
 
 
-def better_advisor(
-    settings: Mapping, world: GridWorld, purposes: Sequence[GoalModel], explorers: bool = True
-) -> Advisor:
+def better_advisor(settings: Mapping, world: GridWorld, purposes: Sequence[GoalModel], explorers=True) -> Advisor:
     """Goals apart, at most 40 steps in 100 advised; `explorers`: whether it knows how each of them walks."""
     chosen = replace(BETTER_SETTINGS, kappa=settings["kappa"], window=settings["window"])
     others = None
@@ -71,24 +61,15 @@ def better_advisor(
 
 
 def _walks(
-    settings: Mapping,
-    maze: Maze,
-    advisors: Mapping[int, Advisor],
-    experts: str | None,
-    way: str,
-    heeds: bool = True,
+    settings: Mapping, maze: Maze, advisor, experts: str | None, way: str, heeds: bool = True
 ) -> list[dict]:
     """Each agent's errands: whether the goal was reached, in how many steps, and how many were advised."""
     found = []
     for agent in AGENTS:
-        entry = {"experts": experts, "way": way, "agent": agent, "reached": [], "steps": [], "advised": []}
-        for number, errand in enumerate(errands_of(maze, settings["tasks"])):
-            policy = policy_of(maze.world, agent, errand)
-            walked = walk(maze, errand, policy, advisors[errand.goal], number, settings["max_steps"], heeds)
-            entry["reached"].append(int(walked.reached))
-            entry["steps"].append(len(walked.states))
-            entry["advised"].append(int(walked.advised.sum()))
-        found.append(entry)
+        walks = mazes.walks_of(settings, maze, mazes.policies_of(settings, maze, agent), advisor, heeds)
+        numbers = {"reached": [int(w.reached) for w in walks], "steps": [len(w.states) for w in walks]}
+        numbers["advised"] = [int(w.advised.sum()) for w in walks]
+        found.append({"experts": experts, "way": way, "agent": agent, **numbers})
     return found
 
 
@@ -96,21 +77,15 @@ def _final_rewards(settings: Mapping, maze: Maze, pooled: GoalModel | None) -> l
     """Q-learning's mean reward over the last episodes of each task, of 1000."""
     learning = settings["q_learning"]
     advice = None if pooled is None else exploration_rows(pooled, settings["kappa"])
-    final = []
-    for number, errand in enumerate(errands_of(maze, learning["tasks"])):
-        tables = errand_tables(maze, errand, number, "one")
-        reached = learn_errand(learning, maze, tables, number, learning["schedule"], advice)[1].reached
-        final.append(float(1000 * reached[-learning["last"] :].mean()))
-    return final
+    learnt = learn_errands(learning, maze, "one", learning["schedule"], advice)
+    return [float(1000 * curve.reached[-learning["last"] :].mean()) for _, curve in learnt]
 
 
 def check(settings: Mapping) -> None:
     learning = settings["q_learning"]
     if set(learning) != Q_LEARNING:
-        raise InputError(
-            f"q_learning must have exactly {', '.join(sorted(Q_LEARNING))}, got {', '.join(learning)}"
-        )
+        keys = ", ".join(sorted(Q_LEARNING))
+        raise InputError(f"q_learning must have exactly {keys}, got {', '.join(learning)}")
     if not 1 <= learning["tasks"] <= settings["tasks"] or not 1 <= learning["last"] <= learning["episodes"]:
-        raise InputError(
-            f"q_learning must have tasks in [1, {settings['tasks']}] and last in [1, episodes], got {learning}"
-        )
+        bounds = f"tasks in [1, {settings['tasks']}] and last in [1, episodes]"
+        raise InputError(f"q_learning must have {bounds}, got {learning}")

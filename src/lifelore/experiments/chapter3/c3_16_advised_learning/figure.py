@@ -2,56 +2,53 @@
 
 from collections.abc import Mapping
 from itertools import product
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import ADVISOR_COLOURS, draw_maze_grid
-from lifelore.experiments.chapter3.advice_mazes import grid_of
-from lifelore.experiments.chapter3.reward_curves import schedule_in_brief, schedule_in_words
+from lifelore.experiments.chapter3.advice.figures import ADVISOR_COLOURS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.mazes import grid_of
+from lifelore.experiments.chapter3.figures.reward_curves import curve_edges
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief, schedule_in_words
+from lifelore.experiments.engine.curve_blocks import block_centres
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure, two_rows
 
 METHODS = {"plain": "without advice", "advised": "with advice"}
 LOOKS = {"without advice": {"color": ADVISOR_COLOURS["none"]}, "with advice": {"color": ADVISOR_COLOURS["thesis"]}}
 STARTS = {"one": "Every episode of a task starts in one cell", "any": "Episodes start anywhere"}
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Learning curves by start above, the grid of open choices below."""
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(10.4, 6.9)
-        upper, lower = two_rows(figure, (1, 0.95))
-        panels = upper.subplots(1, len(settings["starts"]), squeeze=False, sharey=True)[0]
-        for axes, starts in zip(panels, settings["starts"], strict=True):
-            _draw_starts(axes, result, starts)
-        panels[0].set_ylabel("reward of an episode, of 1000")
-        panels[-1].legend(loc="lower right")
-        _draw_grid(lower.subplots(), result)
-        lower.supxlabel(
-            f"Shaded: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} tasks; curves "
-            f"at loops {settings['default']['loops']:g}, {schedule_in_words(settings['default']['schedule'])}. "
-            "Framed: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 6.9)
+    upper, lower = two_rows(figure, (1, 0.95))
+    panels = upper.subplots(1, len(settings["starts"]), squeeze=False, sharey=True)[0]
+    for axes, starts in zip(panels, settings["starts"], strict=True):
+        _draw_starts(axes, result, starts)
+    panels[0].set_ylabel("reward of an episode, of 1000")
+    panels[-1].legend(loc="lower right")
+    _draw_grid(lower.subplots(), result)
+    lower.supxlabel(
+        f"Shaded: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} tasks; curves "
+        f"at loops {settings['default']['loops']:g}, {schedule_in_words(settings['default']['schedule'])}. "
+        "Framed: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _draw_starts(axes: "Axes", result: Mapping, starts: str) -> None:
-    edges = np.array(next(row["curve_edges"] for row in result["rows"] if "curve_edges" in row))
-    series = {}
+def _draw_starts(axes: Axes, result: Mapping, starts: str) -> None:
+    edges, series = curve_edges(result), {}
     for row in result["rows"]:
         if "curve_of" in row and row["starts"] == starts:
             mean, spread = np.array(row["mean"]), np.array(row["deviation"])
             band = {"low": np.clip(mean - spread, 0, None), "high": np.clip(mean + spread, None, 1000)}
             series[METHODS[row["curve_of"]]] = {"mean": mean, **band}
-    middle = np.sqrt((edges[:-1] + 1) * edges[1:])
-    draw_curves(axes, middle, series, looks=LOOKS, title=STARTS[starts], logarithmic="x", legend=False)
+    look = {"looks": LOOKS, "title": STARTS[starts], "logarithmic": "x", "legend": False}
+    draw_curves(axes, block_centres(edges), series, **look)
     axes.axvline(10, color=INK, lw=0.9, ls=(0, (4, 3)))
     axes.annotate(
         "a handful", (10, 1), (3, -2), xycoords=("data", "axes fraction"), textcoords="offset points",
@@ -62,17 +59,16 @@ def _draw_starts(axes: "Axes", result: Mapping, starts: str) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     settings, default = result["settings"], result["settings"]["default"]
-    cells = ResultsTable(
-        (row for row in result["rows"] if "plain" in row), ("loops", "experts", "starts", "schedule")
-    )
+    rows, keys = (row for row in result["rows"] if "plain" in row), ("loops", "experts", "starts", "schedule")
+    cells = ResultsTable(rows, keys)
     uses: list[tuple] = list(product(settings["starts"], settings["schedules"], METHODS))
-    values = [
-        [100 * cells.record(loops=n, experts=e, starts=s, schedule=f)[m]["in_ten"] for n, e in grid_of(settings)]
-        for s, f, m in uses
-    ]
-    sides = [f"start {s}, {schedule_in_brief(f)}, {METHODS[m]}" for s, f, m in uses]
+    values, sides = [], []
+    for s, f, m in uses:
+        found = [cells.record(loops=n, experts=e, starts=s, schedule=f)[m] for n, e in grid_of(settings)]
+        values.append([100 * numbers["in_ten"] for numbers in found])
+        sides.append(f"start {s}, {schedule_in_brief(f)}, {METHODS[m]}")
     framed = uses.index((default["starts"], default["schedule"], "advised"))
     title = "Goals found within ten episodes (% of tasks; bold: most)"
     look = {"neutral": 0.0, "spread": 100.0, "words": "{:.0f}".format}

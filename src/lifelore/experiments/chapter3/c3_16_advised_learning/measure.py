@@ -6,7 +6,7 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.advice_mazes import grid_of, grid_share, maze_estimate
+from lifelore.experiments.chapter3.advice.mazes import grid_of, grid_share, maze_estimate
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.results_table import ResultsTable
 

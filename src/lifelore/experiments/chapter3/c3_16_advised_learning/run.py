@@ -12,9 +12,9 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advisor import exploration_rows
 from lifelore.action.advice.goal_model import GoalModel
-from lifelore.experiments.chapter3.advice_mazes import errands_of, goal_models_of, maze_of
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
-from lifelore.experiments.chapter3.advised_learning import errand_tables, learn_errand
+from lifelore.experiments.chapter3.advice.learning import learn_errands
+from lifelore.experiments.chapter3.advice.mazes import goal_models_of, maze_of
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 from lifelore.experiments.engine.curve_blocks import block_means
 
 __all__ = ["cells", "run_cell"]
@@ -31,15 +31,11 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         advice[experts] = exploration_rows(pooled, settings["kappa"])
     learners = []
     for starts, schedule, experts in product(settings["starts"], settings["schedules"], advice):
-        tasks, curves = [], []
-        for number, errand in enumerate(errands_of(maze, settings["tasks"])):
-            tables = errand_tables(maze, errand, number, starts)
-            reached = learn_errand(settings, maze, tables, number, schedule, advice[experts])[1].reached
-            tasks.append(summary(settings, reached))
-            curves.append(1000 * reached.astype(float))
-        about = {"starts": starts, "schedule": schedule, "experts": experts}
+        reached = [curve.reached for _, curve in learn_errands(settings, maze, starts, schedule, advice[experts])]
+        tasks = [summary(settings, of_task) for of_task in reached]
         numbers = {key: [task[key] for task in tasks] for key in tasks[0]}
-        learners.append({**about, **numbers, "curve": block_means(np.mean(curves, axis=0))})
+        numbers["curve"] = block_means(np.mean([1000 * of_task.astype(float) for of_task in reached], axis=0))
+        learners.append({"starts": starts, "schedule": schedule, "experts": experts, **numbers})
     return {**cell, "learners": learners}
 
 

@@ -1,18 +1,13 @@
 """Measures and rows of claim C3.17."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter3.advice_mazes import (
-    AGENTS,
-    grid_of,
-    grid_share,
-    maze_estimate,
-    without_interval,
-)
-from lifelore.experiments.engine.estimates import is_above
+from lifelore.experiments.chapter3.advice.mazes import AGENTS, grid_of, grid_share, maze_estimate
+from lifelore.experiments.engine.estimates import exact_value, is_above
 from lifelore.experiments.engine.results_table import ResultsTable, curve_of
 
 RISE = 5.0
@@ -42,18 +37,16 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     agents, at_kappa = agents_of(settings), settings["kappas"].index(settings["kappa"])
     amounts = {agent: _per_100(table, default, agent) for agent in agents}
     at_zero = min(_per_100(table, default, agent, "known")[:, 0].mean() for agent in agents)
-    first, last, random, optimal = (
-        amounts[agent][:, at_kappa]
-        for agent in (*(f"q {settings['snapshots'][i]}" for i in (0, -1)), "random", "optimal")
-    )
+    early, late = (f"q {settings['snapshots'][i]}" for i in (0, -1))
+    first, last, random, optimal = (amounts[a][:, at_kappa] for a in (early, late, "random", "optimal"))
     above = [row["above"] for row in ceilings.records]
     return {
-        "advice_at_zero": without_interval(at_zero, len(agents)),
+        "advice_at_zero": exact_value(at_zero, len(agents)),
         "agents_falling": grid_share([_falls(amount) for amount in amounts.values()]),
-        "largest_rise": without_interval(max(map(_rise, amounts.values())), len(agents)),
+        "largest_rise": exact_value(max(map(_rise, amounts.values())), len(agents)),
         "early_minus_random": maze_estimate(first - random),
         "late_minus_optimal": maze_estimate(last - optimal),
-        "gains_above_ceiling": without_interval(sum(above), len(above)),
+        "gains_above_ceiling": exact_value(sum(above), len(above)),
         "grid_falling": grid_share(_grid_answers(settings, table)),
     }
 
@@ -71,11 +64,10 @@ def _rise(amounts: np.ndarray) -> float:
 
 def _grid_answers(settings: Mapping, table: ResultsTable) -> list[bool]:
     answers = []
-    for heeds in (True, False):
-        for loops, experts in grid_of(settings):
-            cell = {"loops": loops, "experts": experts, "heeds": heeds}
-            amounts = [_per_100(table, cell, agent) for agent in agents_of(settings)]
-            answers.append(all(_falls(a) and _rise(a) <= RISE for a in amounts))
+    for heeds, (loops, experts) in product((True, False), grid_of(settings)):
+        cell = {"loops": loops, "experts": experts, "heeds": heeds}
+        amounts = [_per_100(table, cell, agent) for agent in agents_of(settings)]
+        answers.append(all(_falls(a) and _rise(a) <= RISE for a in amounts))
     return answers
 
 
@@ -83,11 +75,10 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Advice by κ for every agent and cell of the grid, with its deviation over mazes; and the ceilings."""
     (table, ceilings), found = _tables(results), []
     for loops, experts in grid_of(settings):
-        for heeds in (True, False):
+        for heeds, agent in product((True, False), agents_of(settings)):
             cell = {"loops": loops, "experts": experts, "heeds": heeds}
-            for agent in agents_of(settings):
-                curve = curve_of(_per_100(table, cell, agent), 1)
-                found.append({**cell, "agent": agent, "mean": curve["mean"], "deviation": curve["deviation"]})
+            curve = curve_of(_per_100(table, cell, agent), 1, ("mean", "deviation"))
+            found.append({**cell, "agent": agent, **curve})
         states = ceilings.values("states", loops=loops, experts=experts).mean(axis=0)
         found.append({"loops": loops, "experts": experts, "ceiling": np.round(states, 3).tolist()})
     return found

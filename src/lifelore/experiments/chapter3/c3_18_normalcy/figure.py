@@ -1,54 +1,47 @@
 """Figure of claim C3.18: P(M₁ | H) and rewards of explorers, advised and not; what advice adds by each reading."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice_figures import AGENT_COLOURS, EXPLORERS, draw_maze_grid
-from lifelore.experiments.chapter3.advice_mazes import grid_of
+from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, EXPLORERS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure, two_rows
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure, two_rows
 
 STYLES = {"alone": "-", "told": (0, (1.2, 1.2))}
 READINGS = {"told": "all steps", "own": "own steps", "unadvised": "unadvised steps"}
 
 
-def draw(result: Mapping):
+@house_style()
+def draw(result: Mapping) -> Figure:
     """Curves by steps above, the grid of loop densities and experts below."""
+    from matplotlib.lines import Line2D
+
     settings = result["settings"]
-    with house_style():
-        figure = new_figure(10.4, 8.0)
-        upper, lower = two_rows(figure, (0.85, 1.15))
-        left, right = upper.subplots(1, 2)
-        _draw_lines(left, result, "normal", 1.0)
-        _draw_lines(right, result, "reward", 1000.0)
-        left.set(title="P(M₁ | H), advised steps counted, of those still walking", ylabel="P(M₁ | H)")
-        right.set_title("Reward so far, of 1000")
-        upper.legend(*_handles(), loc="outside upper left", ncols=6)
-        _draw_grid(lower.subplots(), result)
-        lower.supxlabel(
-            f"{settings['mazes']} mazes × {settings['tasks']} tasks; curves at loops "
-            f"{settings['default']['loops']:g}, experts {settings['default']['experts']}. Bold: the interval over "
-            "mazes excludes 0. Framed: the default.",
-            fontsize=8, color=GREY,
-        )  # fmt: skip
+    figure = new_figure(10.4, 8.0)
+    upper, lower = two_rows(figure, (0.85, 1.15))
+    left, right = upper.subplots(1, 2)
+    _draw_lines(left, result, "normal", 1.0)
+    _draw_lines(right, result, "reward", 1000.0)
+    left.set(title="P(M₁ | H), advised steps counted, of those still walking", ylabel="P(M₁ | H)")
+    right.set_title("Reward so far, of 1000")
+    lines = [Line2D([], [], color=AGENT_COLOURS[agent], lw=2.2) for agent in EXPLORERS]
+    lines += [Line2D([], [], color=INK, lw=1.6, ls=style) for style in STYLES.values()]
+    labels = [*EXPLORERS.values(), "no advice", "advised"]
+    upper.legend(lines, labels, loc="outside upper left", ncols=6)
+    _draw_grid(lower.subplots(), result)
+    lower.supxlabel(
+        f"{settings['mazes']} mazes × {settings['tasks']} tasks; curves at loops "
+        f"{settings['default']['loops']:g}, experts {settings['default']['experts']}. Bold: the interval over "
+        "mazes excludes 0. Framed: the default.",
+        fontsize=8, color=GREY,
+    )  # fmt: skip
     return figure
 
 
-def _handles():
-    from matplotlib.lines import Line2D
-
-    lines = [Line2D([], [], color=AGENT_COLOURS[agent], lw=2.2) for agent in EXPLORERS]
-    lines += [Line2D([], [], color=INK, lw=1.6, ls=style) for style in STYLES.values()]
-    return lines, [*EXPLORERS.values(), "no advice", "advised"]
-
-
-def _draw_lines(axes: "Axes", result: Mapping, key: str, top: float) -> None:
+def _draw_lines(axes: Axes, result: Mapping, key: str, top: float) -> None:
     settings, series, looks = result["settings"], {}, {}
     ends = settings["max_steps"] / settings["blocks"] * np.arange(1, settings["blocks"] + 1)
     for row in (row for row in result["rows"] if "curve_of" in row):
@@ -60,7 +53,7 @@ def _draw_lines(axes: "Axes", result: Mapping, key: str, top: float) -> None:
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_grid(axes: "Axes", result: Mapping) -> None:
+def _draw_grid(axes: Axes, result: Mapping) -> None:
     cells = ResultsTable((row for row in result["rows"] if "gain" in row), ("loops", "experts", "agent"))
     values, certain, sides = [], [], []
     for reading, words in READINGS.items():

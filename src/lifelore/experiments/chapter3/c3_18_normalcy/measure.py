@@ -6,8 +6,8 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import grid_of, grid_share, maze_estimate, without_interval
-from lifelore.experiments.engine.estimates import UNMEASURED, is_above
+from lifelore.experiments.chapter3.advice.mazes import grid_of, grid_share, maze_estimate
+from lifelore.experiments.engine.estimates import UNMEASURED, exact_value, is_above
 from lifelore.experiments.engine.results_table import ResultsTable
 
 READINGS = {"told": "", "own": "_own", "unadvised": "_unadvised"}
@@ -24,7 +24,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for reading, ending in READINGS.items():
         raised = [_raised(table, reading, *cell) for cell in grid_of(settings)]
         at_default = _raised(table, reading, **settings["default"])
-        found[f"explorers_raised{ending}"] = without_interval(at_default, len(EXPLORERS))
+        found[f"explorers_raised{ending}"] = exact_value(at_default, len(EXPLORERS))
         found[f"grid_all_raised{ending}"] = grid_share([number == len(EXPLORERS) for number in raised])
     return found
 

@@ -14,41 +14,31 @@ from lifelore.action.advice.advised_walk import Walk
 from lifelore.action.advice.advisor import Advisor
 from lifelore.core.errors import InputError
 from lifelore.domains.advice.explorers import EXPLORERS
-from lifelore.experiments.chapter3.advice_mazes import (
-    errands_of,
-    goal_models_of,
-    maze_of,
-    policy_of,
-    thesis_advisor,
-    walk,
-)
-from lifelore.experiments.chapter3.advice_mazes import maze_cells as cells
+from lifelore.experiments.chapter3.advice import mazes
+from lifelore.experiments.chapter3.advice.mazes import maze_cells as cells
 
 __all__ = ["cells", "check", "run_cell"]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One maze: P(M₁ | H) of each explorer, alone and advised by the thesis's advisor of each kind of experts."""
-    maze, found = maze_of(settings, cell, seed), []
+    maze, found = mazes.maze_of(settings, cell, seed), []
     n_blocks, length = settings["blocks"], settings["max_steps"] // settings["blocks"]
     for experts in settings["experts"]:
-        advisor = thesis_advisor(settings, goal_models_of(settings, maze, experts))
+        advisor = mazes.thesis_advisor(settings, mazes.goal_models_of(settings, maze, experts))
         for agent in EXPLORERS:
-            alone, told = [], []
-            for number, errand in enumerate(errands_of(maze, settings["tasks"])):
-                policy = policy_of(maze.world, agent, errand)
-                for walks, heeds in ((alone, False), (told, True)):
-                    walks.append(walk(maze, errand, policy, advisor, number, settings["max_steps"], heeds))
+            policies = mazes.policies_of(settings, maze, agent)
+            alone, advised = (mazes.walks_of(settings, maze, policies, advisor, heeds) for heeds in (False, True))
             found.append({
                 "experts": experts,
                 "agent": agent,
                 "alone": [float(w.p_normal.mean()) for w in alone],
-                "told": [float(w.p_normal.mean()) for w in told],
-                "own": [own_normalcy(advisor, w) for w in told],
-                "unadvised": [unadvised_normalcy(w) for w in told],
-                "advised_share": [float(w.advised.mean()) for w in told],
+                "told": [float(w.p_normal.mean()) for w in advised],
+                "own": [own_normalcy(advisor, w) for w in advised],
+                "unadvised": [unadvised_normalcy(w) for w in advised],
+                "advised_share": [float(w.advised.mean()) for w in advised],
                 "curve_alone": block_curve(alone, n_blocks, length),
-                "curve_told": block_curve(told, n_blocks, length),
+                "curve_told": block_curve(advised, n_blocks, length),
             })  # fmt: skip
     return {**cell, "explorers": found}
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter4.golf_runs import WOOD
+from lifelore.experiments.chapter4.golf.rounds import WOOD
 from lifelore.experiments.engine.estimates import exact_share, exact_value
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -14,7 +14,6 @@ PRINTED_ENTROPY = (1.3863, 0.2237, 0.0)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """The printed table's numbers from exact models, from learnt ones, and how often rounds go that way."""
     table = ResultsTable(results, ("part", "first"))
     printed = table.record(part="printed")
     measured = {f"entropy_{k + 1}": exact_value(printed["entropy"][k]) for k in range(len(PRINTED_ENTROPY))}
@@ -34,14 +33,14 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The parts; of learnt models the quantiles of the entropies after one and two shots."""
-    kept = []
+    """The parts; of learnt models the quantiles of the entropies after the first two shots."""
+    found = []
     for result in results:
         row = {key: value for key, value in result.items() if key not in ("entropy", "irons")}
         if result["part"] == "learnt":
-            quantiles = np.quantile(np.array(result["entropy"]), [0.025, 0.25, 0.5, 0.75, 0.975], axis=0)
+            quantiles = np.quantile(result["entropy"], [0.025, 0.25, 0.5, 0.75, 0.975], axis=0)
             row["entropy_quantiles"] = quantiles.round(5).T.tolist()
         else:
             row["entropy"] = [round(h, 5) for h in result["entropy"]]
-        kept.append(row)
-    return kept
+        found.append(row)
+    return found

@@ -1,12 +1,13 @@
 """C4.1: golf's printed shots under exact and learnt models, and rounds played. Thesis: §4.6.1, Tables 4.1, 4.2."""
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CLUBS
-from lifelore.experiments.chapter4.golf_runs import IRON, WOOD, exact_library, learnt_library, play_holes
+from lifelore.experiments.chapter4.golf.rounds import IRON, WOOD, exact_library, learnt_library, play_holes
 from lifelore.interaction.beliefs.belief import entropy, log_prior, update
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import Greedy, tied_shares
@@ -18,30 +19,23 @@ PRINTED_CATEGORIES = (5, 4, 3, 4, 3, 4, 4, 3)
 
 def cells(settings: Mapping) -> list[dict]:
     """The printed shots under the exact models, the same under learnt ones, and rounds played."""
-    learnt = [
-        {"part": "learnt", "samples": n, "pseudo_count": pseudo}
-        for n in settings["samples"]
-        for pseudo in settings["pseudo_counts"]
-    ]
+    kinds = product(settings["samples"], settings["pseudo_counts"])
+    learnt = [{"part": "learnt", "samples": n, "pseudo_count": pseudo} for n, pseudo in kinds]
     return [{"part": "printed"}, *learnt, {"part": "played", "first": None}, {"part": "played", "first": WOOD}]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One part's entropies and clubs."""
     if cell["part"] == "printed":
-        found = follow_printed(exact_library())
-        return {**cell, "first_club": greedy_shares(exact_library()), **found}
+        return {**cell, "first_club": greedy_shares(exact_library()), **follow_printed(exact_library())}
     if cell["part"] == "played":
         return {**cell, **_played(settings, cell["first"], seed)}
-    generator = stream(seed, "libraries", cell["samples"])
-    followed = [
-        follow_printed(learnt_library(generator, cell["samples"], cell["pseudo_count"]))
-        for _ in range(settings["libraries"])
-    ]
+    generator, known = stream(seed, "libraries", cell["samples"]), (cell["samples"], cell["pseudo_count"])
+    followed = [follow_printed(learnt_library(generator, *known)) for _ in range(settings["libraries"])]
     return {
         **cell,
-        "entropy": [[round(h, 5) for h in one["entropy"][1:3]] for one in followed],
-        "irons": [round(float(np.mean(one["iron"])), 4) for one in followed],
+        "entropy": [[round(h, 5) for h in found["entropy"][1:3]] for found in followed],
+        "irons": [round(float(np.mean(found["iron"])), 4) for found in followed],
     }
 
 

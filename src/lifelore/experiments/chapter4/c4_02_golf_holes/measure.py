@@ -6,7 +6,8 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter4.c4_02_golf_holes.run import GREEDY
-from lifelore.experiments.chapter4.golf_runs import EXACT, LEARNT, WOOD
+from lifelore.experiments.chapter4.golf.rounds import WOOD
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import ResultsTable
 

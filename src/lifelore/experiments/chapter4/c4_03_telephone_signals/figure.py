@@ -1,19 +1,14 @@
 """Regret on the telephone by kind of signal, with the calls' transition system (Figures 4.5 and 4.6)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter4.c4_03_telephone_signals.run import SIGNALS
-from lifelore.experiments.chapter4.reuse_figures import lines_of, look_of
+from lifelore.experiments.chapter4.reuse.looks import lines_of, look_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREY, INK, LIGHT, PAPER, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREY, INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
 
 PLACES = {
     "start": (0.0, 0.0),
@@ -38,8 +33,7 @@ EDGES = {
 """The transition system of reading A."""
 
 
-def draw(result: Mapping) -> "Figure":
-    """The transition system, sums by number of models, and regret by call for exact and learnt models."""
+def draw(result: Mapping) -> Figure:
     settings = result["settings"]
     table = ResultsTable(result["rows"], ("reading", "models", "samples", "signal")).select(reading="A")
     kinds = {"exact": None, "learnt": settings["samples"]}
@@ -59,23 +53,19 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_regret(axes: "Axes", table: ResultsTable, title: str) -> None:
-    mean, above = {}, {}
-    for row in table.records:
-        mean[row["signal"]] = {"mean": row["mean"]}
-        above[row["signal"]] = {"mean": np.array(row["mean"]) + row["deviation"]}
-    looks = lines_of(SIGNALS, linewidth=2)
-    looks[SIGNALS[0]]["linewidth"] = 3.6  # the first two nearly coincide
-    draw_curves(axes, None, mean, looks=looks, title=title, xlabel="call", legend=False)
-    handles = axes.get_lines()
-    draw_curves(axes, None, above, looks=lines_of(SIGNALS, linewidth=0.8, alpha=0.6), title=title, legend=False)
-    for line in axes.get_lines()[len(handles) :]:
-        line.set_label(None)
-    axes.set(xlabel="call", ylim=(0, None), xlim=(1, None))
+def _draw_regret(axes: Axes, table: ResultsTable, title: str) -> None:
+    """Means, and thinner a deviation above them."""
+    thick = lines_of(SIGNALS, linewidth=2)
+    thick[SIGNALS[0]]["linewidth"] = 3.6  # the first two nearly coincide
+    mean = {row["signal"]: {"mean": row["mean"]} for row in table.records}
+    above = {f"_{row['signal']}": {"mean": np.add(row["mean"], row["deviation"])} for row in table.records}
+    thin = {f"_{name}": look for name, look in lines_of(SIGNALS, linewidth=0.8, alpha=0.6).items()}
+    draw_curves(axes, None, mean | above, looks=thick | thin, title=title, xlabel="call", legend=False)
+    axes.set(ylim=(0, None), xlim=(1, None))
     axes.grid(axis="y", color=LIGHT)
 
 
-def _draw_sums(axes: "Axes", table: ResultsTable, settings: Mapping, kinds: Mapping) -> None:
+def _draw_sums(axes: Axes, table: ResultsTable, settings: Mapping, kinds: Mapping) -> None:
     """Regret over all calls: dots for means, lines up to a deviation above them."""
     places: dict[float, str] = {}
     for i, n in enumerate(settings["models"]):
@@ -91,7 +81,7 @@ def _draw_sums(axes: "Axes", table: ResultsTable, settings: Mapping, kinds: Mapp
     axes.grid(axis="y", color=LIGHT)
 
 
-def draw_call_graph(axes: "Axes", edges: Mapping[tuple[str, str], tuple[str, float]], fontsize: float = 7) -> None:
+def draw_call_graph(axes: Axes, edges: Mapping[tuple[str, str], tuple[str, float]], fontsize: float = 7) -> None:
     """Draw states as circles, those that end the call with a thick rim.
 
     `edges`: (state, next state) to the name of its probability and its reward.
@@ -100,30 +90,25 @@ def draw_call_graph(axes: "Axes", edges: Mapping[tuple[str, str], tuple[str, flo
 
     for (start, end), (probability, reward) in edges.items():
         _draw_edge(axes, start, end, probability, f"[{reward:g}]", fontsize)
-    for name, (x, y) in PLACES.items():
-        thick = name in _ENDS
-        axes.add_patch(Circle((x, y), _RADIUS, fc=PAPER, ec=INK, lw=3 if thick else 1.2, zorder=3))
-        axes.text(x, y, name, ha="center", va="center", fontsize=fontsize - 1, zorder=4)
+    for name, place in PLACES.items():
+        axes.add_patch(Circle(place, _RADIUS, fc=PAPER, ec=INK, lw=3 if name in _ENDS else 1.2, zorder=3))
+        axes.text(*place, name, ha="center", va="center", fontsize=fontsize - 1, zorder=4)
     axes.set(xlim=(-0.9, 8.7), ylim=(-2.95, 2.95), aspect="equal")
     axes.axis("off")
 
 
-def _draw_edge(axes: "Axes", start: str, end: str, probability: str, reward: str, fontsize: float) -> None:
-    (x0, y0), (x1, y1) = PLACES[start], PLACES[end]
-    length = ((x1 - x0) ** 2 + (y1 - y0) ** 2) ** 0.5
-    dx, dy = (x1 - x0) / length, (y1 - y0) / length
-    tail = (x0 + dx * _RADIUS, y0 + dy * _RADIUS)
-    head = (x1 - dx * (_RADIUS + 0.04), y1 - dy * (_RADIUS + 0.04))
+def _draw_edge(axes: Axes, start: str, end: str, probability: str, reward: str, fontsize: float) -> None:
+    place, way = np.array(PLACES[start]), np.subtract(PLACES[end], PLACES[start])
+    step = way / np.hypot(*way)
+    tail, head = place + _RADIUS * step, place + way - (_RADIUS + 0.04) * step
     arrow = {"arrowstyle": "-|>", "color": GREY, "lw": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", head, tail, arrowprops=arrow, zorder=2)
-    # Nearer the start, where edges to one state have not yet met.
-    share = 0.5 if dy == 0 else 0.52 if start == "frustrated" else 0.34
-    x, y = tail[0] + share * (head[0] - tail[0]), tail[1] + share * (head[1] - tail[1])
-    box = {"boxstyle": "round,pad=0.12", "fc": PAPER, "ec": "none"}
-    above = 0.28 if dy == 0 else 0.17
-    axes.text(
-        x, y + above, probability, color=BLUE, ha="center", va="center", fontsize=fontsize, bbox=box, zorder=2.5
-    )
-    axes.text(
-        x, y - above, reward, color=INK, ha="center", va="center", fontsize=fontsize - 2, bbox=box, zorder=2.5
-    )
+    level = way[1] == 0
+    # Nearer the start, where edges to the same state have not yet met.
+    x, y = tail + (0.5 if level else 0.52 if start == "frustrated" else 0.34) * (head - tail)
+    above = 0.28 if level else 0.17
+    for text, colour, height, size in ((probability, BLUE, above, fontsize), (reward, INK, -above, fontsize - 2)):
+        axes.text(
+            x, y + height, text, color=colour, ha="center", va="center", fontsize=size, zorder=2.5,
+            bbox={"boxstyle": "round,pad=0.12", "fc": PAPER, "ec": "none"},
+        )  # fmt: skip

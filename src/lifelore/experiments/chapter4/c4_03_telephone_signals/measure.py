@@ -7,8 +7,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter4.c4_03_telephone_signals.run import DEFAULT_READING, SIGNALS
-from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import EXACT, LEARNT
-from lifelore.experiments.chapter4.reuse_runs import grouped_mean
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, grouped_mean
 from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -30,7 +29,6 @@ def orders(sums: Mapping[str, np.ndarray]) -> dict[str, Estimate]:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Order of the signals and callers who end without regret; the order over the grid; reading B."""
     table = ResultsTable(results, ("reading", "models", "samples", "signal"))
     few, n, call = settings["samples"], settings["default_models"], settings["by_call"]
 
@@ -49,8 +47,12 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             measured[f"zero_at_call_{call}_{name}"] = exact_share(np.arange(ended.size) < row["free"])
             measured[f"zero_at_end_{name}"] = exact_share(ended <= settings["calls"])
     grid = [order(models, samples) for models in settings["models"] for samples in (few, None)]
-    measured["grid_order_of_means"] = share_of([all(one[k].value > 0 for k in one) for one in grid])
-    measured["grid_order_beyond_doubt"] = share_of([all(is_above(one[k], 0.0) for k in one) for one in grid])
+    measured["grid_order_of_means"] = share_of(
+        [all(number.value > 0 for number in found.values()) for found in grid]
+    )
+    measured["grid_order_beyond_doubt"] = share_of(
+        [all(is_above(number, 0.0) for number in found.values()) for found in grid]
+    )
     if "B" in settings["readings"]:
         measured["regret_sar_minus_sas_reading_B"] = order(n, None, "B")["regret_sar_minus_sas"]
     return measured

@@ -1,17 +1,35 @@
-"""C4.3: a telephone service that learns from calls, their rewards, or their sum. Thesis: §4.6.2, Figure 4.6."""
+"""C4.3: a telephone service that learns from calls, their rewards, or their sum. Thesis: §4.6.2, Figure 4.6.
+
+The service samples the belief. It knows for each caller's type and language model the distribution of the signal
+and of the utility, exactly or learnt from `samples` calls a pair. A caller's uniform numbers are the same whatever
+is signalled, so that the signals are compared on the same luck. Callers come in groups; where models are learnt
+each group has a library of its own.
+"""
 
 from collections.abc import Mapping
 
-from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.c4_03_telephone_signals.telephone_runs import (
-    EXACT,
-    LEARNT,
-    SIGNAL_OF_PATH,
-    serve,
-)
+import numpy as np
+from numpy.typing import NDArray
 
-SIGNALS = tuple(SIGNAL_OF_PATH)
-DEFAULT_READING = "A"
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+from lifelore.domains.telephone import telephone
+from lifelore.domains.telephone.telephone import PATHS, REWARDS_OF_PATH, UTILITIES, UTILITY_OF_PATH, Telephone
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, SETTLED, converged_after, play_rule
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
+from lifelore.interaction.reuse.regret import library_regret
+from lifelore.interaction.selection import BeliefSampling
+from lifelore.interaction.signals.category_signal import CategorySignal
+
+SIGNAL_OF_PATH: dict[str, tuple[int, ...]] = {
+    "(s, a, s′)": tuple(range(len(PATHS))),
+    "(s, a, r)": REWARDS_OF_PATH,
+    "U": UTILITY_OF_PATH,
+}
+"""The signal of each call, by kind of signal: the whole path, its rewards, or their sum."""
+N_SIGNALS = {"(s, a, s′)": len(PATHS), "(s, a, r)": len(telephone.REWARD_SEQUENCES), "U": len(UTILITIES)}
+SIGNALS, DEFAULT_READING = tuple(SIGNAL_OF_PATH), "A"
 
 
 def check(settings: Mapping) -> None:
@@ -36,5 +54,64 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One kind of signal; see `telephone_runs.serve`."""
-    return {**cell, **serve(settings, cell, seed)}
+    """All callers of one cell: regret by call, and of each caller its sum and when it ended.
+
+    Regret is expected (Definition 4.3.1), so that it is 0 exactly when the preferred model is used. ``free``:
+    callers without regret in call `by_call`; ``ended``: the first call from which on there is none.
+    """
+    phone, signal = Telephone(cell["models"], settings["eta"], cell["reading"]), cell["signal"]
+    n_groups, n_calls = settings["groups"], settings["calls"]
+    luck = stream(seed, "callers", cell["models"])
+    types = luck.integers(phone.n_models, size=(n_groups, settings["users"]))
+    uniforms = luck.random((*types.shape, n_calls))
+    if cell["model"] == EXACT:
+        libraries = [exact_library(phone, signal)]
+        types, uniforms = types.reshape(1, -1), uniforms.reshape(1, -1, n_calls)
+    else:
+        name = ("training calls", cell["models"], cell["reading"], cell["samples"])
+        known = (cell["samples"], settings["pseudo_count"])
+        libraries = [learnt_library(phone, signal, stream(seed, *name, g), *known) for g in range(n_groups)]
+    parts = [
+        _serve(phone, library, types[group], uniforms[group], signal, stream(seed, "service", group))
+        for group, library in enumerate(libraries)
+    ]
+    regret = np.concatenate(parts)
+    return {
+        **cell,
+        "mean": regret.mean(axis=0).round(5).tolist(),
+        "deviation": regret.std(axis=0).round(5).tolist(),
+        "sums": regret.sum(axis=1).round(3).tolist(),
+        "ended": converged_after(regret).tolist(),
+        "free": int((regret[:, settings["by_call"] - 1] <= SETTLED).sum()),
+    }
+
+
+def exact_library(phone: Telephone, signal: str) -> PolicyLibrary:
+    """The service that knows all distributions."""
+    probs = {"(s, a, s′)": phone.path_probs, "(s, a, r)": phone.reward_probs, "U": phone.utility_probs}[signal]
+    return PolicyLibrary(CategoricalOutcomes(UTILITIES, phone.utility_probs), CategorySignal(probs))
+
+
+def learnt_library(
+    phone: Telephone, signal: str, generator: np.random.Generator, samples: int, pseudo_count: float
+) -> PolicyLibrary:
+    """The service that has taken `samples` calls of each type with each model."""
+    every = np.arange(phone.n_models)
+    paths = phone.sample(generator, np.tile(every[:, None, None], (1, len(every), samples)), every[:, None])
+    signals = np.array(SIGNAL_OF_PATH[signal])[paths]
+    paid = np.array(UTILITIES)[np.array(UTILITY_OF_PATH)[paths]]
+    return PolicyLibrary(
+        CategoricalOutcomes.from_samples(paid, UTILITIES, pseudo_count),
+        CategorySignal.from_samples(signals, N_SIGNALS[signal], pseudo_count),
+    )
+
+
+def _serve(phone: Telephone, library: PolicyLibrary, types, uniforms, signal: str, generator) -> NDArray:
+    """Regret of each call, (n_users, n_calls)."""
+    signal_of = np.array(SIGNAL_OF_PATH[signal])
+
+    def signals(call: int, models: NDArray[np.int64]) -> NDArray[np.int64]:
+        return signal_of[phone.path_of(uniforms[:, call], types, models)]
+
+    played = play_rule(BeliefSampling(), library, signals, len(types), uniforms.shape[1], generator)
+    return library_regret(phone.mean[types], played.policies)

@@ -1,19 +1,15 @@
 """One task of Pacman, returns by episode of reuse and of learners, and the episodes each needs (Figure 4.8)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
 from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import GREATEST
+from lifelore.experiments.engine.curve_blocks import block_centres
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, Axes, Figure, house_style, new_figure
 
 CURVES = {"Q-learning": ("q", GREY), "PRQ": ("prq", ORANGE), "BPR, sampling the belief": ("bpr", BLUE)}
 BARS = (
@@ -31,8 +27,7 @@ BARS = (
 )
 
 
-def draw(result: Mapping) -> "Figure":
-    """A task, the returns of episodes, and the episodes needed by each method."""
+def draw(result: Mapping) -> Figure:
     settings, rows = result["settings"], result["rows"]
     tasks = [row for row in rows if "task_of" in row]
     maze = PacmanMaze(settings["rows"], settings["columns"])
@@ -56,22 +51,22 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_returns(axes: "Axes", rows: Sequence[Mapping], best: float) -> None:
+def _draw_returns(axes: Axes, rows: Sequence[Mapping], best: float) -> None:
     edges = next(row["curve_edges"] for row in rows if "curve_edges" in row)
     found = {row["curve_of"]: row for row in rows if "curve_of" in row}
     series = {label: found[name] for label, (name, _) in CURVES.items()}
     looks = {label: {"color": colour} for label, (_, colour) in CURVES.items()}
-    middle = np.sqrt((np.array(edges[:-1]) + 1) * np.array(edges[1:]))
-    level = (best, "the library's best")
-    draw_curves(axes, middle, series, looks=looks, logarithmic="x", level=level, legend=False)
-    axes.set(title="Returns of episodes", xlabel="episode", ylabel="return")
+    draw_curves(
+        axes, block_centres(edges), series, looks=looks, logarithmic="x", level=(best, "the library's best"),
+        legend=False, title="Returns of episodes", xlabel="episode", ylabel="return",
+    )  # fmt: skip
     axes.set(xlim=(1, edges[-1]), ylim=(-130, GREATEST + 35))
     axes.xaxis.set_major_formatter("{x:,g}")
     axes.grid(axis="y", color=LIGHT)
     axes.legend(loc="lower right")
 
 
-def _draw_needed(axes: "Axes", tasks: Sequence[Mapping], most: int) -> None:
+def _draw_needed(axes: Axes, tasks: Sequence[Mapping], most: int) -> None:
     for place, (kind, name, colour, _) in enumerate(BARS):
         low, mid, high = np.quantile([task[kind][name] or most for task in tasks], [0.25, 0.5, 0.75])
         axes.plot([low, high], [place, place], color=colour, lw=5, alpha=0.3, solid_capstyle="butt")

@@ -1,71 +1,58 @@
 """C4.4: powers of ten between the episodes that policy reuse and the learners need."""
 
 from collections.abc import Callable, Mapping, Sequence
+from operator import itemgetter
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.pacman.pacman import STRATEGIES
-from lifelore.experiments.chapter4.c4_04_pacman.pacman_reuse import (
+from lifelore.experiments.chapter4.c4_04_pacman.run import (
     BPR,
-    BPR_EI,
-    BPR_EXACT,
     BPR_MORE,
     DISCOUNTED,
     LEARNERS,
     PRQ,
     PRQ_SCALED,
+    REUSERS,
     Q,
 )
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.estimates import exact_value
 
-REUSERS = (BPR, BPR_EI, BPR_MORE, BPR_EXACT)
-
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Share of tasks on which each method gets there, powers of ten between them, training, and moved foods."""
 
+    def mean_over_layouts(key: str, number: Callable[[Mapping], float]) -> Estimate:
+        return mean_estimate([np.mean([number(task) for task in cell[key]]) for cell in results])
+
     def orders(kind: str, names: Sequence[str], reuser: str = BPR) -> Estimate:
         """Mean power of ten between the fastest of some learners on each task and a form of BPR; over layouts."""
-        powers = []
-        for cell in results:
-            slow = np.min([_episodes(settings, cell, kind, name) for name in names], axis=0)
-            powers.append(np.log10(slow / _episodes(settings, cell, "needed", reuser)).mean())
-        return mean_estimate(powers)
 
-    found = {
-        f"reached_{name}": _layout_means(
-            results, "tasks", lambda task, name=name: task["needed"][name] is not None
-        )
-        for name in (*REUSERS, *LEARNERS)
-    }
-    learners = {"q": (Q,), "prq": (PRQ, PRQ_SCALED)}
-    for extra in ("", DISCOUNTED):
-        for title, names in learners.items():
+        def power(task: Mapping) -> float:
+            # All episodes where they were not enough.
+            slow = min(task[kind][name] or settings["episodes"] for name in names)
+            return np.log10(slow / (task["needed"][reuser] or settings["episodes"]))
+
+        return mean_over_layouts("tasks", power)
+
+    def reached(name: str) -> Estimate:
+        return mean_over_layouts("tasks", lambda task: task["needed"][name] is not None)
+
+    found = {f"reached_{name}": reached(name) for name in (*REUSERS, *LEARNERS)}
+    for title, names in {"q": (Q,), "prq": (PRQ, PRQ_SCALED)}.items():
+        for extra in ("", DISCOUNTED):
             variants = [name + extra for name in names]
             found[f"orders_{title}{extra}"] = orders("needed", variants)
             found[f"orders_greedy_{title}{extra}"] = orders("greedy", variants)
-    found["orders_prq_as_returned"] = orders("needed", [PRQ])
-    for title, names in learners.items():
         found[f"orders_{title}_more_samples"] = orders("needed", names, BPR_MORE)
-    found["library_return"] = _layout_means(results, "tasks", lambda task: task["best"])
+    found["orders_prq_as_returned"] = orders("needed", [PRQ])
+    found["library_return"] = mean_over_layouts("tasks", itemgetter("best"))
     spent = len(STRATEGIES) * settings["training_episodes"] + len(STRATEGIES) ** 2 * settings["samples"]
     found["training_episodes"] = exact_value(spent, len(results))
-    for name in ("best", BPR, *LEARNERS):
-        found[f"moved_{name}"] = _layout_means(results, "moved", lambda task, name=name: task[name])
-    return found
-
-
-def _episodes(settings: Mapping, cell: Mapping, kind: str, name: str) -> NDArray[np.float64]:
-    """Episodes needed, by task; all of them where they were not enough."""
-    return np.array([task[kind][name] or settings["episodes"] for task in cell["tasks"]], float)
-
-
-def _layout_means(results: Sequence[Mapping], key: str, number: Callable[[Mapping], float]) -> Estimate:
-    """Mean over layouts of the mean over a layout's tasks."""
-    return mean_estimate([np.mean([number(task) for task in cell[key]]) for cell in results])
+    moved = {f"moved_{name}": mean_over_layouts("moved", itemgetter(name)) for name in ("best", BPR, *LEARNERS)}
+    return found | moved
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -73,8 +60,8 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     found: list[dict] = [{key: cell[key] for key in ("layout", "foods", "mean", "deviation")} for cell in results]
     for cell in results:
         for task, moved in zip(cell["tasks"], cell["moved"], strict=True):
-            kept = {key: task[key] for key in ("type", "best", "needed", "greedy")}
-            found.append({"task_of": cell["layout"], **kept, "moved": moved})
+            row = {key: task[key] for key in ("type", "best", "needed", "greedy")}
+            found.append({"task_of": cell["layout"], **row, "moved": moved})
     found.append({"curve_edges": block_edges(settings["episodes"]).tolist()})
     for name in (BPR, PRQ, Q):
         curves = np.array([task["curves"][name] for cell in results for task in cell["tasks"]])

@@ -1,24 +1,18 @@
 """Ways to select among 68 policies: regret and entropy by episode, and when regret ends (Figure 4.10)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter4.reuse_figures import draw_regret, lines_of, look_of
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.chapter4.reuse.looks import draw_regret, lines_of, look_of
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, INK, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
 
 PANELS = {"headline": "Learnt models, half the tasks unseen", "exact": "Exact models, at targets"}
 
 
-def draw(result: Mapping) -> "Figure":
-    """Regret by episode, entropy, stuck tasks, and medians over the grid of reserves."""
+def draw(result: Mapping) -> Figure:
     rows, settings = result["rows"], result["settings"]
     default = [row for row in rows if "curve" in row]
     with house_style():
@@ -41,7 +35,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_grid(axes: "Axes", rows: Sequence[Mapping], methods: Sequence[str], episodes: int) -> None:
+def _draw_grid(axes: Axes, rows: Sequence[Mapping], methods: Sequence[str], episodes: int) -> None:
     """A line a method: in each reserve the median episode after which regret ended, and the share stuck."""
     worlds = list(dict.fromkeys(tuple(row[key] for key in DEFAULT_WORLD) for row in rows))
     shifts = dict(zip(worlds, np.linspace(-0.28, 0.28, len(worlds)), strict=True))  # equal points stay apart

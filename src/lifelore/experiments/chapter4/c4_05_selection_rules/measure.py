@@ -5,17 +5,10 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
-from lifelore.experiments.chapter4.reuse_runs import STUCK, plain
-from lifelore.experiments.chapter4.surveillance_runs import (
-    CASES,
-    DEFAULT_WORLD,
-    RULES,
-    find,
-    name_of,
-    summary,
-    worlds,
-)
+from lifelore.experiments.chapter4.reuse.many_tasks import STUCK
+from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
+from lifelore.experiments.chapter4.surveillance import runs
+from lifelore.experiments.chapter4.surveillance.runs import CASES, RULES, find, name_of, summary
 from lifelore.experiments.engine.estimates import exact_share, exact_value, share_of
 
 ALL = 68
@@ -49,29 +42,28 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
                 measured[f"{key}_{name_of(name, case)}"] = numbers[key]
         measured["stuck_" + name_of("EI, printed", case)] = found["EI, printed"]["stuck"]
         measured |= _comparisons(name_of("", case).strip("_"), found)
-    grid = [{name: summary(find(results, name, "exact", **world)) for name in RULES} for world in worlds(settings)]
+    worlds = runs.worlds(settings)
+    grid = [{name: summary(find(results, name, "exact", **world)) for name in RULES} for world in worlds]
     small = [_summaries_of_group(settings, results, group) for group in range(settings["groups"])]
     for form, printed in (("", False), ("_printed", True)):
         answers = [verdicts(found, printed) for found in grid]
-        measured[f"grid_all{form}"] = share_of([all(one.values()) for one in answers])
+        measured[f"grid_all{form}"] = share_of([all(found.values()) for found in answers])
         of_groups = [verdicts(found, printed) for found in small]
         for statement in answers[0]:
             name = statement.replace(" ", "_").replace("-", "_") + form
-            measured[f"grid_{name}"] = share_of([one[statement] for one in answers])
-            measured[f"thesis_size_{name}"] = exact_share(one[statement] for one in of_groups)
+            measured[f"grid_{name}"] = share_of([found[statement] for found in answers])
+            measured[f"thesis_size_{name}"] = exact_share(found[statement] for found in of_groups)
     return measured
 
 
 def _summaries_of_group(settings: Mapping, results: Sequence[Mapping], group: int) -> dict[str, dict]:
     """Summaries of one group of tasks, an experiment of the thesis's size; exact models."""
-    own = slice(group * settings["tasks"], (group + 1) * settings["tasks"])
-    found = {}
-    for name in RULES:
-        result = find(results, name, "exact")
-        found[name] = summary(
-            {**result, **{key: result[key][own] for key in ("sums", "ended", "late")}, "groups": 1}
-        )
-    return found
+
+    def part_of(result: Mapping) -> dict:
+        own = slice(group * settings["tasks"], (group + 1) * settings["tasks"])
+        return {**result, **{key: result[key][own] for key in ("sums", "ended", "late")}, "groups": 1}
+
+    return {name: summary(part_of(find(results, name, "exact"))) for name in RULES}
 
 
 def _comparisons(case: str, found: Mapping[str, Mapping[str, Estimate]]) -> dict[str, Estimate]:
@@ -90,14 +82,12 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     on unseen tasks."""
     found = []
     for result in results:
-        world = {key: result[key] for key in DEFAULT_WORLD}
-        numbers = plain(summary(result))
-        if world != DEFAULT_WORLD:
-            numbers = {name: {"value": number["value"]} for name, number in numbers.items()}
-        row = {"method": result["method"], "case": result["case"], **world, **numbers}
-        if world == DEFAULT_WORLD:
+        row = runs.row_of(result)
+        if runs.is_default(row):
             row |= {"curve": result["curve"], "entropy": result.get("entropy")}
             row["late_by_seen"] = late_by_seen(result)
+        else:
+            row |= {key: {"value": n["value"]} for key, n in row.items() if isinstance(n, dict)}
         found.append(row)
     return found
 

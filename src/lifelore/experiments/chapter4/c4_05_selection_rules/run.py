@@ -2,8 +2,9 @@
 
 from collections.abc import Mapping
 
-from lifelore.experiments.chapter4.surveillance_runs import CASES, RULES, reserve_cells, run_method
-from lifelore.experiments.chapter4.surveillance_runs import check_reserves as check
+from lifelore.experiments.chapter4.surveillance.runs import CASES, RULES, reserve_cells
+from lifelore.experiments.chapter4.surveillance.runs import check_reserves as check
+from lifelore.experiments.chapter4.surveillance.runs import run_method as run_cell
 
 __all__ = ["cells", "check", "run_cell"]
 
@@ -11,8 +12,3 @@ __all__ = ["cells", "check", "run_cell"]
 def cells(settings: Mapping) -> list[dict]:
     """Every rule in every case of the default reserve, and with exact models on targets in every other."""
     return reserve_cells(settings, CASES, RULES, RULES)
-
-
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One rule on all its tasks."""
-    return run_method(settings, cell, seed)

@@ -1,17 +1,12 @@
 """Printed standard deviations beside those of many experiments of the same size (Table 4.3)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
 from lifelore.experiments.chapter4.c4_06_regret_deviation.measure import AFTER, DEFAULT_READING, PRINTED
-from lifelore.experiments.chapter4.reuse_figures import look_of
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.chapter4.reuse.looks import look_of
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.experiments.engine.results_table import ResultsTable
-from lifelore.figures.style import INK, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import INK, LIGHT, Axes, Figure, house_style, new_figure
 
 FORMS = {
     ("", "exact"): (1.0, "standard, exact models"),
@@ -21,7 +16,7 @@ FORMS = {
 """Shade and words of each form and case."""
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """A panel a rule: the middle 95 % and median of groups of ten tasks, a diamond for the printed number."""
     settings = result["settings"]
     table = ResultsTable(result["rows"], ("method", "case", "noise", "reading"))
@@ -45,7 +40,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_rule(axes: "Axes", name: str, numbers: Sequence[float], table: ResultsTable) -> None:
+def _draw_rule(axes: Axes, name: str, numbers: Sequence[float], table: ResultsTable) -> None:
     colour, _ = look_of(name)
     for k, ((form, case), (shade, _)) in enumerate(FORMS.items()):
         for row in table.select(method=name + form, case=case).records:

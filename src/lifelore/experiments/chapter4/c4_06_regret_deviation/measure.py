@@ -5,10 +5,11 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate
+from lifelore.domains.surveillance.surveillance import NOISES
 from lifelore.experiments.chapter4.c4_06_regret_deviation.run import AFTER, METHODS
-from lifelore.experiments.chapter4.reuse_rules import OF_THESIS
-from lifelore.experiments.chapter4.reuse_runs import grouped_deviation
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD, NOISES, find, name_of
+from lifelore.experiments.chapter4.reuse.many_tasks import grouped_deviation
+from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD, find, name_of
 from lifelore.experiments.engine.estimates import share_of
 
 PRINTED = {
@@ -26,7 +27,7 @@ READINGS = {
     "paid less than the best mean": ("against_mean", False),
     "expected": ("at", False),
 }
-"""Regret of `surveillance_runs` by reading, and whether its sign is dropped."""
+"""Regret of `surveillance.runs` by reading, and whether its sign is dropped."""
 DEFAULT_READING = "size of the difference of two pays"
 CASES_SHOWN = ("exact", "headline")
 
@@ -34,7 +35,7 @@ CASES_SHOWN = ("exact", "headline")
 def regrets(result: Mapping, reading: str, episode: int) -> np.ndarray:
     """Regret of every task in one reading, (n_groups, n_tasks)."""
     key, size = READINGS[reading]
-    values = np.array(result[key][str(episode)], float).reshape(result["groups"], -1)
+    values = np.reshape(result[key][str(episode)], (result["groups"], -1)).astype(float)
     return np.abs(values) if size else values
 
 
@@ -53,7 +54,6 @@ def agreement(result: Mapping, printed: Sequence[float], reading: str = DEFAULT_
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How many printed numbers agree, by rule, form and reading; deviations over all tasks after 50 episodes."""
 
     def whole_table(
         case: str, form: str = "", reading: str = DEFAULT_READING, **world: str
@@ -65,23 +65,24 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             for name, method in methods.items()
         }
 
+    def share_of_table(answers: Mapping[str, list[bool]]) -> Estimate:
+        return share_of(np.ravel(list(answers.values())))
+
     measured: dict[str, Estimate] = {}
     for case in CASES_SHOWN:
         for form in ("", ", printed"):
             answers = whole_table(case, form)
             measured |= {f"agree_{name_of(method, case)}": share_of(inside) for method, inside in answers.items()}
-            measured[f"agree_all{form.replace(', ', '_')}_{case}"] = share_of(np.ravel(list(answers.values())))
+            measured[f"agree_all{form.replace(', ', '_')}_{case}"] = share_of_table(answers)
         for name in METHODS:
             last = regrets(find(results, name, case), DEFAULT_READING, AFTER[-1])
             measured[f"deviation_{AFTER[-1]}_{name_of(name, case)}"] = grouped_deviation(last)
-    near = agreement(find(results, "BE, κ 30", "exact"), PRINTED["BE"])
-    measured["agree_BE_near_greedy_exact"] = share_of(near)
+    measured["agree_BE_near_greedy_exact"] = share_of(agreement(find(results, "BE, κ 30", "exact"), PRINTED["BE"]))
     for reading in READINGS:
-        inside = np.ravel(list(whole_table("exact", reading=reading).values()))
-        measured[f"agree_all_{reading.replace(' ', '_')}"] = share_of(inside)
+        answers = whole_table("exact", reading=reading)
+        measured[f"agree_all_{reading.replace(' ', '_')}"] = share_of_table(answers)
     other = next(noise for noise in NOISES if noise != DEFAULT_WORLD["noise"])
-    measured["agree_all_other_noise"] = share_of(np.ravel(list(whole_table("exact", noise=other).values())))
-    return measured
+    return measured | {"agree_all_other_noise": share_of_table(whole_table("exact", noise=other))}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -1,10 +1,12 @@
 """C4.6: how much regret varies over ten surveillance tasks, by rule and episode. Thesis: §4.6.4, Table 4.3."""
 
 from collections.abc import Mapping
+from itertools import product
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD, NOISES, run_method
+from lifelore.domains.surveillance.surveillance import NOISES
+from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD, run_method
 
 AFTER = (5, 10, 20, 50)
 METHODS = (*RULES_SHOWN, "BE, κ 30")
@@ -20,8 +22,7 @@ def cells(settings: Mapping) -> list[dict]:
     noises = [("exact", noise) for noise in NOISES] + [("headline", DEFAULT_WORLD["noise"])]
     return [
         {"method": name, "case": case, **DEFAULT_WORLD, "noise": noise, "groups": settings["groups"]}
-        for case, noise in noises
-        for name in METHODS
+        for (case, noise), name in product(noises, METHODS)
     ]
 
 

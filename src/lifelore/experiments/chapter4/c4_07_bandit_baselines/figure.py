@@ -1,17 +1,12 @@
 """Policy reuse and its peers: regret by episode, summed regret, and the knowledge of each method (Figure 4.11)."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter4.reuse_figures import draw_regret, look_of
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD
+from lifelore.experiments.chapter4.reuse.looks import draw_regret, look_of
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
 SHOWN = (
     "EI", "IDS", "sampling", "GP-UCB", "GP-UCB, tuned", "GP-UCB, true metric", "UCB1", "UCB1, tuned",
@@ -20,8 +15,8 @@ SHOWN = (
 PANELS = {"headline": "Learnt models, half the tasks unseen", "exact": "Exact models, at targets"}
 
 
-def draw(result: Mapping) -> "Figure":
-    """Curves by case, then every method's sum beside what it was given."""
+def draw(result: Mapping) -> Figure:
+    """Curves by case, then every method's sum beside its prior knowledge."""
     settings = result["settings"]
     table = ResultsTable([row for row in result["rows"] if "curve" in row], ("method", "case"))
     with house_style():
@@ -39,8 +34,8 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_sums(axes: "Axes", table: ResultsTable, others: Sequence[Mapping], episodes: int) -> None:
-    """Bars for sums with exact and learnt models, rings for the other reserves, and what each was given."""
+def _draw_sums(axes: Axes, table: ResultsTable, others: Sequence[Mapping], episodes: int) -> None:
+    """Bars for sums with exact and learnt models, rings for other reserves, and each method's prior knowledge."""
     exact = sorted(table.select(case="exact").records, key=lambda row: row["cumulative"]["value"])
     most = max(row["cumulative"]["value"] for row in table.records)
     names = [row["method"] for row in exact]
@@ -55,11 +50,10 @@ def _draw_sums(axes: "Axes", table: ResultsTable, others: Sequence[Mapping], epi
         tuned = ", ".join(f"{key.replace('_', ' ')} {value:g}" for key, value in row["tuned"].items())
         axes.text(1.04 * most, k, row["given"] + (f" ({tuned})" if tuned else ""), va="center", fontsize=7.5)
     n = len({tuple(row[key] for key in DEFAULT_WORLD) for row in others})
-    axes.set(
-        xlim=(0, 2.35 * most), ylim=(len(exact) - 0.4, -1.2), xlabel=f"rings: {n} other reserves" if n else ""
-    )
+    axes.set(xlim=(0, 2.35 * most), ylim=(len(exact) - 0.4, -1.2))
+    axes.set_xlabel(f"rings: {n} other reserves" if n else "")
+    axes.xaxis.set_label_coords(0.21, -0.06)
     axes.set_xticks([t for t in range(0, 12_001, 2000) if t <= 1.02 * most])
     axes.text(1.04 * most, -0.85, "given beforehand", fontsize=8, color=GREY, va="center")
     axes.set_title(f"Regret summed over {episodes} episodes: exact (dark) and learnt models (pale)")
     axes.grid(axis="x", color=LIGHT)
-    axes.xaxis.set_label_coords(0.21, -0.06)

@@ -6,9 +6,9 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, REUSE
-from lifelore.experiments.chapter4.reuse_runs import grouped_mean, plain
-from lifelore.experiments.chapter4.surveillance_peers import GIVEN, GP_PEERS, PEERS
-from lifelore.experiments.chapter4.surveillance_runs import DEFAULT_WORLD, by_group, find, name_of, summary, worlds
+from lifelore.experiments.chapter4.reuse.many_tasks import grouped_mean
+from lifelore.experiments.chapter4.surveillance.peers import GIVEN, GP_PEERS, PEERS
+from lifelore.experiments.chapter4.surveillance.runs import by_group, find, is_default, name_of, row_of, worlds
 from lifelore.experiments.engine.estimates import exact_value, is_above, share_of
 
 PAIRS = (
@@ -26,29 +26,24 @@ def more_regret(results: Sequence[Mapping], worse: str, better: str, case: str, 
 
 
 def best_gp(results: Sequence[Mapping], case: str) -> str:
-    """The GP-UCB of least regret, among them the tuned ones and the one that knows the true distances."""
+    """The GP-UCB of least regret, among them the tuned forms and the form that knows the true distances."""
     return min(GP_PEERS, key=lambda name: float(np.mean(find(results, name, case)["sums"])))
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How much more regret one method has than another, by case, and in what share of the grid for certain."""
+    """How much more regret a method has than another, by case, and in which share of the grid for certain."""
     measured: dict[str, Estimate] = {}
     for case in CASES_SHOWN:
         measured |= _comparisons(settings, results, case)
-    above = {
-        (worse, better): [
-            is_above(more_regret(results, worse, better, "exact", **world), 0.0) for world in worlds(settings)
-        ]
-        for worse, better in (
-            *((peer, "EI") for peer in ("UCB1", "GP-UCB", "UCB1, tuned")),
-            *((peer, "GP-UCB") for peer in ("UCB1", "interval estimation")),
-        )
-    }
+
+    def above(worse: str, better: str) -> list[bool]:
+        every = worlds(settings)
+        return [is_above(more_regret(results, worse, better, "exact", **world), 0.0) for world in every]
+
     for peer in ("UCB1", "GP-UCB", "UCB1, tuned"):
-        measured[f"grid_EI_below_{name_of(peer, '')[:-1]}"] = share_of(above[peer, "EI"])
-    between = np.logical_and(above["UCB1", "GP-UCB"], above["interval estimation", "GP-UCB"])
-    measured["grid_GP_UCB_between"] = share_of(between)
-    return measured
+        measured[f"grid_EI_below_{name_of(peer, '')[:-1]}"] = share_of(above(peer, "EI"))
+    between = np.logical_and(above("UCB1", "GP-UCB"), above("interval estimation", "GP-UCB"))
+    return measured | {"grid_GP_UCB_between": share_of(between)}
 
 
 def _comparisons(settings: Mapping, results: Sequence[Mapping], case: str) -> dict[str, Estimate]:
@@ -73,13 +68,9 @@ def _comparisons(settings: Mapping, results: Sequence[Mapping], case: str) -> di
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row a cell: its summary, what it was given, and in the default reserve its curve."""
+    """A row a cell: its summary, its prior knowledge, and in the default reserve its curve."""
     found = []
     for result in results:
-        world = {key: result[key] for key in DEFAULT_WORLD}
-        row = {"method": result["method"], "case": result["case"], **world, **plain(summary(result))}
-        row |= {"tuned": result["tuned"], "given": GIVEN.get(result["method"], REUSE_GIVEN)}
-        if world == DEFAULT_WORLD:
-            row["curve"] = result["curve"]
-        found.append(row)
+        row = row_of(result) | {"tuned": result["tuned"], "given": GIVEN.get(result["method"], REUSE_GIVEN)}
+        found.append(row | {"curve": result["curve"]} if is_default(row) else row)
     return found

@@ -5,9 +5,10 @@ The settings of tuned peers are those of least regret on these very tasks; nothi
 
 from collections.abc import Mapping
 
-from lifelore.experiments.chapter4.surveillance_peers import GP_PEERS, PEERS
-from lifelore.experiments.chapter4.surveillance_runs import check_reserves as check
-from lifelore.experiments.chapter4.surveillance_runs import reserve_cells, run_method
+from lifelore.experiments.chapter4.surveillance.peers import GP_PEERS, PEERS
+from lifelore.experiments.chapter4.surveillance.runs import check_reserves as check
+from lifelore.experiments.chapter4.surveillance.runs import reserve_cells
+from lifelore.experiments.chapter4.surveillance.runs import run_method as run_cell
 
 __all__ = ["cells", "check", "run_cell"]
 REUSE = ("EI", "EI, printed", "IDS", "sampling")
@@ -18,8 +19,3 @@ IN_GRID = ("EI", "UCB1", "UCB1, tuned", *GP_PEERS, "interval estimation", "eps-g
 def cells(settings: Mapping) -> list[dict]:
     """Every method in the default reserve, learnt and exact; in the other reserves the methods of the thesis."""
     return reserve_cells(settings, CASES_SHOWN, (*REUSE, *PEERS), IN_GRID)
-
-
-def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One method on all its tasks."""
-    return run_method(settings, cell, seed)

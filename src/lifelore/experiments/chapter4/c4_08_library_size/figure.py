@@ -1,16 +1,12 @@
 """Mean regret by size of the library and number of episodes (Figure 4.12)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import BLUE, LIGHT, SKY, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from lifelore.figures.style import BLUE, LIGHT, SKY, Figure, house_style, new_figure
 
 PANELS = (
     ("EI", "learnt", "all", "Learnt models; against the best of all"),
@@ -20,22 +16,20 @@ PANELS = (
 )
 
 
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping) -> Figure:
     """A line for each number of episodes over the size of the library."""
     from matplotlib.colors import LinearSegmentedColormap
 
-    settings = result["settings"]
-    table = ResultsTable(result["rows"], ("rule", "model"))
+    settings, table = result["settings"], ResultsTable(result["rows"], ("rule", "model"))
     panels = [panel for panel in PANELS if panel[0] in settings["rules"]]
-    episodes = [str(n) for n in settings["episodes"]]
-    shades = LinearSegmentedColormap.from_list("episodes", [SKY, BLUE, "#0b2a4a"])(
-        np.linspace(0, 1, len(episodes))
-    )
-    looks = {n: {"color": shade, "marker": "o", "ms": 4} for n, shade in zip(episodes, shades, strict=True)}
-    shares = [100 * share for share in settings["shares"]]
+    episodes, shares = [str(n) for n in settings["episodes"]], [100 * share for share in settings["shares"]]
+    colours = LinearSegmentedColormap.from_list("episodes", [SKY, BLUE, "#0b2a4a"])
+    shades = zip(episodes, colours(np.linspace(0, 1, len(episodes))), strict=True)
+    looks = {n: {"color": shade, "marker": "o", "ms": 4} for n, shade in shades}
+    n_rows = -(-len(panels) // 2)
     with house_style():
-        figure = new_figure(10.4, 3.7 * (1 + (len(panels) > 2)))
-        every = figure.subplots(1 + (len(panels) > 2), 2, sharey=True, squeeze=False).ravel()
+        figure = new_figure(10.4, 3.7 * n_rows)
+        every = figure.subplots(n_rows, 2, sharey=True, squeeze=False).ravel()
         for axes in every[len(panels) :]:
             axes.axis("off")
         for axes, (rule, model, against, words) in zip(every, panels, strict=False):

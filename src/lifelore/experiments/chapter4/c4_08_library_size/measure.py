@@ -6,13 +6,12 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, difference_estimate
 from lifelore.experiments.chapter4.c4_08_library_size.run import AGAINST
-from lifelore.experiments.chapter4.surveillance_runs import EXACT, LEARNT
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
 from lifelore.experiments.engine.estimates import share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Regret saved by size and by episodes, corner against corner, and in how many single steps the mean falls."""
     table = ResultsTable(results, ("rule", "model", "share"))
     measured: dict[str, Estimate] = {}
     for rule in settings["rules"]:

@@ -5,15 +5,16 @@ a task has next to no regret on it. Against the best of all 68 policies a larger
 """
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.experiments.chapter4.reuse_rules import RULES_SHOWN
-from lifelore.experiments.chapter4.reuse_runs import play_rule
-from lifelore.experiments.chapter4.surveillance_runs import EXACT, LEARNT, SEEN, draw_tasks, library_of
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, play_rule
+from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
+from lifelore.experiments.chapter4.surveillance.runs import SEEN, draw_tasks, library_of
 from lifelore.interaction.reuse.regret import library_regret
 
 RULE = "EI"
@@ -32,43 +33,33 @@ def check(settings: Mapping) -> None:
 
 def cells(settings: Mapping) -> list[dict]:
     """Every rule, kind of model and size of the library."""
-    return [
-        {"rule": name, "model": model, "share": share}
-        for name in settings["rules"]
-        for model in (LEARNT, EXACT)
-        for share in settings["shares"]
-    ]
+    every = product(settings["rules"], (LEARNT, EXACT), settings["shares"])
+    return [{"rule": name, "model": model, "share": share} for name, model, share in every]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Mean regret up to each number of episodes, trial by trial, (n_trials, n_episodes) against each best."""
-    world = Surveillance()
-    found: dict[str, list] = {against: [] for against in AGAINST}
-    known = []
+    """Mean regret up to each number of episodes, trial by trial, (n_trials, n_episodes) against each best.
+
+    ``met``: whether the task's type is in the library.
+    """
+    world, n_episodes = Surveillance(), settings["episodes"]
+    found: dict[str, list] = {key: [] for key in (*AGAINST, "met")}
     for trial in range(settings["trials"]):
-        regret, met = _trial(settings, cell, world, seed, trial)
-        for against, values in regret.items():
-            found[against].append([round(float(values[:k].mean()), 3) for k in settings["episodes"]])
-        known.append(met)
-    return {**cell, **found, "met": known}
+        order = stream(seed, "library", trial).permutation(world.n_targets)
+        part = np.sort(order[: max(1, round(cell["share"] * world.n_targets))])
+        task = draw_tasks(world, SEEN, 1, n_episodes[-1], seed, trial)
+        library = library_of(world, cell["model"], settings["samples"], seed, trial).take(
+            part.tolist(), part.tolist()
+        )
+        mean = task.mean[:, part]
 
+        def pays(episode: int, policies: np.ndarray, mean=mean, task=task) -> np.ndarray:
+            return mean[0, policies] + world.deviation * task.noise[:, episode]
 
-def _trial(settings: Mapping, cell: Mapping, world: Surveillance, seed: int, trial: int) -> tuple[dict, int]:
-    """Regret by episode against both, and whether the task's type is in the library."""
-    n, length = world.n_targets, settings["episodes"][-1]
-    order = stream(seed, "library", trial).permutation(n)
-    kept = np.sort(order[: max(1, round(cell["share"] * n))])
-    task = draw_tasks(world, SEEN, 1, length, seed, trial)
-    library = library_of(world, cell["model"], settings["samples"], seed, trial).take(kept.tolist(), kept.tolist())
-    mean = task.mean[:, kept]
-
-    def pays(episode: int, policies: np.ndarray) -> np.ndarray:
-        return mean[0, policies] + world.deviation * task.noise[:, episode]
-
-    generator = stream(seed, "chooser", cell["rule"], trial)
-    played = play_rule(RULES_SHOWN[cell["rule"]], library, pays, 1, length, generator)
-    regret = {
-        "all": library_regret(task.mean, kept[played.policies])[0],
-        "library": library_regret(mean, played.policies)[0],
-    }
-    return regret, int(task.mean[0].argmax() in kept)
+        generator = stream(seed, "chooser", cell["rule"], trial)
+        chosen = play_rule(RULES_SHOWN[cell["rule"]], library, pays, 1, n_episodes[-1], generator).policies
+        regrets = {"all": library_regret(task.mean, part[chosen]), "library": library_regret(mean, chosen)}
+        for against, regret in regrets.items():
+            found[against].append([round(float(regret[0, :k].mean()), 3) for k in n_episodes])
+        found["met"].append(int(task.mean[0].argmax() in part))
+    return {**cell, **found}

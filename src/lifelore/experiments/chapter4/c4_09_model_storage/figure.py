@@ -1,15 +1,10 @@
 """Sizes of observation models: tables by number of rewards, entries that episodes fill, the thesis's worlds."""
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
 
-from lifelore.experiments.chapter4.reuse_figures import look_of
+from lifelore.experiments.chapter4.reuse.looks import look_of
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure
 
 SIGNALS = {"performance": "U", "reward": "(s, a, r)", "state-action-state": "(s, a, s′)"}
 PRINTED = {"reward": ", in print (s, a, s′)", "state-action-state": ", in print (s, a, r)"}
@@ -18,8 +13,7 @@ SHOWN_STATES = 16
 LINES = {"transition": ("-", "reward a function of (s, a, s′)"), "noise": ((0, (1, 1.2)), "noisy reward")}
 
 
-def draw(result: Mapping) -> "Figure":
-    """Three panels, entries on a log scale."""
+def draw(result: Mapping) -> Figure:
     random = [row for row in result["rows"] if row["kind"] == "random"]
     sizes = {row["S"] for row in random}
     n_states = SHOWN_STATES if SHOWN_STATES in sizes else max(sizes)
@@ -33,49 +27,45 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_tables(axes: "Axes", rows: Sequence[Mapping], n_states: int) -> None:
+def _draw_tables(axes: Axes, rows: Sequence[Mapping], n_states: int) -> None:
     series, looks = {}, {}
     for name, shown in SIGNALS.items():
         label = shown + PRINTED.get(name, "")
         series[label] = {"mean": [row["table"][name] for row in rows]}
         looks[label] = {"color": look_of(shown)[0], "marker": "o", "ms": 4}
     series["U as a Gaussian"] = {"mean": [2 * row["pairs"] for row in rows]}
-    looks["U as a Gaussian"] = {"color": GREY, "ls": ":"}
+    looks["U as a Gaussian"] = {"ls": ":"}
     n_rewards = [row["R"] for row in rows]
-    draw_curves(
-        axes, n_rewards, series, looks=looks, ylabel="entries of the table", logarithmic="xy", legend=False
-    )
-    axes.set_ylim(top=30 * axes.get_ylim()[1])
-    _finish(axes, n_states, n_rewards, f"Tables, |S| = {n_states}")
+    draw_curves(axes, n_rewards, series, looks=looks, ylabel="entries of the table", legend=False)
+    _finish(axes, n_states, n_rewards, f"Tables, |S| = {n_states}", 30)
 
 
-def _draw_filled(axes: "Axes", rows: Sequence[Mapping], n_states: int) -> None:
+def _draw_filled(axes: Axes, rows: Sequence[Mapping], n_states: int) -> None:
     for of, (line, label) in LINES.items():
         own = [row for row in rows if row["rewards_of"] == of]
         for name, shown in SIGNALS.items():
             filled = [row["filled"][name] for row in own]
             axes.plot([row["R"] for row in own], filled, color=look_of(shown)[0], ls=line)
         axes.plot([], [], color=GREY, ls=line, label=label)
-    axes.set(xscale="log", yscale="log", ylabel="entries that episodes filled")
-    axes.set_ylim(top=3 * axes.get_ylim()[1])
-    _finish(axes, n_states, sorted({row["R"] for row in rows}), "Entries ever seen")
+    axes.set_ylabel("entries that episodes filled")
+    _finish(axes, n_states, sorted({row["R"] for row in rows}), "Entries ever seen", 3)
 
 
-def _finish(axes: "Axes", n_states: int, n_rewards: Sequence[int], title: str) -> None:
+def _finish(axes: Axes, n_states: int, n_rewards: Sequence[int], title: str, room: float) -> None:
+    """Both axes logarithmic, |R| = |S| marked, and `room` times the height for the legend."""
+    axes.set(xscale="log", yscale="log", xlabel="rewards |R|")
+    axes.set_ylim(top=room * axes.get_ylim()[1])
     axes.minorticks_off()
     axes.set_xticks(n_rewards, [str(n) for n in n_rewards])
-    axes.set_xlabel("rewards |R|")
     axes.set_title(title, pad=16)
     axes.axvline(n_states, color=INK, lw=0.8, ls=":")
-    axes.annotate(
-        "|R| = |S|", (n_states, 1), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points",
-        ha="center", va="bottom", fontsize=8,
-    )  # fmt: skip
+    above = axes.get_xaxis_transform()
+    axes.text(n_states, 1.01, "|R| = |S|", transform=above, ha="center", va="bottom", fontsize=8)
     axes.grid(True, axis="y")
     axes.legend(loc="upper left")
 
 
-def _draw_worlds(axes: "Axes", rows: Sequence[Mapping]) -> None:
+def _draw_worlds(axes: Axes, rows: Sequence[Mapping]) -> None:
     """Tables as pale bars, the entries that episodes filled as dark ones."""
     for place, row in enumerate(rows):
         for k, (name, shown) in enumerate(SIGNALS.items()):

@@ -5,31 +5,34 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import SIGNALS
+from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import (
+    PERFORMANCE,
+    REWARD,
+    SIGNALS,
+    TRANSITION,
+)
 from lifelore.interaction.library.storage_cost import StorageSizes, storage_cost
 
-MORE, FEWER = "more_rewards_than_states", "fewer_rewards_than_states"
 PAIRS = {
-    "performance_below_reward": ("performance", "reward"),
-    "performance_below_transition": ("performance", "state-action-state"),
-    "reward_below_transition": ("reward", "state-action-state"),
+    "performance_below_reward": (PERFORMANCE, REWARD),
+    "performance_below_transition": (PERFORMANCE, TRANSITION),
+    "reward_below_transition": (REWARD, TRANSITION),
 }
 """Tables of which the first should be smaller."""
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Shares of applications in which one table is smaller than another, and how the formulas do."""
     every = [(result["cell"], found) for result in results for found in result["stored"]]
     measured = {}
-    for name, side in ((MORE, 1), (FEWER, -1)):
+    for side, name in ((1, "more_rewards_than_states"), (-1, "fewer_rewards_than_states")):
         own = [(cell, s) for cell, s in every if np.sign(s["rewards"] - s["states"]) == side]
         answers = {key: [s["table"][a] < s["table"][b] for _, s in own] for key, (a, b) in PAIRS.items()}
         answers["printed_order"] = [_in_order(s["table"]) for _, s in own]
         for of in settings["rewards_of"]:
             filled = [_in_order(s["filled"]) for cell, s in own if cell.get("rewards_of") == of]
             answers[f"printed_order_of_filled_entries_rewards_of_{of}"] = filled
-        in_files = [_in_order(s["bytes"]) for _, s in own if None not in s["bytes"].values()]
-        answers["printed_order_of_file_bytes"] = in_files
+        in_files = (s["bytes"] for _, s in own if None not in s["bytes"].values())
+        answers["printed_order_of_file_bytes"] = [_in_order(size) for size in in_files]
         measured |= {
             f"{key}_{name}": mean_estimate(np.array(some, float)) for key, some in answers.items() if some
         }
@@ -44,8 +47,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def _in_order(entries: Mapping) -> bool:
     """Whether performance < reward < state-action-state."""
-    performance, reward, states = (entries[signal] for signal in SIGNALS)
-    return performance < reward < states
+    return entries[PERFORMANCE] < entries[REWARD] < entries[TRANSITION]
 
 
 def _agrees(found: Mapping, variant: str, bound: bool = False) -> float:
@@ -59,13 +61,12 @@ def _agrees(found: Mapping, variant: str, bound: bool = False) -> float:
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Each application: its sizes, and mean entries and bytes of the three models."""
-    return [dict(result["cell"]) | _row(result["stored"]) for result in results]
-
-
-def _row(found: Sequence[Mapping]) -> dict:
-    first = found[0]
-    row = {"S": first["states"], "R": first["rewards"], "A": first["actions"], "pairs": first["pairs"]}
-    for key in ("table", "filled", "bytes"):
-        values = {name: [s[key][name] for s in found if s[key][name] is not None] for name in SIGNALS}
-        row[key] = {name: float(np.mean(of)) if of else None for name, of in values.items()}
-    return row | {"built": first["built"]}
+    found = []
+    for result in results:
+        draws, first = result["stored"], result["stored"][0]
+        row = {"S": first["states"], "R": first["rewards"], "A": first["actions"], "pairs": first["pairs"]}
+        for key in ("table", "filled", "bytes"):
+            values = {name: [draw[key][name] for draw in draws] for name in SIGNALS}
+            row[key] = {name: None if None in each else float(np.mean(each)) for name, each in values.items()}
+        found.append(dict(result["cell"]) | row | {"built": first["built"]})
+    return found

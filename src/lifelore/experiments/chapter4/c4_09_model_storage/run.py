@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import RANDOM, application, stored
+from lifelore.experiments.chapter4.c4_09_model_storage.applications import RANDOM, application
+from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import stored
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -22,7 +23,5 @@ def cells(settings: Mapping) -> list[dict]:
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Every draw of an application, learnt and counted; the thesis's own are drawn once."""
     draws = settings["draws"] if cell["kind"] == RANDOM else 1
-    return {
-        "cell": dict(cell),
-        "stored": [stored(application(settings, cell, number, seed)) for number in range(draws)],
-    }
+    found = [stored(application(settings, cell, number, seed)) for number in range(draws)]
+    return {"cell": dict(cell), "stored": found}

@@ -1,12 +1,11 @@
 """Regret of landmarks: the example that reaches 2 ε, regrets in units of ε, and a reserve parted ever coarser."""
 
-from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.experiments.chapter4.c4_10_landmark_regret.landmark_tables import BINS
 from lifelore.experiments.chapter4.c4_10_landmark_regret.measure import EXAMPLE
+from lifelore.experiments.chapter4.c4_10_landmark_regret.run import BINS
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import (
@@ -18,31 +17,28 @@ from lifelore.figures.style import (
     ORANGE,
     PURPLE,
     VERMILION,
+    Axes,
+    Figure,
     house_style,
     new_figure,
 )
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 FAMILY_COLOURS = {"uniform": ORANGE, "smooth": GREEN, "clustered": PURPLE, "surveillance": BLUE}
 DASHES = (0, (2, 1.2))
 
 
-def draw(result: Mapping) -> "Figure":
-    """Three panels; types of the pairwise form."""
+def draw(result: Mapping) -> Figure:
     table = ResultsTable(result["rows"], ("form", "family", "tasks", "layout", "metric")).select(form="pairwise")
     with house_style():
         figure = new_figure(10.5, 3.5)
         left, middle, right = figure.subplots(1, 3, width_ratios=[0.8, 1.2, 1.2])
         _draw_example(left)
         _draw_regrets(middle, table)
-        _draw_reserve(right, table.select(family="surveillance", tasks="cells").records)
+        _draw_reserve(right, table.select(family="surveillance", tasks="cells"))
     return figure
 
 
-def _draw_example(axes: "Axes") -> None:
+def _draw_example(axes: Axes) -> None:
     landmark, task = EXAMPLE
     for policy, colour in enumerate((BLUE, VERMILION)):
         axes.plot([0, 1], [landmark[policy], task[policy]], "o-", color=colour)
@@ -56,15 +52,15 @@ def _draw_example(axes: "Axes") -> None:
     axes.set(ylabel="utility", title="Two tasks within ε = 1")
 
 
-def _draw_regrets(axes: "Axes", table: ResultsTable) -> None:
+def _draw_regrets(axes: Axes, table: ResultsTable) -> None:
     """Share of tasks that cost more than so many ε; the worst member as landmark dashed."""
     series, looks = {}, {}
     for family, colour in FAMILY_COLOURS.items():
         own = table.select(family=family).records
-        for who, label, line in (("landmark", family, "-"), ("member", f"_{family}", DASHES)):
+        for role, label, line in (("landmark", family, "-"), ("member", f"_{family}", DASHES)):
             if own:
-                counts = np.sum([row[who]["counts"] for row in own], axis=0)
-                total = counts.sum() + sum(row[who]["none"] for row in own)
+                counts = np.sum([row[role]["counts"] for row in own], axis=0)
+                total = counts.sum() + sum(row[role]["none"] for row in own)
                 above = np.append(np.cumsum(counts[::-1])[::-1], 0) / total
                 series[label] = {"mean": 100 * np.where(above > 0, above, np.nan)}
                 looks[label] = {"color": colour, "ls": line}
@@ -80,9 +76,10 @@ def _draw_regrets(axes: "Axes", table: ResultsTable) -> None:
     axes.legend(loc="lower left")
 
 
-def _draw_reserve(axes: "Axes", rows: Sequence[Mapping]) -> None:
+def _draw_reserve(axes: Axes, table: ResultsTable) -> None:
     """Types and regret by ε in the first layout and metric, cells near a hill as tasks."""
-    own = [row for row in rows if (row["layout"], row["metric"]) == (rows[0]["layout"], rows[0]["metric"])]
+    first = table.records[0]
+    own = table.select(layout=first["layout"], metric=first["metric"]).records
     percent = 100 * np.array([row["epsilon"] for row in own])
     parts = {
         "worst task, worst member": ("member", "largest", VERMILION),
@@ -95,11 +92,15 @@ def _draw_reserve(axes: "Axes", rows: Sequence[Mapping]) -> None:
         axes.plot(percent, times * percent, color=INK, lw=0.8, ls=":")
         axes.annotate(name, (percent[-1], times * percent[-1]), (4, 0), textcoords="offset points", va="center")
     for row, x in zip(own, percent, strict=True):
-        axes.annotate(f"{row['types']:.0f}", (x, 0), (0, 4), ha="center", fontsize=7.5, color=GREY,
-                      xycoords=("data", "axes fraction"), textcoords="offset points")  # fmt: skip
-    title = f"Surveillance, {own[0]['layout']}: cells near hills"
-    draw_curves(axes, percent, series, looks=looks, title=title, logarithmic="x", legend=False)
-    axes.set(xlabel="ε (% of the range of utilities); grey: types", ylabel="regret (% of the range)")
+        axes.annotate(
+            f"{row['types']:.0f}", (x, 0), (0, 4), xycoords=("data", "axes fraction"), textcoords="offset points",
+            ha="center", fontsize=7.5, color=GREY,
+        )  # fmt: skip
+    draw_curves(
+        axes, percent, series, looks=looks, logarithmic="x", legend=False, ylabel="regret (% of the range)",
+        title=f"Surveillance, {first['layout']}: cells near hills",
+        xlabel="ε (% of the range of utilities); grey: types",
+    )  # fmt: skip
     axes.set_xticks(percent, [f"{x:g}" for x in percent])
     axes.minorticks_off()
     axes.set_ylim(bottom=-9)

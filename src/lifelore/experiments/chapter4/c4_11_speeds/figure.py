@@ -1,23 +1,17 @@
 """Loss by speed for each ball size, and the best speed by size in all games (Figure 4.15)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
-from lifelore.experiments.chapter4.reuse_figures import size_lines
+from lifelore.experiments.chapter4.reuse.looks import size_lines
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import INK, LIGHT, PAPER, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
 
 
-def draw(result: Mapping) -> "Figure":
-    """Curves of the first row's game, and the best speeds of every row."""
+def draw(result: Mapping) -> Figure:
     rows = result["rows"]
     with house_style():
         figure = new_figure(9.6, 0.25 * len(rows) + 1.8)
@@ -32,7 +26,7 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_losses(axes: "Axes", row: Mapping) -> None:
+def _draw_losses(axes: Axes, row: Mapping) -> None:
     looks = size_lines(SIZES, marker="o", markersize=3.5)
     loss, error = np.array(row["loss"]), np.array(row["error"])
     series = {name: {"mean": mean, "error": half} for name, mean, half in zip(looks, loss, error, strict=True)}

@@ -1,13 +1,15 @@
 """C4.11: the best speed for each size, and whether fast is best for small balls and slow for large ones."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.domains.ball_game.ball_game import SPEEDS, LossScale
-from lifelore.experiments.chapter4.ball_game_settings import NORMALISATIONS, Setting
+from lifelore.domains.ball_game.ball_game import SPEEDS
+from lifelore.experiments.chapter4.ball_game.games import NORMALISATIONS, Setting
+from lifelore.experiments.chapter4.ball_game.play import scale_of
 from lifelore.experiments.engine.estimates import exact_value, is_above, share_of
 
 SLOW, FAST = [0, 1], [3, 4]
@@ -19,8 +21,7 @@ LEAST_DROP = 20
 def losses(result: Mapping, normalisation: str) -> NDArray[np.float64]:
     """Losses (n_types, n_speeds, episodes); episodes of one number met the same noise at all speeds."""
     steps, hits = np.array(result["steps"]), np.array(result["hits"])
-    scale = LossScale() if normalisation == "fixed" else LossScale.from_episodes(steps, hits)
-    return scale.loss(steps, hits)
+    return scale_of(normalisation, steps, hits).loss(steps, hits)
 
 
 def best_speeds(loss: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -51,27 +52,26 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "small_gains_by_fast": small,
         "large_gains_by_slow": large,
         "grid_with_transition": share_of(
-            [has_transition(losses(result, scale)) for result in results for scale in NORMALISATIONS]
+            [has_transition(losses(*game)) for game in product(results, NORMALISATIONS)]
         ),
     }
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean loss, its interval and collisions by size and speed, for every game and normalisation."""
-    return [_row(result, normalisation) for result in results for normalisation in NORMALISATIONS]
-
-
-def _row(result: Mapping, normalisation: str) -> dict:
-    setting, loss = Setting(*result["game"]), losses(result, normalisation)
-    error = 1.96 * loss.std(axis=-1) / np.sqrt(loss.shape[-1])
-    return {
-        "words": setting._replace(normalisation=normalisation).words,
-        "game": list(result["game"])[:3],
-        "blocked": setting.blocked,
-        "normalisation": normalisation,
-        "best": best_speeds(loss).tolist(),
-        "transition": has_transition(loss),
-        "loss": np.round(loss.mean(axis=-1), 4).tolist(),
-        "error": np.round(error, 4).tolist(),
-        "hits": np.round(np.array(result["hits"]).mean(axis=-1), 2).tolist(),
-    }
+    found = []
+    for result, normalisation in product(results, NORMALISATIONS):
+        setting, loss = (
+            Setting(*result["game"])._replace(normalisation=normalisation),
+            losses(result, normalisation),
+        )
+        error = 1.96 * loss.std(axis=-1) / np.sqrt(loss.shape[-1])
+        row = {"words": setting.words, "game": list(setting[:3]), "blocked": setting.blocked}
+        row |= {
+            "normalisation": normalisation,
+            "best": best_speeds(loss).tolist(),
+            "transition": has_transition(loss),
+        }
+        row |= {"loss": np.round(loss.mean(axis=-1), 4).tolist(), "error": np.round(error, 4).tolist()}
+        found.append(row | {"hits": np.round(np.mean(result["hits"], axis=-1), 2).tolist()})
+    return found

@@ -5,10 +5,9 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.core.streams import stream
-from lifelore.domains.ball_game.ball_game import LossScale
-from lifelore.experiments.chapter4.ball_game_play import FixedSpeeds, Players, play_all
-from lifelore.experiments.chapter4.ball_game_settings import Setting
-from lifelore.experiments.chapter4.ball_game_settings import check_games as check
+from lifelore.experiments.chapter4.ball_game.games import Setting
+from lifelore.experiments.chapter4.ball_game.games import check_games as check
+from lifelore.experiments.chapter4.ball_game.play import Players, play_speeds
 
 __all__ = ["cells", "check", "run_cell"]
 
@@ -22,12 +21,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Steps and collisions of every size at every speed, (n_types, n_speeds, episodes) as lists."""
     game = Setting(*cell["game"]).game
     kinds = np.arange(game.n_types).repeat(settings["episodes"])
-    players = Players.drawn(kinds, 1, stream(seed, "C4.11", "players"))
-    every = [
-        play_all(game, players, FixedSpeeds(np.full(len(kinds), z)), LossScale()) for z in range(game.n_speeds)
-    ]
-    shape = (game.n_speeds, game.n_types, settings["episodes"])
-    steps, hits = (
-        np.array([played[i] for played in every]).reshape(shape).swapaxes(0, 1).tolist() for i in (0, 1)
-    )
+    played = np.array(play_speeds(game, Players.drawn(kinds, 1, stream(seed, "C4.11", "players"))))
+    by_speed = played.reshape(game.n_speeds, 2, game.n_types, settings["episodes"])
+    steps, hits = by_speed.transpose(1, 2, 0, 3).tolist()
     return {"game": list(cell["game"]), "steps": steps, "hits": hits}

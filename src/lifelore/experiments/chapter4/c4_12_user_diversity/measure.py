@@ -7,19 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter4.ball_game_methods import (
-    HINDSIGHT,
-    METHODS,
-    ORACLE,
-    PRINTED_EXP3,
-    STATIC,
-    TUNED_EXP3,
-)
-from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, Setting
+from lifelore.experiments.chapter4.ball_game import methods
+from lifelore.experiments.chapter4.ball_game.games import N_TYPES, Setting
+from lifelore.experiments.chapter4.ball_game.methods import BEAT, PRINTED_EXP3, STATIC, TUNED_EXP3
+from lifelore.experiments.chapter4.ball_game.methods import BEAT_PRINTED as PRINTED
 from lifelore.experiments.chapter4.c4_12_user_diversity.run import DIVERSITIES
 from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 
-BEAT, PRINTED = "BEAT", "BEAT, ε as printed"
 FEW, MANY = range(1, 4), range(4, N_TYPES + 1)
 """Numbers of types for which the thesis finds the best static speed better, and for which BEAT."""
 
@@ -27,12 +21,13 @@ FEW, MANY = range(1, 4), range(4, N_TYPES + 1)
 def _losses(results: Sequence[Mapping], game: Sequence) -> dict[int, dict[str, NDArray[np.float64]]]:
     """Mean loss of each run of a game, by diversity and method."""
     own = [r for r in results if r["game"] == list(game)]
-    return {r["diversity"]: {m: np.array(r["losses"][m]) for m in METHODS} for r in own}
+    return {r["diversity"]: {m: np.array(r["losses"][m]) for m in methods.METHODS} for r in own}
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Comparisons in the first game and over the grid; a method is below another if the whole interval is."""
-    by = _losses(results, settings["games"][0])
+    grid = [_losses(results, game) for game in settings["games"]]
+    by = grid[0]
     found: dict[str, Estimate] = {}
     for key, method in (("printed", PRINTED), ("beat", BEAT)):
         for other, name in (("exp3", PRINTED_EXP3), ("tuned_exp3", TUNED_EXP3)):
@@ -43,16 +38,19 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             gaps = [mean_estimate(by[x][method] - by[x][STATIC]) for x in diversities]
             found[f"{key}_below_static_{some}"] = share_of([is_below(gap, 0.0) for gap in gaps])
             found[f"{key}_above_static_{some}"] = share_of([is_above(gap, 0.0) for gap in gaps])
-    found["beat_to_oracle"] = ratio_estimate(*(_by_population(by, m) for m in (BEAT, ORACLE)))
-    found["beat_to_hindsight"] = ratio_estimate(*(_by_population(by, m) for m in (BEAT, HINDSIGHT)))
-    grid = [_losses(results, game) for game in settings["games"]]
-    ratios = [ratio_estimate(*(_by_population(g, m) for m in (PRINTED, PRINTED_EXP3))) for g in grid]
-    return found | {"grid_below_exp3": share_of([is_below(ratio, 1.0) for ratio in ratios])}
+    found["beat_to_oracle"] = _population_ratio(by, BEAT, methods.ORACLE)
+    found["beat_to_hindsight"] = _population_ratio(by, BEAT, methods.HINDSIGHT)
+    below = [is_below(_population_ratio(losses, PRINTED, PRINTED_EXP3), 1.0) for losses in grid]
+    return found | {"grid_below_exp3": share_of(below)}
 
 
-def _by_population(by: Mapping[int, Mapping[str, NDArray]], method: str) -> NDArray[np.float64]:
-    """Mean loss in each population, (63,)."""
-    return np.concatenate([by[x][method].reshape(comb(N_TYPES, x), -1).mean(axis=1) for x in sorted(by)])
+def _population_ratio(by: Mapping[int, Mapping[str, NDArray]], *pair: str) -> Estimate:
+    """Ratio of the losses of two methods, from the mean loss in each of the 63 populations."""
+
+    def by_population(method: str) -> NDArray[np.float64]:
+        return np.concatenate([by[x][method].reshape(comb(N_TYPES, x), -1).mean(axis=1) for x in sorted(by)])
+
+    return ratio_estimate(*map(by_population, pair))
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

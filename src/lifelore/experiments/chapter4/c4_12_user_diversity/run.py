@@ -6,9 +6,9 @@ from math import comb
 import numpy as np
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter4.ball_game_methods import crowd_of, known_of, run_methods
-from lifelore.experiments.chapter4.ball_game_settings import N_TYPES, Setting
-from lifelore.experiments.chapter4.ball_game_settings import check_games as check
+from lifelore.experiments.chapter4.ball_game.games import N_TYPES, Setting
+from lifelore.experiments.chapter4.ball_game.games import check_games as check
+from lifelore.experiments.chapter4.ball_game.methods import crowd_of, known_of, run_methods
 
 __all__ = ["cells", "check", "run_cell"]
 DIVERSITIES = range(1, N_TYPES + 1)

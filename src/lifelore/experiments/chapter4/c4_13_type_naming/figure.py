@@ -1,23 +1,17 @@
 """How fast BEAT names the right type, step by step, and the types that it confuses half-way (Figure 4.17)."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.reuse_figures import size_lines
+from lifelore.experiments.chapter4.reuse.looks import size_lines
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
 
-def draw(result: Mapping) -> "Figure":
-    """Shares right, ratios of sizes, and the confusions, all of the first row."""
+def draw(result: Mapping) -> Figure:
     row = result["rows"][0]
     with house_style():
         figure = new_figure(11.4, 3.7)
@@ -38,16 +32,13 @@ def draw(result: Mapping) -> "Figure":
     return figure
 
 
-def _draw_steps(axes: "Axes", row: Mapping, key: str, title: str, ylabel: str, level: float) -> None:
+def _draw_steps(axes: Axes, row: Mapping, key: str, title: str, ylabel: str, level: float) -> None:
     looks = size_lines(SIZES)
     series = {name: {"mean": values} for name, values in zip(looks, row[key], strict=True)}
-    xlabel = "step of the first episode"
-    draw_curves(
-        axes, None, series, looks=looks, title=title, xlabel=xlabel, ylabel=ylabel, logarithmic="x", legend=False
-    )
+    draw_curves(axes, None, series, looks=looks, title=title, ylabel=ylabel, logarithmic="x", legend=False)
     axes.axhline(level, color=GREY, linestyle=(0, (1, 2)), linewidth=1)
     axes.axvline(row["median_length"] / 2, color=GREY, linewidth=1)
-    axes.set_xlim(1, len(row[key][0]))
+    axes.set(xlabel="step of the first episode", xlim=(1, len(row[key][0])))
     axes.set_xticks([1, 3, 10, 30, 100], ["1", "3", "10", "30", "100"])
     axes.minorticks_off()
     axes.grid(axis="y", color=LIGHT)

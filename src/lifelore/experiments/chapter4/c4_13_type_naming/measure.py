@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.ball_game_settings import Setting
+from lifelore.experiments.chapter4.ball_game.games import Setting
 from lifelore.experiments.engine.estimates import exact_value
 
 LARGE = range(3, len(SIZES))

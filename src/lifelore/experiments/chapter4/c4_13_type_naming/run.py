@@ -1,6 +1,6 @@
 """C4.13: how fast BEAT names the right type, and which types it confuses. Thesis: §4.8.5.2, Figure 4.17.
 
-Players who have reached the goal keep their belief: an average over the others would be one over slow players.
+Players who have reached the goal keep their belief: otherwise the average would be that of slow players.
 """
 
 from collections.abc import Mapping
@@ -9,16 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter4.ball_game_methods import BEATS, EPISODES, NamedTypes, beat_learner, known_of
-from lifelore.experiments.chapter4.ball_game_play import Players, play_all
-from lifelore.experiments.chapter4.ball_game_settings import Setting
-from lifelore.experiments.chapter4.ball_game_settings import check_games as check
+from lifelore.experiments.chapter4.ball_game.games import Setting
+from lifelore.experiments.chapter4.ball_game.games import check_games as check
+from lifelore.experiments.chapter4.ball_game.methods import BEATS, EPISODES, NamedTypes, beat_learner, known_of
+from lifelore.experiments.chapter4.ball_game.play import Players, play_all
 
 __all__ = ["cells", "check", "run_cell"]
-WAYS: dict[str, dict] = {
-    **{name: BEATS[name] for name in ("BEAT", "BEAT, ε as printed")},
-    "BEAT with commands": {"commands": True},
-}
+WAYS = {name: BEATS[name] for name in ("BEAT", "BEAT, ε as printed")} | {"BEAT with commands": {"commands": True}}
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -29,7 +26,7 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Shares named right by step and type, confusions half-way and at the ends, ratios of sizes, steps needed."""
+    """Shares named right and ratios of sizes by step, confusions half-way and at the ends, steps needed."""
     setting = Setting(*cell["game"])
     known = known_of(setting, settings["training"], settings["tuning"], seed)
     n_types = known.game.n_types
@@ -38,26 +35,19 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     generator = stream(seed, "C4.13", setting.words, cell["way"])
     learner = beat_learner(known, len(kinds), generator, WAYS[cell["way"]])
     watch = NamedTypes(learner)
-    first = Players(players.kinds, players.sigma[:, :1], players.random[:, :1])
-    lengths = play_all(known.game, first, learner, known.scale, watch=watch).steps[:, 0]
-    named = np.array(watch.first)
-    after_first = learner.users.log_belief.argmax(axis=1)
-    rest = Players(players.kinds, players.sigma[:, 1:], players.random[:, 1:])
-    play_all(known.game, rest, learner, known.scale, watch=watch)
-    last = learner.users.log_belief.argmax(axis=1)
+    lengths = play_all(known.game, players.between(0, 1), learner, known.scale, watch=watch).steps[:, 0]
+    named, after_first = np.array(watch.first), watch.named
+    play_all(known.game, players.between(1), learner, known.scale, watch=watch)
     half = named[np.minimum(-(-lengths // 2), len(named)) - 1, np.arange(len(kinds))]
     sizes = np.array(known.game.sizes, float)
-    right = (named == kinds).reshape(len(named), n_types, -1).mean(axis=2)
-    ratio = (sizes[named] / sizes[kinds]).reshape(len(named), n_types, -1).mean(axis=2)
+    by_step = {"right": named == kinds, "ratio": sizes[named] / sizes[kinds]}
+    means = {key: each.reshape(len(named), n_types, -1).mean(axis=2) for key, each in by_step.items()}
+    ends = {"half": half, "first": after_first, "last": watch.named, "at_40": named[min(40, len(named)) - 1]}
     return {
         **cell,
-        "right": np.round(right.T, 4).tolist(),
-        "ratio": np.round(ratio.T, 4).tolist(),
-        "half": confusion(kinds, half, n_types),
-        "first": confusion(kinds, after_first, n_types),
-        "last": confusion(kinds, last, n_types),
-        "at_40": confusion(kinds, named[min(40, len(named)) - 1], n_types),
-        "needed": np.where(last == kinds, watch.wrong_until, -1).tolist(),
+        **{key: np.round(mean.T, 4).tolist() for key, mean in means.items()},
+        **{when: confusion(kinds, types, n_types) for when, types in ends.items()},
+        "needed": watch.steps_needed(kinds).tolist(),
         "lengths": lengths.tolist(),
     }
 

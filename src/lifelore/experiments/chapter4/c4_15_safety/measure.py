@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.ball_game_methods import BEATS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
+from lifelore.experiments.chapter4.ball_game.methods import BEATS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
 from lifelore.experiments.chapter4.c4_15_safety.run import LAGGING
 
 KEYS = {"BEAT": "", "BEAT, ε as printed": "_printed"}
@@ -32,38 +32,38 @@ def worst_ratio(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> tuple
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Ratios to the static speed and to EXP-3, regret to each type's best speed, and steps needed."""
-    static, oracle, exp3 = (losses_of(results, method) for method in (STATIC, ORACLE, PRINTED_EXP3))
+    others = {"static": losses_of(results, STATIC), "exp3": losses_of(results, PRINTED_EXP3)}
+    static = others["static"]
     found: dict[str, Estimate] = {}
     for method, key in KEYS.items():
         mine = losses_of(results, method)
-        for name, other in (("static", static), ("exp3", exp3)):
+        for name, other in others.items():
             found[f"to_{name}_first{key}"] = ratio_estimate(mine[:, :, 0], other[:, :, 0])
             found[f"to_{name}_last{key}"] = ratio_estimate(mine[:, :, -1], other[:, :, -1])
         found[f"worst_to_static{key}"] = worst_ratio(mine, static)[0]
         found[f"worst_to_static_last{key}"] = worst_ratio(mine[:, :, -1:], static[:, :, -1:])[0]
-    regret = {
-        method: (losses_of(results, method) - oracle).mean(axis=2).ravel()
-        for method in ("BEAT", STATIC, PRINTED_EXP3)
-    }
-    found["regret"] = mean_estimate(regret["BEAT"])
-    found["regret_to_exp3"] = ratio_estimate(regret["BEAT"], regret[PRINTED_EXP3])
-    found["regret_to_static"] = ratio_estimate(regret["BEAT"], regret[STATIC])
-    lagging = losses_of(results, LAGGING).mean(axis=2).ravel()
-    found["to_static_with_lag"] = ratio_estimate(lagging, static.mean(axis=2).ravel())
+    oracle = losses_of(results, ORACLE)
+
+    def regret(losses: NDArray[np.float64]) -> NDArray[np.float64]:
+        return (losses - oracle).mean(axis=2).ravel()
+
+    own = regret(losses_of(results, "BEAT"))
+    found["regret"] = mean_estimate(own)
+    found |= {f"regret_to_{name}": ratio_estimate(own, regret(other)) for name, other in others.items()}
+    lagging = losses_of(results, LAGGING).mean(axis=2)
+    found["to_static_with_lag"] = ratio_estimate(lagging, static.mean(axis=2))
     needed = joined(results, "needed")
-    for b, steps in zip(SIZES, needed, strict=True):
-        found[f"steps_needed_b{b}"] = median_steps(steps)
+    found |= {f"steps_needed_b{b}": median_steps(steps) for b, steps in zip(SIZES, needed, strict=True)}
     within = (needed >= 0) & (needed <= joined(results, "lengths"))
-    found["named_within_first_episode"] = mean_estimate(within.astype(float).ravel())
-    found["right_speed_at_end"] = mean_estimate(joined(results, "right_speed").astype(float).ravel())
+    found["named_within_first_episode"] = mean_estimate(within)
+    found["right_speed_at_end"] = mean_estimate(joined(results, "right_speed"))
     return found
 
 
 def median_steps(steps: NDArray[np.int64]) -> Estimate:
     """Median steps until the named type stays right, with a distribution-free 95 % interval.
 
-    A player who is never named right (-1) counts as infinite; there is no interval where an end is infinite.
+    A player never named right (-1) counts as infinite; there is no interval where an end is infinite.
     """
     from scipy.stats import binom
 

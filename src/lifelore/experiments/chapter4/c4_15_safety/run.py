@@ -5,16 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter4.ball_game_methods import (
+from lifelore.experiments.chapter4.ball_game.games import Setting
+from lifelore.experiments.chapter4.ball_game.games import check_games as check
+from lifelore.experiments.chapter4.ball_game.methods import (
     NamedTypes,
     beat_learner,
     crowd_of,
     known_of,
     run_methods,
 )
-from lifelore.experiments.chapter4.ball_game_play import play_all
-from lifelore.experiments.chapter4.ball_game_settings import Setting
-from lifelore.experiments.chapter4.ball_game_settings import check_games as check
+from lifelore.experiments.chapter4.ball_game.play import play_all
 
 __all__ = ["cells", "check", "run_cell"]
 LAGGING = "BEAT, players who adapt late"
@@ -36,22 +36,20 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     n, kinds = len(crowd.population), crowd.players.kinds
     found = run_methods(known, crowd, seed, name)
     lagging = beat_learner(known, n, stream(seed, name, LAGGING), {})
-    found[LAGGING] = known.scale.loss(
-        *play_all(known.game, crowd.players, lagging, known.scale, lag=settings["lag"])
-    )
-    losses = {
-        method: np.round(lost.reshape(n_types, -1, lost.shape[1]), 4).tolist() for method, lost in found.items()
-    }
+    found[LAGGING] = known.losses(crowd.players, lagging, lag=settings["lag"])
     learner = beat_learner(known, n, stream(seed, name, "naming"), {})
     watch = NamedTypes(learner)
     played = play_all(known.game, crowd.players, learner, known.scale, watch=watch)
-    named = learner.users.log_belief.argmax(axis=1)
-    chosen = known.value.argmax(axis=1)
+    best_speed = known.value.argmax(axis=1)
+
+    def by_type(values: np.ndarray) -> list:
+        return values.reshape(n_types, -1, *values.shape[1:]).tolist()
+
     return {
         **cell,
-        "losses": losses,
-        "needed": np.where(named == kinds, watch.wrong_until, -1).reshape(n_types, -1).tolist(),
-        # Types with the same best speed need not be told apart.
-        "right_speed": (chosen[named] == chosen[kinds]).reshape(n_types, -1).tolist(),
-        "lengths": played.steps.reshape(n_types, -1, played.steps.shape[1])[:, :, 0].tolist(),
+        "losses": {method: by_type(np.round(lost, 4)) for method, lost in found.items()},
+        "needed": by_type(watch.steps_needed(kinds)),
+        # Types with the same best speed need not be distinguished.
+        "right_speed": by_type(best_speed[watch.named] == best_speed[kinds]),
+        "lengths": by_type(played.steps[:, 0]),
     }

@@ -1,23 +1,17 @@
 """Decisions of BEAT that are those of policy reuse, and why beliefs are stored as logarithms."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from lifelore.experiments.chapter4.c4_16_beat_is_reuse.run import EPSILONS
-from lifelore.figures.style import BLUE, INK, LIGHT, ORANGE, VERMILION, house_style, new_figure
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+from lifelore.figures.style import BLUE, INK, LIGHT, ORANGE, VERMILION, Figure, house_style, new_figure
 
 SMALLEST = 745.0
 """Minus the log of the smallest positive float64."""
 
 
-def draw(result: Mapping) -> "Figure":
-    """Decisions alike by ε, spreads of the log belief, and steps at which printed products become 0."""
+def draw(result: Mapping) -> Figure:
     rows = result["rows"]
     with house_style():
         figure = new_figure(9.2, 2.9)
@@ -25,10 +19,8 @@ def draw(result: Mapping) -> "Figure":
         for place, name in enumerate(EPSILONS):
             mine = [row for row in rows if row["epsilon"] == name]
             alike, decisions = (sum(row[key] for row in mine) for key in ("alike", "decisions"))
-            left.barh(place, 100 * alike / decisions, color=BLUE, height=0.6)
-            left.text(
-                50, place, f"{alike:,} of {decisions:,}", ha="center", va="center", color="white", fontsize=8
-            )
+            bar = left.barh(place, 100 * alike / decisions, color=BLUE, height=0.6)
+            left.bar_label(bar, [f"{alike:,} of {decisions:,}"], label_type="center", color="white", fontsize=8)
         left.set_yticks(range(len(EPSILONS)), [f"ε = {name}" for name in EPSILONS])
         left.set(xlim=(0, 100), xlabel="decisions alike (%)", title="BEAT and policy reuse")
         left.invert_yaxis()

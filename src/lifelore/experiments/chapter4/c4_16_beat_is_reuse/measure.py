@@ -9,7 +9,6 @@ from lifelore.experiments.engine.estimates import exact_value
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Share of decisions alike, largest difference of beliefs, share of sessions whose products become 0."""
     sessions = [s for r in results for s in r["sessions"]]
     decisions = sum(s["decisions"] for s in sessions)
     apart = np.array([s["apart"] for s in sessions])

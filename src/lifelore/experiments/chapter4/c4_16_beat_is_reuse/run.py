@@ -1,6 +1,7 @@
 """C4.16: BEAT and Bayesian policy reuse with the same generator, decision by decision. Thesis: §4.8.4.2."""
 
 from collections.abc import Mapping
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -9,10 +10,10 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_CONTEXTS, N_OUTCOMES, read_moves
 from lifelore.domains.ball_game.simulated_player import advance, new_balls, random_states
-from lifelore.experiments.chapter4.ball_game_methods import EPISODES
-from lifelore.experiments.chapter4.ball_game_play import Trained, train
-from lifelore.experiments.chapter4.ball_game_settings import Setting
-from lifelore.experiments.chapter4.ball_game_settings import check_games as check
+from lifelore.experiments.chapter4.ball_game.games import Setting
+from lifelore.experiments.chapter4.ball_game.games import check_games as check
+from lifelore.experiments.chapter4.ball_game.methods import EPISODES
+from lifelore.experiments.chapter4.ball_game.play import Trained, train
 from lifelore.interaction.adaptation.beat import Beat, Exploration, epsilon_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -31,18 +32,16 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Sessions of five episodes: decisions, those alike, how far beliefs differ, and when products vanish."""
-    setting = Setting(*cell["game"])
+    setting, epsilon = Setting(*cell["game"]), EPSILONS[cell["epsilon"]]
     game = setting.game
     trained = train(game, settings["training"], seed)
     library = library_of(game, trained, trained.scale(setting.normalisation))
     sessions = []
-    for kind in range(game.n_types):
-        for user in range(settings["users"]):
-            name = (setting.words, cell["epsilon"], kind, user)
-            beat = Beat(library, epsilon=EPSILONS[cell["epsilon"]], seed=stream(seed, "C4.16", *name))
-            reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), seed=stream(seed, "C4.16", *name))
-            world = stream(seed, "C4.16", "world", *name)
-            sessions.append(_session(game, kind, beat, reuse, EPSILONS[cell["epsilon"]], world))
+    for kind, user in product(range(game.n_types), range(settings["users"])):
+        name = (setting.words, cell["epsilon"], kind, user)
+        beat = Beat(library, epsilon=epsilon, seed=stream(seed, "C4.16", *name))
+        reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), seed=stream(seed, "C4.16", *name))
+        sessions.append(_session(game, kind, beat, reuse, epsilon, stream(seed, "C4.16", "world", *name)))
     return {**cell, "sessions": sessions}
 
 
@@ -51,8 +50,7 @@ def _session(
 ) -> dict:
     """One user's episodes, BEAT in charge."""
     schedule, product = epsilon_of(epsilon), np.full(game.n_types, 1 / game.n_types)
-    decisions = alike = vanished = 0
-    apart = 0.0
+    decisions, alike, vanished, apart = 0, 0, 0, 0.0
     heading, signal, before = np.empty(1, np.int64), np.empty(1, np.int64), np.empty((1, 2), np.int64)
     for episode in range(EPISODES):
         balls = new_balls(game, [kind], draw_sigma(world), random_states(world, 1))

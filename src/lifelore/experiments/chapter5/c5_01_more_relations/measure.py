@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter2.relation_scoring import share_over_scenes, wilson
+from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes, wilson
 from lifelore.experiments.chapter5.c5_01_more_relations.run import COMPOUND, HELD_OUT, KINDS, LESSON, labels_of
 from lifelore.experiments.chapter5.c5_01_more_relations.view_words import USER_WORD, VIEW_WORDS, WORDS
 from lifelore.experiments.engine.estimates import UNMEASURED
@@ -24,16 +24,14 @@ COMPOUNDS = ("between", "in")
 WAYS = ("thesis", "thesis_perceived", "lifelore")
 RULE, OTHER_SIDE = "rule", "other side"
 """The definitions of the words applied to visible points, a baseline; and scenes seen from the other side."""
-Ordered = tuple[int, int]
-PairsByWord = dict[str, frozenset[Ordered]]
+PairsByWord = dict[str, frozenset[tuple[int, int]]]
 """By word the ordered pairs of a scene for which it holds."""
-Answers = tuple[list[dict], list[PairsByWord]]
-"""Scenes, and the predicted words of each."""
+Counts = NDArray[np.float64]
 
 
 @computed_once
-def answers(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Answers]:
-    """Held-out scenes and predictions by number of lessons (as text), by the `RULE`, and from the `OTHER_SIDE`.
+def answers(settings: Mapping, results: Sequence[Mapping]) -> dict[str, tuple[list[dict], list[PairsByWord]]]:
+    """Held-out scenes and their predicted words by number of lessons (as text), by `RULE`, and from `OTHER_SIDE`.
 
     From the other side the model of the most lessons predicts.
     """
@@ -41,15 +39,19 @@ def answers(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Answers]
         [scene for result in results if result["kind"] == kind for scene in result["scenes"]]
         for kind in (LESSON, HELD_OUT)
     )
-    found: dict[str, Answers] = {RULE: (scenes, [pairs_by_word(scene["by_rule"]) for scene in scenes])}
-    for n in settings["lessons"]:
-        model = RelationClassifier(multi_label=True)
-        model.fit_pairs([scene_of(one) for one in lessons[:n]], [labels_of(one["truth"]) for one in lessons[:n]])
-        found[str(n)] = scenes, [predicted(model, scene) for scene in scenes]
-        if n == settings["lessons"][-1]:
-            behind = [scene["other_side"] for scene in scenes if scene["other_side"]]
-            found[OTHER_SIDE] = behind, [predicted(model, scene) for scene in behind]
-    return found
+    behind = [scene["other_side"] for scene in scenes if scene["other_side"]]
+    models = {
+        str(n): RelationClassifier(multi_label=True).fit_pairs(
+            [scene_of(row) for row in lessons[:n]], [labels_of(row["truth"]) for row in lessons[:n]]
+        )
+        for n in settings["lessons"]
+    }
+    last = models[str(settings["lessons"][-1])]
+    return {
+        RULE: (scenes, [pairs_by_word(scene["by_rule"]) for scene in scenes]),
+        **{n: (scenes, [predicted(model, scene) for scene in scenes]) for n, model in models.items()},
+        OTHER_SIDE: (behind, [predicted(last, scene) for scene in behind]),
+    }
 
 
 def scene_of(row: Mapping) -> ScenePairs:
@@ -61,13 +63,9 @@ def scene_of(row: Mapping) -> ScenePairs:
 
 def predicted(model: RelationClassifier, row: Mapping) -> PairsByWord:
     """The words that the model predicts for a scene; symmetric words in both orders."""
-    found: dict[str, set[Ordered]] = {word: set() for word in WORDS}
-    for relation in model.predict_pairs(scene_of(row)) if row["pairs"] else ():
-        if relation.relation in found:
-            found[relation.relation].add((relation.a, relation.b))
-            if relation.relation in model.symmetric:
-                found[relation.relation].add((relation.b, relation.a))
-    return {word: frozenset(pairs) for word, pairs in found.items()}
+    relations = model.predict_pairs(scene_of(row)) if row["pairs"] else ()
+    turned = [[r.b, r.a, r.relation] for r in relations if r.relation in model.symmetric]
+    return pairs_by_word([*([r.a, r.b, r.relation] for r in relations), *turned])
 
 
 def pairs_by_word(rows: Sequence[Sequence]) -> PairsByWord:
@@ -75,66 +73,55 @@ def pairs_by_word(rows: Sequence[Sequence]) -> PairsByWord:
     return {word: frozenset((a, b) for a, b, name in rows if name == word) for word in WORDS}
 
 
-# --- counts and scores ------------------------------------------------------------------------------------
-
-
-def word_counts(scenes: Sequence[Mapping], predictions: Sequence[PairsByWord], word: str) -> NDArray[np.float64]:
+def word_counts(scenes: Sequence[Mapping], predictions: Sequence[PairsByWord], word: str) -> Counts:
     """Of each scene the ordered pairs with the word rightly predicted, predicted, true; and all, ``(n, 4)``."""
     rows = []
     for row, words in zip(scenes, predictions, strict=True):
         orders = {order for a, b in row["labelled"] for order in ((a, b), (b, a))}
-        true, answers = pairs_by_word(row["truth"])[word], words[word] & orders
-        rows.append((len(true & answers), len(answers), len(true), len(orders)))
+        true, answered = pairs_by_word(row["truth"])[word], words[word] & orders
+        rows.append((len(true & answered), len(answered), len(true), len(orders)))
     return np.array(rows, float).reshape(-1, 4)
 
 
-def compound_counts(results: Sequence[Mapping], kind: str, way: str, word: str) -> NDArray[np.float64]:
+def compound_counts(results: Sequence[Mapping], kind: str, way: str, word: str) -> Counts:
     """Of each compound scene of a kind (or "all"): rightly predicted, predicted, true, ``(n, 3)``."""
     rows = []
     for result in results:
-        if result["kind"] == COMPOUND and kind in (result["of"], "all"):
-            for scene in result["scenes"]:
-                facts, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in (way, "true"))
-                rows.append((len(facts & true), len(facts), len(true)))
+        for scene in result["scenes"] if result["kind"] == COMPOUND and kind in (result["of"], "all") else ():
+            facts, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in (way, "true"))
+            rows.append((len(facts & true), len(facts), len(true)))
     return np.array(rows, float).reshape(-1, 3)
 
 
-def f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+def f1(counts: Counts) -> Counts:
     """2 right / (predicted + true) of counts ``(…, 3 or more)``; 0 where nothing is predicted nor true."""
     return 2 * counts[..., 0] / np.maximum(counts[..., 1] + counts[..., 2], 1)
 
 
-def recall(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+def recall(counts: Counts) -> Counts:
     """Share of the true that is predicted."""
     return counts[..., 0] / np.maximum(counts[..., 2], 1)
 
 
-def precision(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+def precision(counts: Counts) -> Counts:
     """Share of the predicted that is true."""
     return counts[..., 0] / np.maximum(counts[..., 1], 1)
 
 
-def resampled(
-    counts: NDArray[np.float64], statistic: Callable[[NDArray[np.float64]], NDArray[np.float64]], n: int
-) -> Estimate:
+def resampled(counts: Counts, statistic: Callable[[Counts], Counts], n: int) -> Estimate:
     """A statistic of summed counts, scenes resampled (percentiles); `n` counts its denominator."""
     if not len(counts) or n == 0:
         return UNMEASURED
-    value = float(statistic(counts.sum(axis=0)))
-    draws = stream(len(counts), "words resampled").multinomial(
-        len(counts), np.full(len(counts), 1 / len(counts)), size=RESAMPLES
-    )
+    value, even = float(statistic(counts.sum(axis=0))), np.full(len(counts), 1 / len(counts))
+    draws = stream(len(counts), "words resampled").multinomial(len(counts), even, size=RESAMPLES)
     low, high = np.quantile(statistic(draws @ counts), [0.025, 0.975])
     ends = (float(low), float(high)) if low < high else wilson(round(value * n), n)
     return Estimate(value, value, ends, n)
 
 
-def f1_estimate(counts: NDArray[np.float64]) -> Estimate:
+def f1_estimate(counts: Counts) -> Estimate:
     """F1 of `word_counts`; `n` counts the pairs for which the word is true."""
     return resampled(counts, f1, int(counts[:, 2].sum()))
-
-
-# --- measures ---------------------------------------------------------------------------------------------
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -159,40 +146,30 @@ def side_measures(
     there = iter(from_behind)
     behind = {number: next(there) for number, scene in enumerate(scenes) if scene["other_side"]}
     counts = {word: turned_counts(scenes, predictions, behind, word) for word in WORDS}
-    found = {
-        f"{'turned' if word in VIEW_WORDS else 'stays'}_{word}": _share_of_asked(*pair)
-        for word, pair in counts.items()
+    both = np.add(counts["left_of"], counts["right_of"])
+    named = {f"{'turned' if word in VIEW_WORDS else 'stays'}_{word}": pair for word, pair in counts.items()}
+    return {
+        name: share_over_scenes(right[n > 0], n[n > 0])
+        for name, (right, n) in {**named, "left_and_right_change_places": both}.items()
     }
-    both = (left + right for left, right in zip(counts["left_of"], counts["right_of"], strict=True))
-    return found | {"left_and_right_change_places": _share_of_asked(*both)}
 
 
 def turned_counts(
     scenes: Sequence[Mapping], predictions: Sequence[PairsByWord], behind: Mapping[int, PairsByWord], word: str
-) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+) -> tuple[Counts, Counts]:
     """How often a word rightly predicted from the front is predicted as it must be from the other side.
 
-    Returns
-    -------
-    kept, n : (scenes,) float64
-        Words of view must change into their opposites; others must stay.
+    Words of view must change into their opposites; others must stay. Returns right answers and all, ``(scenes,)``.
     """
-    kept, n = [], []
-    for number, (row, words) in enumerate(zip(scenes, predictions, strict=True)):
-        if number not in behind:
-            continue
-        near = {tuple(pair) for pair in row["other_side"]["pairs"]}
-        true_there, there = pairs_by_word(row["other_side"]["truth"]), behind[number]
-        must = OPPOSITE.get(word, word)
-        right = pairs_by_word(row["truth"])[word] & words[word]
-        orders = [order for order in right if order in near and order in true_there[must]]
-        kept.append(sum(o in there[must] and (must == word or o not in there[word]) for o in orders))
-        n.append(len(orders))
-    return np.array(kept, float), np.array(n, float)
-
-
-def _share_of_asked(kept: NDArray[np.float64], n: NDArray[np.float64]) -> Estimate:
-    return share_over_scenes(kept[n > 0], n[n > 0])
+    must, right, n = OPPOSITE.get(word, word), [], []
+    for number, there in behind.items():
+        row = scenes[number]
+        asked = pairs_by_word(row["truth"])[word] & predictions[number][word]
+        asked &= {tuple(pair) for pair in row["other_side"]["pairs"]}
+        asked &= pairs_by_word(row["other_side"]["truth"])[must]
+        right.append(len((asked & there[must]) - (there[word] if must != word else set())))
+        n.append(len(asked))
+    return np.array(right, float), np.array(n, float)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -201,14 +178,13 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     for learner, (scenes, predictions) in answers(settings, results).items():
         for word in WORDS:
             counts = word_counts(scenes, predictions, word)
-            right, yes, true, pairs = counts.sum(axis=0).astype(int).tolist()
-            line = {"word": word, "lessons": learner, "right": right, "said": yes, "true": true, "pairs": pairs}
-            found.append(line | {"f1": f1_estimate(counts).to_dict()})
+            sums = zip(("right", "said", "true", "pairs"), counts.sum(axis=0).astype(int).tolist(), strict=True)
+            found.append({"word": word, "lessons": learner, **dict(sums), "f1": f1_estimate(counts).to_dict()})
     for kind in KINDS:
         for word in COMPOUNDS:
             for way in WAYS:
-                right, yes, true = compound_counts(results, kind, way, word).sum(axis=0).astype(int).tolist()
-                line = {"compound": word, "scenes": kind, "way": way, "right": right}
-                found.append(line | {"said": yes, "true": true})
+                counts = compound_counts(results, kind, way, word).sum(axis=0).astype(int).tolist()
+                sums = zip(("right", "said", "true"), counts, strict=True)
+                found.append({"compound": word, "scenes": kind, "way": way, **dict(sums)})
     drawn = Counter(result["of"] for result in results if result["kind"] == COMPOUND for _ in result["scenes"])
     return [*found, {"compound_scenes": dict(drawn)}]

@@ -5,7 +5,7 @@ Cells of *lessons* and of held-out scenes store the features of every near pair 
 store the facts of the thesis's `between` and `in`, and of our own definitions, for purposely arranged scenes.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import combinations, permutations
 
 import numpy as np
@@ -18,13 +18,14 @@ from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.layout import Group, put_beside, stand
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT, photograph
 from lifelore.domains.tabletop.physics import Tabletop
-from lifelore.domains.tabletop.pose import Pose, about
+from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import ball, box, cup
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
-from lifelore.experiments.chapter2.arranged_scenes import Placement, arranged, settled, turned
-from lifelore.experiments.chapter2.skeletons import shipped_model_digest
-from lifelore.experiments.chapter2.tabletop_pairs import without_table
-from lifelore.experiments.chapter5.c5_01_more_relations.view_words import Points, is_between, is_in, said_of_pair
+from lifelore.experiments.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
+from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
+from lifelore.experiments.chapter2.scenes.skeletons import shipped_model_digest
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import without_table
+from lifelore.experiments.chapter5.c5_01_more_relations.view_words import Points, is_between, is_in, words_of_pair
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import pair_features
 from lifelore.perception.perceived_scene import perceived_scene
@@ -32,13 +33,13 @@ from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.reasoning.geometric_relations import geometric_relations
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import shipped_model
-from lifelore.perception.scene import Scene
 
-LOT = 8
-COMPOUND_LOT = 10
+LOT = {"lesson": 8, "held-out": 8, "compound": 10}
+LESSON, HELD_OUT, COMPOUND = LOT
 DIGITS = 5
-LESSON, HELD_OUT, COMPOUND = "lesson", "held-out", "compound"
-Said = set[tuple[str, tuple[int, ...]]]
+BY_POINTS = {"enclosed_between": "between", "contained": "in"}
+"""Names of `geometric_relations` → the thesis's."""
+Facts = set[tuple[str, tuple[int, ...]]]
 
 
 def place_angle(rng: np.random.Generator) -> Group:
@@ -68,29 +69,36 @@ KINDS = ("mixed", "row", "angle", "cup", "corner", "leaning")
 """Of compound scenes: *row* shows between, *angle* does not; *cup* shows in, *corner* and *leaning* do not."""
 
 
+def _sizes(settings: Mapping) -> dict[str, int]:
+    return {LESSON: max(settings["lessons"]), HELD_OUT: settings["scenes"], COMPOUND: settings["compound"]}
+
+
 def cells(settings: Mapping) -> list[dict]:
     """Lots of lessons, of held-out scenes, and of each kind of compound scenes."""
-    lots = [{"kind": LESSON, "first": k} for k in range(0, max(settings["lessons"]), LOT)]
-    lots += [{"kind": HELD_OUT, "first": k} for k in range(0, settings["scenes"], LOT)]
-    model = shipped_model_digest()
-    firsts = range(0, settings["compound"], COMPOUND_LOT)
-    return lots + [{"kind": COMPOUND, "of": kind, "first": k, "model": model} for kind in KINDS for k in firsts]
+    of_kinds = [{"of": kind, "model": shipped_model_digest()} for kind in KINDS]
+    heads = {LESSON: [{}], HELD_OUT: [{}], COMPOUND: of_kinds}
+    return [
+        lot
+        for kind, n in _sizes(settings).items()
+        for head in heads[kind]
+        for lot in lots(n, LOT[kind], kind=kind, **head)
+    ]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """``{"kind", "of", "scenes": […]}``."""
-    kind, n = cell["kind"], {LESSON: max(settings["lessons"]), HELD_OUT: settings["scenes"]}
-    last = (
-        min(cell["first"] + LOT, n[kind]) if kind in n else min(cell["first"] + COMPOUND_LOT, settings["compound"])
-    )
-    numbers = range(cell["first"], last)
-    if kind == COMPOUND:
-        scenes = [compound_counts(compound_scene(cell["of"], seed, number)) for number in numbers]
-    elif kind == LESSON:
-        scenes = [seen(scene, scene.cloud) for scene in (_drawn(seed, "training", number) for number in numbers)]
-    else:
-        scenes = [_asked(seed, number) for number in numbers]
-    return {"kind": kind, "of": cell.get("of", ""), "scenes": scenes}
+    kind, of = cell["kind"], cell.get("of", "")
+    scenes = []
+    for number in numbers_of(cell, LOT[kind], _sizes(settings)[kind]):
+        if kind == COMPOUND:
+            scenes.append(compound_facts(compound_scene(of, seed, number)))
+        else:
+            scene = _drawn(seed, "training" if kind == LESSON else HELD_OUT, number)
+            scenes.append(seen(scene, scene.cloud))
+            if kind == HELD_OUT:
+                behind = from_the_other_side(scene, stream(seed, "word scenes", "other side", number))
+                scenes[-1]["other_side"] = seen(scene, behind) if behind is not None else None
+    return {"kind": kind, "of": of, "scenes": scenes}
 
 
 def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
@@ -98,106 +106,90 @@ def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
     return sample_scene(own, number, TabletopSettings(shapes=shapes))
 
 
-def _asked(seed: int, number: int) -> dict:
-    scene = _drawn(seed, "held-out", number)
-    behind = from_the_other_side(scene, stream(seed, "word scenes", "other side", number))
-    return seen(scene, scene.cloud) | {"other_side": seen(scene, behind) if behind is not None else None}
-
-
 def outlines(scene: TabletopScene) -> dict[int, Points]:
-    """Points that span each thing, by label."""
+    """Points that span each object, by label."""
     placed = zip(scene.shapes, scene.poses, strict=True)
     return {FIRST_OBJECT + k: pose.apply(shape.outline()) for k, (shape, pose) in enumerate(placed)}
 
 
 def from_the_other_side(scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud | None:
-    """The same things from a camera carried half round the table; None where one of them is hidden from it."""
+    """The same objects from a camera carried half round the table; None where it does not see all of them."""
     spans = list(outlines(scene).values())
     every = np.concatenate(spans)
     middle = np.append((every.min(axis=0) + every.max(axis=0))[:2] / 2, 0.0)
-    view: Pose = scene.view.moved(-middle).turned(np.pi).moved(middle)
+    view = scene.view.moved(-middle).turned(np.pi).moved(middle)
     photo = photograph(Tabletop(scene.shapes, scene.poses), spans, view, CAMERAS["kinect"], rng)
     return None if photo is None else photo.cloud
 
 
 def seen(scene: TabletopScene, cloud: LabelledCloud) -> dict:
-    """Features of the near pairs; words true of all labelled pairs of things; words by visible points alone."""
+    """Features of the near pairs; words true of all labelled pairs; words by the visible points alone."""
     bare = without_table(cloud)
     features = pair_features(bare, interfaces(bare))
-    spans = outlines(scene)
-    visible = {label: bare.of(label) for label in bare.objects}
     pairs = [(min(t.a, t.b), max(t.a, t.b)) for t in scene.truth if TABLE not in (t.a, t.b)]
-    assert cloud.camera is not None
+
+    def words(points: Mapping[int, Points]) -> list[list]:
+        assert cloud.camera is not None
+        labels = [label for a, b in pairs for label in words_of_pair(a, b, points[a], points[b], cloud.camera)]
+        return [[label.a, label.b, label.relation] for label in labels]
+
     return {
         "pairs": features.pairs.tolist(),
         "gaps": np.round(features.gaps, DIGITS).tolist(),
         "features": np.round(features.matrix, DIGITS).tolist(),
         "labelled": pairs,
-        "truth": _said(pairs, spans, cloud.camera),
-        "by_rule": _said(pairs, visible, cloud.camera),
+        "truth": words(outlines(scene)),
+        "by_rule": words({label: bare.of(label) for label in bare.objects}),
     }
-
-
-def _said(pairs: Sequence[tuple[int, int]], points: Mapping[int, Points], camera: Points) -> list[list]:
-    labels = [label for a, b in pairs for label in said_of_pair(a, b, points[a], points[b], camera)]
-    return [[label.a, label.b, label.relation] for label in labels]
 
 
 def compound_scene(kind: str, seed: int, number: int) -> TabletopScene:
     """Scene `number` of a kind."""
     if kind == "mixed":
-        return _drawn(seed, "held-out", number)
+        return _drawn(seed, HELD_OUT, number)
     if kind == "leaning":
         own = int(stream(seed, "word scenes", kind).integers(2**31))
         return sample_scene(own, number, TabletopSettings(arrangement="pair", mix={BOTH: 1.0}, shapes="all"))
     return settled(OURS[kind], kind, seed, number) if kind in OURS else arranged(kind, seed, number)
 
 
-def compound_counts(scene: TabletopScene) -> dict:
-    """What is true by geometry, and what each way says: ``{"true", "thesis", "thesis_perceived", "lifelore"}``.
+def compound_facts(scene: TabletopScene) -> dict[str, list]:
+    """The facts ``[word, objects…]`` that are true by geometry, and those that each way finds.
 
-    Each a list of ``[word, things…]``. *thesis*: its rules on true relations; *thesis_perceived*: on perceived
-    ones; *lifelore*: `geometric_relations` of the perceived scene.
+    *thesis*: its rules on true relations; *thesis_perceived*: on perceived ones; *lifelore*: `geometric_relations`
+    of the perceived scene.
     """
     perceived = perceived_scene(scene.cloud, shipped_model())
-    told = tuple(Relation(t.a, t.b, t.relation, 1.0, 0.0) for t in scene.truth)
+
+    def by_rules(relations: Iterable[Relation]) -> Facts:
+        facts = compound_relations(tuple(relations), scene.cloud.objects)
+        return {(fact.name, fact.arguments) for fact in facts if fact.name in BY_POINTS.values()}
+
     ways = {
         "true": true_compounds(scene),
-        "thesis": _thesis(told, scene.cloud.objects),
-        "thesis_perceived": _thesis(perceived.relations, scene.cloud.objects),
-        "lifelore": _by_points(perceived),
+        "thesis": by_rules(Relation(t.a, t.b, t.relation, 1.0, 0.0) for t in scene.truth),
+        "thesis_perceived": by_rules(perceived.relations),
+        "lifelore": {(BY_POINTS[fact.name], fact.arguments) for fact in geometric_relations(perceived)},
     }
-    return {way: sorted([word, *things] for word, things in said) for way, said in ways.items()}
+    return {way: sorted([word, *objects] for word, objects in facts) for way, facts in ways.items()}
 
 
-def true_compounds(scene: TabletopScene) -> Said:
+def true_compounds(scene: TabletopScene) -> Facts:
     """`between` (b, a, c) with a < c, and `in` (a, b), of the true shapes."""
     spans = outlines(scene)
     parts = {
         FIRST_OBJECT + k: [pose.apply(part.outline()) for part in shape.parts]
         for k, (shape, pose) in enumerate(zip(scene.shapes, scene.poses, strict=True))
     }
-    near = {frozenset((t.a, t.b)) for t in scene.truth}
-    found: Said = set()
-    for b in spans:
-        beside = [thing for thing in spans if frozenset((thing, b)) in near and thing != b]
-        for a, c in combinations(sorted(beside), 2):
-            if is_between(spans[b], spans[a], spans[c]):
-                found.add(("between", (b, a, c)))
-    for a, b in permutations(spans, 2):
-        if frozenset((a, b)) in near and is_in(spans[a], parts[b]):
-            found.add(("in", (a, b)))
-    return found
-
-
-def _thesis(relations: Sequence[Relation], objects: Sequence[int]) -> Said:
-    facts = compound_relations(relations, objects)
-    return {(fact.name, fact.arguments) for fact in facts if fact.name in ("between", "in")}
-
-
-def _by_points(scene: Scene) -> Said:
-    names = {"enclosed_between": "between", "contained": "in"}
-    return {(names[fact.name], fact.arguments) for fact in geometric_relations(scene)}
+    near = {pair for t in scene.truth for pair in ((t.a, t.b), (t.b, t.a))}
+    between = {
+        ("between", (b, a, c))
+        for b in spans
+        for a, c in combinations(sorted(other for other in spans if (other, b) in near), 2)
+        if is_between(spans[b], spans[a], spans[c])
+    }
+    inside = {("in", (a, b)) for a, b in permutations(spans, 2) if (a, b) in near and is_in(spans[a], parts[b])}
+    return between | inside
 
 
 def labels_of(rows: Sequence[Sequence]) -> list[PairLabel]:

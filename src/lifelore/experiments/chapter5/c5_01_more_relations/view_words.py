@@ -1,7 +1,7 @@
-"""What words of space mean here: geometry of true shapes, some of it as the camera sees it (claim C5.1).
+"""Definitions of words of space: geometry of true shapes, some of it as the camera sees it (claim C5.1).
 
-Of a pair of things seen by a camera, *away* is the horizontal direction from the camera to the middle between
-them, *right* its right hand. A thing's place is the middle of its extent along both.
+Of a pair of objects seen by a camera, *away* is the horizontal direction from the camera to the middle between
+them, *right* its right hand. An object's place is the middle of its extent along both.
 
 Each word holds of a and b when
 
@@ -16,9 +16,9 @@ Each word holds of a and b when
   point to the lower of the two tops, b stands around a's place, and farther out than a itself, in at least three
   quarters of the horizontal directions; and a's place is not within b itself.
 
-*Side by side*: their heights overlap by at least half of the lower thing's. Sectors of 60° to either side overlap,
-so that a thing may be ``behind`` and ``right_of`` at once, and every pair side by side has a word. Thesis: §2.4.1,
-§5.2.
+*Side by side*: their heights overlap by at least half of the lower object's. Sectors of 60° to either side
+overlap, so that an object may be ``behind`` and ``right_of`` at once, and every pair side by side has a word.
+Thesis: §2.4.1, §5.2.
 """
 
 from collections.abc import Sequence
@@ -40,7 +40,7 @@ _STEPS = 32
 Points = NDArray[np.float64]
 
 
-def said_of_pair(a: int, b: int, first: Points, second: Points, camera: Points) -> list[PairLabel]:
+def words_of_pair(a: int, b: int, first: Points, second: Points, camera: Points) -> list[PairLabel]:
     """All words of a pair in both orders; *none* where no word holds.
 
     Parameters
@@ -49,9 +49,9 @@ def said_of_pair(a: int, b: int, first: Points, second: Points, camera: Points) 
         Points whose convex hull is a, and b; metres, z up.
     camera : (3,) float64
     """
-    found = [PairLabel(a, b, word) for word in words(first, second, camera)]
-    found += [PairLabel(b, a, word) for word in words(second, first, camera)]
-    return found or [PairLabel(a, b, NONE)]
+    forward = [PairLabel(a, b, word) for word in words(first, second, camera)]
+    backward = [PairLabel(b, a, word) for word in words(second, first, camera)]
+    return forward + backward or [PairLabel(a, b, NONE)]
 
 
 def words(a: Points, b: Points, camera: Points) -> list[str]:
@@ -77,7 +77,7 @@ def offset(a: Points, b: Points, camera: Points) -> tuple[float, float]:
 
 
 def side_by_side(a: Points, b: Points) -> bool:
-    """Whether their heights overlap by at least half of the lower thing's."""
+    """Whether their heights overlap by at least half of the lower object's."""
     overlap = min(a[:, 2].max(), b[:, 2].max()) - max(a[:, 2].min(), b[:, 2].min())
     return bool(overlap >= BESIDE * min(np.ptp(a[:, 2]), np.ptp(b[:, 2])))
 
@@ -106,7 +106,7 @@ def is_between(b: Points, a: Points, c: Points) -> bool:
 
 
 def is_in(a: Points, parts: Sequence[Points]) -> bool:
-    """Whether a is in a thing made of convex `parts`, each points ``(n, 3)``."""
+    """Whether a is in an object made of convex `parts`, each points ``(n, 3)``."""
     low, top = a[:, 2].min(), min(a[:, 2].max(), max(part[:, 2].max() for part in parts))
     if top - low < DEPTH:
         return False

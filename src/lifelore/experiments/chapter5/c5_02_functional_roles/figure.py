@@ -1,21 +1,17 @@
 """Mean average precision of each role by method, with pictures of a few scenes."""
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 import numpy as np
 
-from lifelore.experiments.chapter2.scene_example import examples_of
+from lifelore.experiments.chapter2.scenes.scene_example import examples_of
 from lifelore.experiments.chapter5.c5_02_functional_roles.measure import METHODS
 from lifelore.figures.gallery import gallery_above
 from lifelore.figures.object_palette import method_palette
 from lifelore.figures.style import INK, LIGHT, house_style
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
 
-
-def draw(result: Mapping) -> "Figure":
+def draw(result: Mapping):
     table = [row for row in result["rows"] if "role" in row]
     palette = method_palette(METHODS.values())
     figure, below = gallery_above(examples_of(result), 3.0, layers=("cloud", "networks"))

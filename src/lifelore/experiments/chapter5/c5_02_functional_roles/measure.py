@@ -4,8 +4,10 @@ from collections import Counter
 from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lifelore.core.metrics import Estimate
+from lifelore.experiments.chapter2.scenes.scene_lots import examples_in
 from lifelore.experiments.chapter5.c5_02_functional_roles.ranking import average_precision, mean_by_cluster
 from lifelore.experiments.chapter5.c5_02_functional_roles.run import ROLES
 from lifelore.perception.topology.functional_similarity import overlap
@@ -32,27 +34,25 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def judged_queries(results: Sequence[Mapping]) -> list[dict]:
     """For each object its scene, its role, and by method the average precision among the other pool's objects."""
-    things = {pool: [t for r in results if r["pool"] == pool for t in r["things"]] for pool in ("first", "second")}
+    first, second = (
+        [item for result in results if result["pool"] == pool for item in result["things"]]
+        for pool in ("first", "second")
+    )
     queries = []
-    for pool, others in (("first", things["second"]), ("second", things["first"])):
-        for thing in things[pool]:
-            relevant = [other["role"] == thing["role"] for other in others]
-            scores = {name: _overlaps(thing[name], [other[name] for other in others]) for name in BAGS}
-            scores["shape"] = _likeness(thing["shape"], [other["shape"] for other in others])
+    for items, others in ((first, second), (second, first)):
+        bags = {name: [Counter(other[name]) for other in others] for name in BAGS}
+        shapes = np.array([other["shape"] for other in others])
+        for item in items:
+            relevant = [other["role"] == item["role"] for other in others]
+            scores: dict[str, ArrayLike] = {
+                name: [overlap(Counter(item[name]), bag) for bag in bags[name]] for name in BAGS
+            }
+            # As `functional_similarity.shape_similarity`, from two histograms.
+            scores["shape"] = 1 - np.abs(shapes - np.array(item["shape"])).sum(axis=1) / 2
             scores["chance"] = np.zeros(len(others))
             precision = {name: average_precision(scores[name], relevant) for name in METHODS}
-            queries.append({"scene": thing["scene"], "role": thing["role"], **precision})
+            queries.append({"scene": item["scene"], "role": item["role"], **precision})
     return queries
-
-
-def _overlaps(bag: Mapping[str, int], others: Sequence[Mapping[str, int]]) -> np.ndarray:
-    own = Counter(bag)
-    return np.array([overlap(own, Counter(other)) for other in others])
-
-
-def _likeness(histogram: Sequence[float], others: Sequence[Sequence[float]]) -> np.ndarray:
-    """As `functional_similarity.shape_similarity`, from two histograms."""
-    return 1 - np.abs(np.asarray(others) - np.asarray(histogram)).sum(axis=1) / 2
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -63,4 +63,4 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         own = [query for query in queries if query["role"] == role]
         precision = {method: float(np.mean([query[method] for query in own])) for method in METHODS}
         table.append({"role": role, "queries": len(own), **precision})
-    return table + [example for result in results for example in result["examples"]]
+    return table + examples_in(results)

@@ -10,28 +10,14 @@ from lifelore.core.metrics import Estimate, ratio_estimate
 
 
 def average_precision(scores: ArrayLike, relevant: ArrayLike) -> float:
-    """Expected average precision where things of equal score are ordered by chance (McSherry and Najork 2008).
+    """Expected average precision where items of equal score are ordered by chance (McSherry and Najork 2008).
 
-    Parameters
-    ----------
-    scores : (n,) array
-        Higher comes first.
-    relevant : (n,) array of bool
-        At least one is true.
-
-    Returns
-    -------
-    float
-        In (0, 1]; the mean over the relevant of the precision at their place.
-
-    Raises
-    ------
-    InputError
-        Nothing is relevant.
+    Items with higher `scores` ``(n,)`` come first; at least one of `relevant` ``(n,)`` must be true. The result is
+    the mean over the relevant items of the precision at their place, in (0, 1].
     """
     scores, hit = np.asarray(scores, float), np.asarray(relevant, bool)
     if not hit.any():
-        raise InputError("relevant must name at least one thing, got none")
+        raise InputError("relevant must name at least one item, got none")
     total, before, found = 0.0, 0, 0
     for score in np.unique(scores)[::-1]:
         tied = scores == score

@@ -1,22 +1,10 @@
-"""Measures and rows of claim C5.3."""
+"""Measures and rows of claim C5.3: gains of search, nodes expanded and regret, with the prior and without."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter5.c5_03_priors_in_search.run import (
-    ARMS_FORM,
-    BETA,
-    EVEN,
-    FLAT,
-    KINDS,
-    ORDER_FORM,
-    PLAIN,
-    PRUNED,
-    SEARCH_FORM,
-    UCB1,
-    WAYS,
-)
+from lifelore.experiments.chapter5.c5_03_priors_in_search import run
 from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -38,7 +26,7 @@ def _searches(results: Sequence[Mapping]) -> Iterator[Row]:
         row = {"use": "search", **way, "success": table.mean("reached", **way)}
         row |= {key: table.mean(key, **way) for key in ("steps", "collisions")}
         if way["kind"] is not None:
-            plain = {**way, "kind": None, "form": PLAIN, "guides": None}
+            plain = {**way, "kind": None, "form": run.PLAIN, "guides": None}
             row["gain"] = table.difference("reached", way, plain)
         yield row
 
@@ -49,8 +37,8 @@ def _orders(results: Sequence[Mapping]) -> Iterator[Row]:
         row = {"use": "depth first", **way}
         row |= {key: table.mean(key, **way) for key in ("expanded", "moves", "reached")}
         if way["kind"] is not None:
-            search = "depth first" if way["search"] == PRUNED else way["search"]
-            plain = {"search": search, "kind": None, "form": PLAIN}
+            search = "depth first" if way["search"] == run.PRUNED else way["search"]
+            plain = {"search": search, "kind": None, "form": run.PLAIN}
             row["ratio"] = table.ratio("expanded", way, plain)
             row["moves_ratio"] = table.ratio("moves", way, plain)
         yield row
@@ -61,8 +49,8 @@ def _arms(settings: Mapping, results: Sequence[Mapping]) -> Iterator[Row]:
     for table, way in _ways(results, "bandit", ARMS_KEYS):
         row = {"use": "bandit", **way, "regret": table.mean("regret", **way)}
         if way["kind"] is not None:
-            row["ratio"] = table.ratio("regret", way, {**way, "kind": None, "form": FLAT, "strength": 0.0})
-            even = {**way, "kind": None, "form": EVEN, "strength": settings["strength"]}
+            row["ratio"] = table.ratio("regret", way, {**way, "kind": None, "form": run.FLAT, "strength": 0.0})
+            even = {**way, "kind": None, "form": run.EVEN, "strength": settings["strength"]}
             row["even_ratio"] = table.ratio("regret", way, even)
         yield row
 
@@ -71,15 +59,15 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     """The defaults of each use, and in how many ways of guiding a tree search the prior helps or harms."""
     searches, orders = ResultsTable(_searches(results), SEARCH_KEYS), ResultsTable(_orders(results), ORDER_KEYS)
     arms = ResultsTable(_arms(settings, results), ARMS_KEYS)
-    measured, (guides, move) = {}, WAYS[0]
-    for kind in KINDS:
+    measured, (guides, move) = {}, run.WAYS[0]
+    for kind in run.KINDS:
         for n in settings["simulations"]:
-            default = {"form": SEARCH_FORM, "guides": guides, "move": move}
+            default = {"form": run.SEARCH_FORM, "guides": guides, "move": move}
             measured[f"gain_{kind}_{n}"] = searches.record(kind=kind, simulations=n, **default)["gain"]
-        order = orders.record(search="depth first", kind=kind, form=ORDER_FORM)
+        order = orders.record(search="depth first", kind=kind, form=run.ORDER_FORM)
         measured[f"nodes_ratio_{kind}"] = order["ratio"]
-        for index in (UCB1, BETA):
-            begun = arms.record(index=index, kind=kind, form=ARMS_FORM, strength=settings["strength"])
+        for index in (run.UCB1, run.BETA):
+            begun = arms.record(index=index, kind=kind, form=run.ARMS_FORM, strength=settings["strength"])
             measured[f"{index}_ratio_{kind}"] = begun["ratio"]
             measured[f"{index}_even_ratio_{kind}"] = begun["even_ratio"]
     gains = [row["gain"] for row in searches.records if "gain" in row]
@@ -96,7 +84,6 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         if "curve" in table.record(**way):
             curve = table.curve("curve", **way)
             error = [round(deviation / len(results) ** 0.5, 4) for deviation in curve["deviation"]]
-            plain.append(
-                {"use": "curve", **way, "mean": [round(mean, 4) for mean in curve["mean"]], "error": error}
-            )
+            mean = [round(value, 4) for value in curve["mean"]]
+            plain.append({"use": "curve", **way, "mean": mean, "error": error})
     return plain

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search import bandit
-from lifelore.action.search.depth_first import DepthFirstResult, depth_first, iterative_deepening, preferences
+from lifelore.action.search.depth_first import depth_first, iterative_deepening, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import Tables
@@ -81,13 +81,17 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
     starts = random.choice(others, settings["starts"])
     goals = random.permutation(others)[:n_tasks]
     tables, best = _solved(world, goal)
-    priors = {
-        PLACE: _prior(settings, [(np.arange(world.n_states), _solved(world, int(g))[1]) for g in goals]),
-        PERCEPT: _prior(settings, [_percepts_elsewhere(settings, (*names, i)) for i in range(n_tasks)]),
+    lessons = {
+        PLACE: [(np.arange(world.n_states), _solved(world, int(other))[1]) for other in goals],
+        PERCEPT: [_percepts_elsewhere(settings, (*names, i)) for i in range(n_tasks)],
     }
-    contexts = {PLACE: np.arange(world.n_states), PERCEPT: world.percepts}
+    priors = {kind: ActionPrior(4, settings["alpha0"]) for kind in KINDS}
+    for kind, prior in priors.items():
+        for contexts, good in lessons[kind]:
+            prior.update(contexts, good)
+    contexts_of = {PLACE: np.arange(world.n_states), PERCEPT: world.percepts}
     probs_of = {
-        (kind, form): _rows(settings, priors[kind], contexts[kind], form, (*names, kind))
+        (kind, form): _rows(settings, priors[kind], contexts_of[kind], form, (*names, kind))
         for kind, form in product(KINDS, settings["forms"])
     }
     return Maze(tables, best, start, starts, probs_of)
@@ -109,13 +113,6 @@ def _percepts_elsewhere(settings: Mapping, names: tuple) -> tuple[NDArray[np.int
     random = stream(*names, "training")
     world = _world(settings, random)
     return world.percepts, _solved(world, int(random.integers(world.n_states)))[1]
-
-
-def _prior(settings: Mapping, tasks: list) -> ActionPrior:
-    prior = ActionPrior(4, settings["alpha0"])
-    for contexts, best in tasks:
-        prior.update(contexts, best)
-    return prior
 
 
 def _rows(settings: Mapping, prior: ActionPrior, contexts, form: str, names: tuple) -> NDArray[np.float64]:
@@ -145,30 +142,21 @@ def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterat
     """Depth-first search in each order, pruned and deepened in one; means over the starts."""
     flat = np.full(maze.best.shape, 1 / maze.best.shape[1])
 
-    def mean(search, probs, prune=0.0):
-        found = []
-        for number, start in enumerate(maze.starts.tolist()):
-            liked = preferences(probs, stream(*names, "order", number), prune)
-            found.append(search(maze.tables, start, liked))
-        return _means(found)
+    def means(search, probs, prune=0.0) -> dict:
+        orders = (preferences(probs, stream(*names, "order", n), prune) for n in range(len(maze.starts)))
+        found = [search(maze.tables, start, o) for start, o in zip(maze.starts.tolist(), orders, strict=True)]
+        sums = {"expanded": [f.expanded for f in found], "reached": [f.reached for f in found]}
+        sums["moves"] = [len(f.actions) for f in found]
+        return {key: float(np.mean(values)) for key, values in sums.items()}
 
     for search_name, search in (("depth first", depth_first), ("deepening", iterative_deepening)):
-        yield {"search": search_name, "kind": None, "form": PLAIN, **mean(search, flat)}
+        yield {"search": search_name, "kind": None, "form": PLAIN, **means(search, flat)}
         for (kind, form), probs in maze.probs_of.items():
             if search is depth_first or form == ORDER_FORM:
-                yield {"search": search_name, "kind": kind, "form": form, **mean(search, probs)}
+                yield {"search": search_name, "kind": kind, "form": form, **means(search, probs)}
     for (kind, form), probs in maze.probs_of.items():
         if form == ORDER_FORM:
-            pruned = mean(depth_first, probs, settings["prune"])
-            yield {"search": PRUNED, "kind": kind, "form": form, **pruned}
-
-
-def _means(found: list[DepthFirstResult]) -> dict:
-    return {
-        "expanded": float(np.mean([f.expanded for f in found])),
-        "reached": float(np.mean([f.reached for f in found])),
-        "moves": float(np.mean([len(f.actions) for f in found])),
-    }
+            yield {"search": PRUNED, "kind": kind, "form": form, **means(depth_first, probs, settings["prune"])}
 
 
 def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:

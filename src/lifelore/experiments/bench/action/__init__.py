@@ -1,0 +1,1 @@
+"""Benchmarks of priors: contexts, a factory task, and a prior in Stable-Baselines3."""

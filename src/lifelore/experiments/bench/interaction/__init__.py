@@ -1,0 +1,1 @@
+"""Benchmark of policy reuse, beside loops, MABWiser and BoTorch."""

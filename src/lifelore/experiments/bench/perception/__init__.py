@@ -1,0 +1,1 @@
+"""Benchmarks of perception: whole scenes, their pictures, the separator and the relations."""

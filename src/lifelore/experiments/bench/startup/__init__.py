@@ -1,0 +1,1 @@
+"""Benchmark of the first answer: of a learner, and of each verb from the shell."""

@@ -1,0 +1,1 @@
+"""What figures of several claims of the chapter share."""

@@ -1,0 +1,1 @@
+"""Schedules of ε, and learners in grid worlds."""

@@ -1,0 +1,147 @@
+"""Policy reuse and its peers on many tasks side by side, and statistics of their regret.
+
+All methods of a comparison meet the same tasks and the same noise: the signals of an episode are fixed
+before any method chooses. Regret is expected library regret (Definition 4.3.1): how much less the chosen policy
+pays on average than the best of the library.
+"""
+
+from collections.abc import Callable, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
+from lifelore.core.streams import stream
+from lifelore.interaction.baselines import Baseline
+from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
+from lifelore.interaction.selection import SelectionRule
+
+Array = NDArray[np.float64]
+Signals = Callable[[int, NDArray[np.int64]], NDArray]
+"""``signals(episode, policies)``: the signals of the policies (n_tasks,) in that episode, (n_tasks,)."""
+
+EXACT, LEARNT = "exact", "learnt"
+"""Kinds of models that rules know."""
+SETTLED = 1e-9
+"""Regret below this is none."""
+STUCK = 5.0
+"""Mean regret over the last episodes above which a task counts as stuck."""
+LAST = 10
+"""Number of episodes that count as the last."""
+
+
+class Played(NamedTuple):
+    """Policies chosen in each episode.
+
+    policies : (n_tasks, n_episodes) int64
+    entropy : (n_tasks, n_episodes + 1) float64, of the belief before each episode and after the last, nats
+    """
+
+    policies: NDArray[np.int64]
+    entropy: Array
+
+
+def play_rule(
+    rule: SelectionRule,
+    library: PolicyLibrary,
+    signals: Signals,
+    n_tasks: int,
+    n_episodes: int,
+    generator: np.random.Generator,
+    first: int | None = None,
+) -> Played:
+    """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once.
+
+    `generator` serves the rule and the choice among equals. `first`, if given, is the policy of the first episode,
+    in place of the rule's choice.
+    """
+    reuse = ReuseAlgorithm(library, least=LEAST_SCORED)
+    log_belief, every = np.tile(reuse.start(), (n_tasks, 1)), np.arange(n_tasks)
+    policies = np.empty((n_tasks, n_episodes), np.int64)
+    entropies = np.empty((n_tasks, n_episodes + 1))
+    for t in range(n_episodes):
+        belief = reuse.belief(log_belief)
+        entropies[:, t] = entropy(belief)
+        if t == 0 and first is not None:
+            chosen = np.full(n_tasks, first)
+        else:
+            chosen, _ = reuse.select(belief, rule, generator, n_episodes - 1 - t)
+        policies[:, t] = chosen
+        reuse.update(log_belief, every, chosen, signals(t, chosen))
+    entropies[:, -1] = entropy(np.exp(log_belief))
+    return Played(policies, entropies)
+
+
+def play_baseline(player: Baseline, pays: Signals, n_episodes: int) -> NDArray[np.int64]:
+    """The policies, (n_tasks, n_episodes), of a peer that learns from payoffs."""
+    policies = np.empty((player.rows, n_episodes), np.int64)
+    for t in range(n_episodes):
+        policies[:, t] = player.select()
+        player.update(policies[:, t], pays(t, policies[:, t]))
+    return policies
+
+
+def converged_after(regret: Array) -> NDArray[np.int64]:
+    """First episode, from 1, from which on regret is none, (n_tasks,); the last plus 1 where it never is."""
+    n_episodes = regret.shape[1]
+    some = regret > SETTLED
+    last = n_episodes - some[:, ::-1].argmax(axis=1)
+    return np.where(some.any(axis=1), last, 0) + 1
+
+
+def late_regret(regret: Array) -> Array:
+    """Mean regret over the last ten episodes, (n_tasks,)."""
+    return regret[:, -LAST:].mean(axis=1)
+
+
+def grouped_mean(values: ArrayLike) -> Estimate:
+    """Mean and median of `values` (n_groups, n_each), with an interval from groups, whose members share much."""
+    values = np.asarray(values, float)
+    of_groups = mean_estimate(values.mean(axis=1))
+    return Estimate(of_groups.value, float(np.median(values)), of_groups.ci95, values.size)
+
+
+def grouped_quantile(values: ArrayLike, q: float) -> Estimate:
+    """Quantile of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
+    values = np.asarray(values, float)
+    interval = _group_interval(values, lambda some: np.quantile(some, q, axis=1), "bootstrap of a quantile")
+    return Estimate(float(np.quantile(values, q)), float(np.median(values)), interval, values.size)
+
+
+def grouped_deviation(values: ArrayLike) -> Estimate:
+    """Standard deviation of all `values` (n_groups, n_each), with a bootstrap interval over groups."""
+    values = np.asarray(values, float)
+    interval = _group_interval(values, lambda some: some.std(axis=1), "bootstrap of a deviation")
+    return Estimate(float(values.std()), float(values.std()), interval, values.size)
+
+
+def _group_interval(values: Array, statistic: Callable, name: str) -> tuple[float, float] | None:
+    """95 % bootstrap interval of a statistic over groups; None below three groups."""
+    n = len(values)
+    if n < 3:
+        return None
+    draws = stream(n, name).integers(0, n, size=(RESAMPLES, n))
+    low, high = np.quantile(statistic(values[draws].reshape(RESAMPLES, -1)), [0.025, 0.975])
+    return float(low), float(high)
+
+
+def curve(values: Array, digits: int = 3) -> dict[str, list[float]]:
+    """Mean over tasks (n_tasks, n_episodes) and its standard error, episode by episode."""
+    n = len(values)
+    error = values.std(axis=0, ddof=1) / n**0.5 if n > 1 else np.zeros(values.shape[1])
+    return {"mean": values.mean(axis=0).round(digits).tolist(), "error": error.round(digits).tolist()}
+
+
+def plain(estimates: Mapping[str, Estimate]) -> dict[str, Any]:
+    """Estimates as rows keep them: value, interval and number, to four places."""
+    return {
+        name: {
+            "value": round(estimate.value, 4),
+            "ci95": None if estimate.ci95 is None else [round(bound, 4) for bound in estimate.ci95],
+            "n": estimate.n,
+        }
+        for name, estimate in estimates.items()
+    }
