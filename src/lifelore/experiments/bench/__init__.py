@@ -42,8 +42,9 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     name : str
         One of `BENCHES`.
     repeats : int
-        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives; for
-        ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs of learning.
+        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives;
+        for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs of
+        learning.
     map : str, optional
         For ``courier`` and ``recognition``: a ROS map to live in; default generated offices.
     progress : callable, optional
