@@ -35,6 +35,12 @@ def live(
     agent: Annotated[
         str, Option(help="Agent: lore, model, prior, scratch, undirected, rmax, frontier, or all.")
     ] = "lore",
+    compare: Annotated[
+        bool | None,
+        Option(
+            "--compare/--alone", help="Live scratch beside the agent [up to 100,000 places], or the agent alone."
+        ),
+    ] = None,
     robot: Annotated[
         str, Option(help="Name of the robot in memory; robots that run at the same time need different names.")
     ] = "robot",
@@ -101,6 +107,8 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
+    import sys
+
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
@@ -127,6 +135,7 @@ def live(
         prior=PriorSettings(prior, alpha0, weight, form, ties),
         memory=MemorySettings(memory, robot, building),
         agent=agent,
+        compare=compare,
         tasks=30 if tasks is None else tasks,
         destinations=destinations,
         start=_place("start", start, domain),
@@ -137,6 +146,7 @@ def live(
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
+    notify = lambda line: print(line, file=sys.stderr)  # noqa: E731
     watch = None if l2log is None else LifeLog(l2log, domain).add
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
 
@@ -146,7 +156,7 @@ def live(
                 print(f"new folder {folder}", file=sys.stderr)
             progress(done, total, label)
 
-        life = live_through(settings, progress=show, stop=stop, watch=watch)
+        life = live_through(settings, progress=show, stop=stop, watch=watch, notify=notify)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)

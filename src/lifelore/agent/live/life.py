@@ -17,6 +17,7 @@ from lifelore.action.priors.exploration import prior_rows, try_costs
 from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
 from lifelore.agent.live.destinations import NamedPlaces
 from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.model_task import live_model_task
 from lifelore.agent.live.own_places import OwnGoal, own_places
@@ -87,6 +88,7 @@ def live(
     progress: Progress | None = None,
     stop: Event | None = None,
     watch: Watcher | None = None,
+    notify: Callable[[str], None] | None = None,
 ) -> Life:
     """Live through ``settings.tasks`` tasks and store what is learnt in memory.
 
@@ -99,6 +101,8 @@ def live(
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
         Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
+    notify : callable, optional
+        Called before the first task with a line of advice if the world is big.
 
     Raises
     ------
@@ -109,11 +113,15 @@ def live(
     """
     stop = stop or Event()
     began = time.perf_counter()
-    names = agents_for(settings.agent, settings.learning.learner)
+    agents_for(settings.agent, settings.learning.learner)  # a mistake in the name shows before the map is read
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        place = _place(settings, world, occupancy, memory, names[0])
+        first = agents_for(settings.agent, settings.learning.learner)[0]
+        place = _place(settings, world, occupancy, memory, first)
+        names, notice = size_of_life(settings, place.world.n_states)
+        if notify and notice:
+            notify(notice)
         life = _RunningLife(settings, place, names, memory)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)

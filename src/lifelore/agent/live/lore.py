@@ -75,6 +75,8 @@ class Lore:
         if own is None:
             changed = same_place(world, memory, grid)
             model = transitions.from_record(world, changed.record if changed else None, grid.corner)
+            if changed and grid.building is not None and changed.record.about.get("building") == grid.building:
+                transitions.forget_changed(world, model)
         return cls(world, scope, prior, model, grid, stored)
 
     def copy(self) -> "Lore":

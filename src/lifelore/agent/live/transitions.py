@@ -101,6 +101,13 @@ def from_record(world: GridWorld, record: Record | None, corner: tuple[int, int]
     return model
 
 
+def forget_changed(world: GridWorld, model: WorldModel) -> None:
+    """Forget the moves of the cells whose remembered percept is not that of the world's map."""
+    changed = model.percept != world.percepts
+    model.target[changed] = UNKNOWN
+    model.percept[changed] = UNKNOWN
+
+
 def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)) -> float:
     """Share of the record's cells whose percepts are unchanged in this world, in [0, 1]."""
     width = world.neighbour.shape[1] + 1

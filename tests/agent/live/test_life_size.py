@@ -1,0 +1,37 @@
+"""The agents and the advice of lives in big worlds."""
+
+from lifelore.agent.live.life_settings import LearningSettings, LifeSettings
+from lifelore.agent.live.life_size import BIG, FIRST, LATER, estimated_seconds, size_of_life
+
+
+def test_the_estimate_by_hand():
+    assert estimated_seconds(1000, agents=2, tasks=3) == 2000 * (FIRST + 2 * LATER)
+
+
+def test_a_small_world_is_compared_and_says_nothing():
+    assert size_of_life(LifeSettings(), BIG // 10) == (["lore", "scratch"], None)
+
+
+def test_above_the_limit_the_agent_lives_alone_and_says_so():
+    names, notice = size_of_life(LifeSettings(tasks=1), BIG + 1)
+    assert names == ["lore"]
+    assert notice is not None
+    assert "--compare" in notice
+    assert "--cell" in notice
+    assert size_of_life(LifeSettings(tasks=1, agent="scratch"), BIG + 1)[0] == ["scratch"]
+
+
+def test_the_settings_decide():
+    assert size_of_life(LifeSettings(compare=True), BIG + 1)[0] == ["lore", "scratch"]
+    assert size_of_life(LifeSettings(compare=False), 100) == (["lore"], None)
+    assert len(size_of_life(LifeSettings(agent="all", compare=False), 100)[0]) == 7
+
+
+def test_a_long_life_says_how_long():
+    _, notice = size_of_life(LifeSettings(tasks=1000), 90_000)
+    assert notice is not None
+    assert "90,000 places" in notice
+    assert "12 min for 1000 tasks of lore, scratch" in notice
+    assert "fewer agents" in notice
+    quiet = LifeSettings(tasks=1000, learning=LearningSettings("q"))
+    assert size_of_life(quiet, 90_000)[1] is None
