@@ -61,6 +61,8 @@ class Life:
         The map of a building, laid on the grid of the building's first map.
     start : int, optional
         State in which every episode started, if it was given.
+    given : OccupancyMap, optional
+        The map of a building as it was read.
     """
 
     report: dict
@@ -70,6 +72,7 @@ class Life:
     stopped: bool = False
     occupancy: OccupancyMap | None = field(default=None, repr=False)
     start: int | None = None
+    given: OccupancyMap | None = field(default=None, repr=False)
 
     @cached_property
     def floor(self) -> Floor | None:
@@ -119,7 +122,7 @@ def live(
             results = life.run(pool, progress, stop, watch)
         report = _report(settings, place, life, time.perf_counter() - began)
     lore, start = life.lores[names[0]], life.places.start
-    return Life(report, place.world, results, lore, stop.is_set(), place.occupancy, start)
+    return Life(report, place.world, results, lore, stop.is_set(), place.occupancy, start, occupancy)
 
 
 def _place(
