@@ -1,5 +1,6 @@
 """`lifelore live`: live through a stream of tasks in one world."""
 
+import sys
 from typing import TYPE_CHECKING, Annotated
 
 import typer
@@ -15,6 +16,10 @@ def live(
     domain: Annotated[str, Option(help="World: building, or the thesis's worlds lattice and noise.")] = "building",
     map: Annotated[
         str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
+    ] = None,
+    watch: Annotated[
+        str | None,
+        Option(metavar="YAML", help="Like --map; between tasks, read the map again if its files have changed."),
     ] = None,
     tasks: Annotated[int | None, Option(help="Tasks to live through now [30; with --goals: its jobs].")] = None,
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres [building: 0.5].")] = None,
@@ -108,7 +113,7 @@ def live(
     settings = LifeSettings(
         world=WorldSettings(
             domain,
-            map,
+            _map(map, watch),
             cell=cell,
             robot_radius=robot_radius,
             discount=discount,
@@ -129,18 +134,31 @@ def live(
         jobs=jobs,
         goal=_place("goal", goal, domain),
         goals=() if goals is None else _jobs(goals, tasks),
+        watch=watch is not None,
     )
     if out is not None:
         check_folder(out)
-    watch = None if l2log is None else LifeLog(l2log, domain).add
+    log = None if l2log is None else LifeLog(l2log, domain).add
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
-        life = live_through(settings, progress=progress, stop=stop, watch=watch)
+        life = live_through(settings, progress=progress, stop=stop, watch=log, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
     else:
         print_life(life.report, written)
     return INTERRUPTED if life.stopped else 0
+
+
+def _map(map: str | None, watch: str | None) -> str | None:
+    from lifelore.core.errors import InputError
+
+    if map is not None and watch is not None and map != watch:
+        raise InputError(f"watch and map exclude each other, got {watch} and {map}; give one of them")
+    return map if watch is None else watch
+
+
+def _notify(line: str) -> None:
+    print(line, file=sys.stderr)
 
 
 def _place(argument: str, text: str | None, domain: str) -> "Place | None":

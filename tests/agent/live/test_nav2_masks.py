@@ -77,9 +77,12 @@ def room(origin=(0.0, 0.0, 0.0)) -> tuple[OccupancyMap, GridWorld, Floor]:
 
 
 def test_the_body_of_a_robot_in_known_places_stays_off_walls():
-    occupancy, world, floor = room() space = body_space(floor, np.ones(world.n_states, bool)) # Centres are free
-    from the third pixel off the wall on. A body of two pixels reaches the pixel beside the wall, # but not the
-    corner: its distance from the nearest centre is √8 pixels. assert space[1, 3:-3].all() assert not space[1, 1]
+    occupancy, world, floor = room()
+    space = body_space(floor, np.ones(world.n_states, bool))
+    # Centres are free from the third pixel off the wall on. A body of two pixels reaches the pixel beside the
+    # wall, but not the corner: its distance from the nearest centre is √8 pixels.
+    assert space[1, 3:-3].all()
+    assert not space[1, 1]
     assert not (space & (occupancy.state != FREE)).any()
 
 

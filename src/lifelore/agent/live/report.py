@@ -190,9 +190,10 @@ def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
 
 
 def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Greedy paths of the first agent in the last tasks."""
+    """Greedy paths of the first agent in the last tasks on the present map."""
     world, name = life.world, _agents(life)[0]
-    last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
     paths = []
     for task, result in last:
         goal = int(world.state_of[tuple(task["goal"])])
@@ -212,7 +213,8 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths]):
         }
         for task in last
     ]
-    earlier = [task["goal"] for task in life.report["tasks"][: -len(last)]]
+    tasks = life.report["tasks"]
+    earlier = [task["goal"] for task in tasks[life.first_here : len(tasks) - len(last)]]
     title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
