@@ -56,6 +56,10 @@ def baselines_for(agent: str, learner: str) -> list[str]:
     return [] if agent == "scratch" else ["scratch"]
 
 
-def agents_for(agent: str, learner: str) -> list[str]:
-    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge."""
-    return ["lore" if agent == "all" else agent, *baselines_for(agent, learner)]
+def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
+    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
+
+    With `compare` False the agent lives alone; ``all`` asks for the baselines by name, so they live too.
+    """
+    baselines = baselines_for(agent, learner)
+    return ["lore" if agent == "all" else agent, *(baselines if compare or agent == "all" else [])]
