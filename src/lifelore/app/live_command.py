@@ -20,6 +20,10 @@ def live(
     map: Annotated[
         str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
     ] = None,
+    watch: Annotated[
+        str | None,
+        Option(metavar="YAML", help="Like --map; between tasks, read the map again if its files have changed."),
+    ] = None,
     tasks: Annotated[int | None, Option(help="Tasks to live through now [30; with --goals: its jobs].")] = None,
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres [building: 0.5].")] = None,
     robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [building: 0.2].")] = None,
@@ -107,7 +111,6 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
-    import sys
 
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
@@ -120,7 +123,7 @@ def live(
     settings = LifeSettings(
         world=WorldSettings(
             domain,
-            map,
+            _map(map, watch),
             cell=cell,
             robot_radius=robot_radius,
             discount=discount,
@@ -142,21 +145,21 @@ def live(
         jobs=jobs,
         goal=_place("goal", goal, domain),
         goals=() if goals is None else _jobs(goals, tasks),
+        watch=watch is not None,
     )
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
-    notify = lambda line: print(line, file=sys.stderr)  # noqa: E731
-    watch = None if l2log is None else LifeLog(l2log, domain).add
+    log = None if l2log is None else LifeLog(l2log, domain).add
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
 
         def show(done: int, total: int, label: str) -> None:
             # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
             for folder in new_folders if done == 0 else ():
-                print(f"new folder {folder}", file=sys.stderr)
+                _notify(f"new folder {folder}")
             progress(done, total, label)
 
-        life = live_through(settings, progress=show, stop=stop, watch=watch, notify=notify)
+        life = live_through(settings, progress=show, stop=stop, watch=log, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
@@ -172,6 +175,18 @@ def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
     place = locate(memory)
     folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
     return [folder for folder in folders if not folder.exists()]
+
+
+def _map(map: str | None, watch: str | None) -> str | None:
+    from lifelore.core.errors import InputError
+
+    if map is not None and watch is not None and map != watch:
+        raise InputError(f"watch and map exclude each other, got {watch} and {map}; give one of them")
+    return map if watch is None else watch
+
+
+def _notify(line: str) -> None:
+    print(line, file=sys.stderr)
 
 
 def _place(argument: str, text: str | None, domain: str) -> "Place | None":

@@ -1,5 +1,6 @@
 """A life with goals of its user's own, and the names that memory knows afterwards."""
 
+import csv
 import json
 import sqlite3
 from pathlib import Path
@@ -10,6 +11,7 @@ import pytest
 from lifelore.agent.live.destinations import Destination, NamedPlaces, destination_from_text
 from lifelore.agent.live.job_list import Job
 from lifelore.agent.live.life import Life, live
+from lifelore.agent.live.report import FILES, write_portfolio
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.memory import open_memory
@@ -69,6 +71,22 @@ def test_a_job_list_is_lived_in_order_and_its_names_are_known_later(room):
     ]  # fmt: skip
     later = life_in(room, goal="dock", start="lab", tasks=1).report["tasks"][0]
     assert (later["name"], later["position"]) == ("dock", list(DOCK))
+
+
+@pytest.mark.slow
+def test_the_folder_of_a_building_has_clear_paths_to_the_point_and_masks(room, tmp_path):
+    life = life_in(room, goals=jobs(Destination(LAB, "lab"), Destination(DOCK)))
+    written = write_portfolio(life, str(tmp_path / "out"))
+    assert [Path(path).name for path in written] == list(FILES)
+    with (tmp_path / "out" / "paths.csv").open(newline="", encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    paths: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for row in rows:
+        paths.setdefault((row["task"], row["path"]), []).append((float(row["x"]), float(row["y"])))
+    assert {task for task, _ in paths} == {"0", "1"}
+    for (task, _), points in paths.items():
+        assert points[-1] == (LAB if task == "0" else DOCK)
+        assert all(0.3 <= x <= 5.9 and 0.3 <= y <= 3.9 for x, y in points)
 
 
 def test_the_newest_position_of_a_name_counts(room):

@@ -11,6 +11,7 @@ from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.exports import write_paths, write_prior_map
 from lifelore.agent.live.greedy_paths import GreedyPaths, greedy_paths_of
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.nav2_masks import known_places, write_directions, write_masks
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
@@ -20,9 +21,11 @@ from lifelore.figures.style import save_figure
 from lifelore.figures.task_curves import draw_task_curves
 from lifelore.figures.world_map import draw_world_map
 
-PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES)
-"""Files of the folder; the files of the prior are there only if the agent has a prior."""
+PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
+MASK_FILES = ("costs.pgm", "costs.yaml", "keepout.pgm", "keepout.yaml")
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *MASK_FILES)
+"""Files of the folder; the files of the prior are there only if the agent has a prior, the masks only in buildings
+whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -108,6 +111,10 @@ def _write_all(life: Life, folder: Path) -> None:
     write_paths(folder / "paths.csv", life.world, paths, life.floor)
     if _has_prior(life):
         _write_prior(life, folder)
+    model = life.lore.model
+    if life.floor is not None and life.given is not None and known_places(model).any():
+        probs = life.lore.prior.probs(life.lore.scope.contexts) if _has_prior(life) else None
+        write_masks(folder, life.world, model, probs, life.floor, life.given)
 
 
 def _agents(life: Life) -> list[str]:
@@ -183,9 +190,10 @@ def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
 
 
 def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Greedy paths of the first agent in the last tasks."""
+    """Greedy paths of the first agent in the last tasks on the present map."""
     world, name = life.world, _agents(life)[0]
-    last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
     paths = []
     for task, result in last:
         goal = int(world.state_of[tuple(task["goal"])])
@@ -205,7 +213,8 @@ def _world_figure(life: Life, last: Sequence[GreedyPaths]):
         }
         for task in last
     ]
-    earlier = [task["goal"] for task in life.report["tasks"][: -len(last)]]
+    tasks = life.report["tasks"]
+    earlier = [task["goal"] for task in tasks[life.first_here : len(tasks) - len(last)]]
     title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
@@ -240,3 +249,4 @@ def _write_prior(life: Life, folder: Path) -> None:
     )
     save_figure(figure, folder / "prior.png")
     write_prior_map(folder / "prior.yaml", world, probs, counted)
+    write_directions(folder / "directions.csv", world, probs, counted, life.floor)
