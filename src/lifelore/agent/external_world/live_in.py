@@ -1,6 +1,5 @@
 """`live_in`: an agent lives in a world of the user, through the `World` protocol only."""
 
-import hashlib
 import os
 import time
 import uuid
@@ -12,10 +11,9 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
-from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
+from lifelore.agent.external_world.stored_prior import recalled_prior
 from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
@@ -191,7 +189,7 @@ class _ExternalLife:
     def __init__(self, world: World, settings: _Settings, memory: Memory | None) -> None:
         self.world, self.settings, self.memory = world, settings, memory
         self.name = str(getattr(world, "name", type(world).__name__))
-        self.prior = _recalled(world.n_actions, settings, memory)
+        self.prior = recalled_prior(memory, settings.key, world.n_actions, settings.guidance.alpha0)
         self.tasks_before = memory.tasks(settings.robot) if memory else 0
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
@@ -252,16 +250,6 @@ class _ExternalLife:
             "memory": {"tasks_before": self.tasks_before, "tasks_after": self.tasks_before + len(self.finished)},
             "seconds": round(seconds, 3),
         }
-
-
-def _recalled(n_actions: int, settings: _Settings, memory: Memory | None) -> ActionPrior:
-    """The prior in memory for these contexts and this number of actions; an empty prior if there is none."""
-    # The text "foreign" is part of the key of stored priors.
-    scope = hashlib.sha256(repr(("foreign", settings.key, n_actions)).encode()).hexdigest()[:32]
-    known = memory.recall(PRIOR_KIND, scope, PRIOR_VERSION) if memory else None
-    if known is None:
-        return ActionPrior(n_actions, settings.guidance.alpha0, scope)
-    return ActionPrior.from_record(known, n_actions, settings.guidance.alpha0)
 
 
 def _summarise(tasks: list[dict]) -> dict:
