@@ -3,6 +3,7 @@
 import os
 import time
 import uuid
+import warnings
 from collections.abc import Hashable
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -53,9 +54,10 @@ def live_in(
     """Live through `tasks` tasks of a world with two agents, ``lore`` and ``scratch``, on the same random streams.
 
     Both agents learn each task by ε-greedy Q-learning from Q = 0. ``scratch`` explores uniformly. ``lore``
-    explores by the action prior of its earlier tasks: after each task, the best actions of the learnt policy are
-    counted by context, in the states whose value is positive. If no reward of the world is positive, the agent
-    learns no prior (``n_contexts`` stays 0): add a constant to the rewards.
+    explores by the action prior of its earlier tasks: after each task, the useful actions of the learnt policy
+    are counted by context. In a task with a positive value, these are the best actions of the states with a
+    positive value. In a task without (each step costs, no reward is positive), they are relative to the task's
+    best return: the best of the actions taken in the best tenth of the episodes, of those that ended.
 
     Parameters
     ----------
@@ -92,7 +94,13 @@ def live_in(
         optimum, collisions, steps and episodes to 80 %). Returns are discounted; ``final_return`` is the mean of
         a task's last tenth of episodes, ``mean_return`` of all episodes; ``reached``: an episode terminated with
         a positive reward. ``summary`` compares the agents over the last third of the tasks; ``n_contexts``: the
-        number of contexts in the prior at the end.
+        number of contexts in the prior at the end. ``warnings``: sentences on what makes the life useless, such
+        as a prior that is still empty; empty where all is well.
+
+    Warns
+    -----
+    UserWarning
+        Each sentence of ``warnings``.
 
     Raises
     ------
@@ -111,7 +119,10 @@ def live_in(
     with open_memory(memory) if memory is not None else nullcontext() as opened:
         life = _ExternalLife(world, settings, opened)
         life.run(progress, stop or Event())
-        return life.report(time.perf_counter() - began)
+        report = life.report(time.perf_counter() - began)
+    for sentence in report["warnings"]:
+        warnings.warn(sentence, stacklevel=2)
+    return report
 
 
 @dataclass(frozen=True)
@@ -248,8 +259,18 @@ class _ExternalLife:
             "tasks": self.finished,
             "summary": _summarise(self.finished) if self.finished else {},
             "memory": {"tasks_before": self.tasks_before, "tasks_after": self.tasks_before + len(self.finished)},
+            "warnings": self._warnings(),
             "seconds": round(seconds, 3),
         }
+
+    def _warnings(self) -> list[str]:
+        if len(self.prior) or not self.finished:
+            return []
+        return [
+            f"The action prior is empty after {len(self.finished)} tasks in {self.name}, so lore explores like "
+            "scratch: no task had a positive value, nor an ended episode with a better return than others. "
+            "Use more episodes or steps, or another reward."
+        ]
 
 
 def _summarise(tasks: list[dict]) -> dict:
