@@ -10,6 +10,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
     from lifelore.agent.external_world.live_in import live_in as live_in
     from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
@@ -54,6 +55,7 @@ _HOME = {
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
+    "LearntContexts": "lifelore.action.features.learnt_contexts",
     "LifeSettings": "lifelore.agent.live.life_settings",
     "LifeloreError": "lifelore.core.errors",
     "Memory": "lifelore.memory",

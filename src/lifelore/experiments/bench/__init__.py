@@ -23,6 +23,8 @@ BENCHES = (
     "buildings",
     "merge",
     "capacity",
+    "worlds",
+    "contexts",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
