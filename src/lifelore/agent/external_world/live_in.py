@@ -16,6 +16,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
 from lifelore.agent.external_world.stored_prior import recalled_prior
 from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
+from lifelore.agent.live.long_table import LongTable
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
@@ -48,6 +49,7 @@ def live_in(
     weight: float = 1.0,
     form: str = "proportion",
     ties: str = "uniform",
+    csv: str | Path | None = None,
     progress: Progress | None = None,
     stop: Event | None = None,
 ) -> dict:
@@ -82,6 +84,9 @@ def live_in(
         As in `QLearning`.
     alpha0, weight, form, ties : float, float, str, str
         As in `PriorSettings`.
+    csv : str or Path, optional
+        File for the measures of each task and the return of each episode in long format, see
+        `lifelore.agent.live.long_table`.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
@@ -108,7 +113,7 @@ def live_in(
         A setting breaks its rule; a reward is not finite; a context has no stable code (see
         `lifelore.agent.external_world.context_code.context_code`); a memory is given without a key.
     StoreError
-        Memory cannot store the task; earlier tasks stay stored.
+        Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
     """
     began = time.perf_counter()
     _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
@@ -116,8 +121,11 @@ def live_in(
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     key = _key_of(world, key, needed=memory is not None)
     settings = _Settings(tasks, robot, key, seed, discount, learning, GuidanceSettings(alpha0, weight, form, ties))
-    with open_memory(memory) if memory is not None else nullcontext() as opened:
-        life = _ExternalLife(world, settings, opened)
+    with (
+        LongTable(csv, seed) if csv is not None else nullcontext() as table,
+        open_memory(memory) if memory is not None else nullcontext() as opened,
+    ):
+        life = _ExternalLife(world, settings, opened, table)
         life.run(progress, stop or Event())
         report = life.report(time.perf_counter() - began)
     for sentence in report["warnings"]:
@@ -197,8 +205,8 @@ def _key_of(world: World, key: str | None, needed: bool) -> str | None:
 class _ExternalLife:
     """A life in progress: its prior, and the memory that stores it."""
 
-    def __init__(self, world: World, settings: _Settings, memory: Memory | None) -> None:
-        self.world, self.settings, self.memory = world, settings, memory
+    def __init__(self, world: World, settings: _Settings, memory: Memory | None, table: LongTable | None) -> None:
+        self.world, self.settings, self.memory, self.table = world, settings, memory, table
         self.name = str(getattr(world, "name", type(world).__name__))
         self.prior = recalled_prior(memory, settings.key, world.n_actions, settings.guidance.alpha0)
         self.tasks_before = memory.tasks(settings.robot) if memory else 0
@@ -228,6 +236,9 @@ class _ExternalLife:
         for learner in learners.values():
             self.states.update(learner.q)
         self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})
+        if self.table:
+            returns = {name: {"return": learner.returns.returns} for name, learner in learners.items()}
+            self.table.add(self.finished[-1], returns)
 
     def _task(self, index: int, stop: Event) -> ExternalTask:
         learning, discount = self.settings.learning, self.settings.discount
