@@ -1,5 +1,8 @@
 """`bench contexts`, small: what the pixel world shows, and that every kind of context is compared."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 
 from lifelore.experiments.bench.contexts import BY_HAND, PIXELS, PixelCrossing, bench_contexts, images_of_walks
@@ -38,3 +41,15 @@ def test_every_kind_of_context_is_compared():
     assert sizes[BY_HAND] <= 8
     assert sizes[PIXELS] > sizes["4 learnt codes"]
     assert len(result["rows"]) == 3 + 3 * 2 * 2
+
+
+def test_the_page_shows_the_committed_numbers():
+    root = Path(__file__).parents[2]
+    page = (root / "docs" / "start" / "learning.md").read_text(encoding="utf-8")
+    rows = json.loads((root / "results" / "bench_contexts.json").read_text(encoding="utf-8"))["rows"]
+    for row in rows:
+        measure, _, name = row["name"].partition(": ")
+        if measure.startswith("all episodes"):
+            told = [f"{number:+.3f}".replace("-", "−") for number in (row["value"], *row["ci95"])]
+            (line,) = [line for line in page.splitlines() if line.startswith(f"| {name} |")]
+            assert f"{told[0]} ({told[1]} to {told[2]})" in line
