@@ -34,6 +34,7 @@ def choosing_for_each_user_pays(lines: list[str]) -> bool:
 HOLDS = {
     "cloud_to_relations": lambda lines: {"on(3, 2)", "adjacent(2, 4)", "on(2, 1)", "on(4, 1)"} == set(lines),
     "courier_in_an_office": lore_needs_fewer_steps,
+    "minigrid_partial_view": lambda lines: numbers(lines[0])[0] > 0.1,
     "many_users": choosing_for_each_user_pays,
     "one_user": lambda lines: len(lines) == 4 and "'bold': 1.0" in lines[-1],
     "own_gymnasium_world": lambda lines: numbers(lines[0])[0] > 0,

@@ -209,6 +209,18 @@ def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monke
         assert memory.tasks("robot") == 2
 
 
+def test_the_measures_go_into_a_long_table(ask, tmp_path):
+    said = ask(*LATTICE, "--tasks", 1, "--seed", 3, "--memory", "life.db", "--csv", tmp_path / "life.csv")
+    assert (said.status, said.err) == (0, "")
+    header, *rows = (tmp_path / "life.csv").read_text(encoding="utf-8").splitlines()
+    assert header == "run,task,agent,episode,measure,value"
+    lore = said.document["tasks"][0]["agents"]["lore"]
+    assert f"3,0,lore,,steps_to_80,{lore['steps_to_80']}" in rows
+    assert any(row.startswith("3,0,scratch,0,return,") for row in rows)
+    refused = ask(*LATTICE, "--memory", "none.db", "--csv", tmp_path / "no" / "life.csv")
+    assert "measures cannot be written to" in refused.refusal
+
+
 def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):
     said = ask(*LATTICE, "--tasks", 1, "--memory", "life.db", "--l2log", tmp_path / "logs")
     assert (said.status, said.err) == (0, "")

@@ -89,6 +89,10 @@ def live(
     l2log: Annotated[
         str | None, Option(metavar="DIR", help="Folder for a log of every episode in L2Logger's format.")
     ] = None,
+    csv: Annotated[
+        str | None,
+        Option(metavar="FILE", help="CSV in long format: run, task, agent, episode, measure, value."),
+    ] = None,
     seed: Annotated[int, Option(help="Draws the world, the tasks and the agents' choices.")] = 0,
     jobs: Annotated[int, Option(help="Threads; results do not depend on their number.")] = 2,
     density: Annotated[float | None, Option(help="noise: share of obstacles, in (0, 1).")] = None,
@@ -111,10 +115,12 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
+    from contextlib import nullcontext
 
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
+    from lifelore.agent.live.long_table import LongTable
     from lifelore.agent.live.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
@@ -150,8 +156,12 @@ def live(
     new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
-    log = None if l2log is None else LifeLog(l2log, domain).add
-    with stop_on_interrupt() as stop, progress_bar("living") as progress:
+    log = None if l2log is None else LifeLog(l2log, domain)
+    with (
+        LongTable(csv, seed) if csv is not None else nullcontext() as table,
+        stop_on_interrupt() as stop,
+        progress_bar("living") as progress,
+    ):
 
         def show(done: int, total: int, label: str) -> None:
             # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
@@ -159,7 +169,13 @@ def live(
                 _notify(f"new folder {folder}")
             progress(done, total, label)
 
-        life = live_through(settings, progress=show, stop=stop, watch=log, notify=_notify)
+        def record(task: dict, results: dict) -> None:
+            if log:
+                log.add(task, results)
+            if table:
+                table.add_results(task, results)
+
+        life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
