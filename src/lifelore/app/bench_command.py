@@ -9,7 +9,8 @@ def bench(
     name: Annotated[
         str,
         typer.Argument(
-            help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
+            help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
+            "long_user. "
             "Benefit: courier, relations, pictures, deep."
         ),
     ],

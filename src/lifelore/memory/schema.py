@@ -40,8 +40,18 @@ CREATE TABLE lifelore_cells (
     PRIMARY KEY (lore, slot)){clustered}
 """
 
-MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST)}
+_STATES = """
+ALTER TABLE lifelore_lore ADD COLUMN token {int} NOT NULL DEFAULT 0;
+ALTER TABLE lifelore_lore ADD COLUMN state {blob}
+"""
+
+MIGRATIONS = {
+    1: ("contributions, tombstones and cache", _FIRST),
+    2: ("states that learners compute from a key's cells", _STATES),
+}
 LATEST = max(MIGRATIONS)
+READABLE = 1
+"""The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 
 # SQLite turns an overflowing sum into a float; the CHECK makes this an error, as it is in PostgreSQL.
 # PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.

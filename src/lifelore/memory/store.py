@@ -78,13 +78,13 @@ class Store:
                 schema.take_step(conn, number)
 
     def require_current(self) -> None:
-        """Raise StoreError unless all migrations are done; the source of a merge is never migrated."""
+        """Raise StoreError unless contributions can be read; the source of a merge is never migrated."""
         with self.reading() as conn:
             found = schema.version(conn)
         schema.refuse_newer(self.location, found)
         if found == 0:
             raise StoreError(f"memory {self.location} holds no Lifelore memory; check the name")
-        if found < schema.LATEST:
+        if found < schema.READABLE:
             raise StoreError(
                 f"memory {self.location} is of an older Lifelore (schema {found}); open it once by itself"
             )

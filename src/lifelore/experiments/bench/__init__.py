@@ -23,6 +23,7 @@ BENCHES = (
     "buildings",
     "merge",
     "capacity",
+    "long_user",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 

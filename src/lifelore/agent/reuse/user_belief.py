@@ -1,0 +1,106 @@
+"""The belief about one user, as memory stores it or as a replay of the evidence computes it.
+
+Memory stores the evidence (`history`) and beside it the belief that follows (`user_state`). The stored belief
+holds for one library, one prior and one set of cells. Where any of them is another, the belief is computed again
+from the evidence, with the same bits: after a new fit, after a merge of memories, and for histories of an
+earlier Lifelore.
+"""
+
+import hashlib
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, read_decisions
+from lifelore.agent.reuse.study import Study
+from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes
+from lifelore.memory import Memory
+
+
+@dataclass(frozen=True, eq=False)
+class UserBelief:
+    """What is known of a user before the next decision.
+
+    history : without its decisions
+    context : whose prior counts, or None
+    token : of the cells in memory that the belief follows; None where there are none
+    state : the belief
+    """
+
+    history: History
+    context: str | None
+    token: int | None
+    state: UserState
+
+    @property
+    def name(self) -> tuple[str, str, int]:
+        """Kind, key and version of the user's record."""
+        return KIND, f"{self.history.study}/{self.history.key}", VERSION
+
+    def find(self, memory: Memory, study: Study, number: int, attempt: int) -> "Found | None":
+        """A decision as memory has it; None where there is none."""
+        start = self.state.before(number)
+        decisions = read_decisions(memory, study, self.history.key, number if start is None else start.number)
+        found = [one for one in decisions if (one.number, one.attempt) == (number, attempt)]
+        return Found(found[0], start, decisions) if found else None
+
+
+class Found(NamedTuple):
+    """A decision, and all that its outcome may change.
+
+    decision : Decision
+    start : the last checkpoint before it; None where its outcome is known and no belief depends on it any more
+    decisions : all decisions from `start` on
+    """
+
+    decision: Decision
+    start: Checkpoint | None
+    decisions: tuple[Decision, ...]
+
+    def state_after(self, study: Study, state: UserState, outcome: float) -> UserState:
+        """The state with this outcome of the decision, if it has none yet."""
+        if self.decision.outcome is not None or self.start is None:
+            return state
+        ended = [replace(one, outcome=outcome) if one is self.decision else one for one in self.decisions]
+        return state.after(study, ended, self.start)
+
+
+def open_belief(memory: Memory, study: Study, key: str, user: str = "", context: str | None = None) -> UserBelief:
+    """The belief about a user.
+
+    Parameters
+    ----------
+    user : str
+        Name of the user; that in memory counts where memory knows the user.
+    context : str, optional
+        Context of the user; by default the one in memory.
+    """
+    stored = memory.recall_state(KIND, f"{study.name}/{key}", VERSION)
+    about = stored.about if stored else {"user": user}
+    context = context or about.get("context")
+    history = History(study.name, key, about["user"], context, ())
+    prior = study.prior_of(context)
+    basis = basis_of(study, prior)
+    state = from_bytes(stored.content) if stored else None
+    if state is None or state.basis != basis:
+        state = replayed(study, basis, prior, read_decisions(memory, study, key) if stored else ())
+    return UserBelief(history, context, stored.token if stored else None, state)
+
+
+def replayed(study: Study, basis: str, prior: NDArray[np.float64], decisions: tuple[Decision, ...]) -> UserState:
+    """The state after all decisions, from the prior on."""
+    start = Checkpoint(0, study.algorithm.start(prior), 0.0)
+    return UserState(basis, 0, (start,)).after(study, decisions, start)
+
+
+def last_belief(study: Study, history: History) -> NDArray[np.float64]:
+    """The belief after all decisions of a history, (n_types,)."""
+    prior = study.prior_of(history.context)
+    return study.algorithm.belief(replayed(study, "", prior, history.decisions).head.log_belief)
+
+
+def basis_of(study: Study, prior: NDArray[np.float64]) -> str:
+    """Hash of all that a belief follows from, beside the decisions."""
+    return hashlib.sha256(study.fingerprint.encode() + prior.tobytes()).hexdigest()[:32]
