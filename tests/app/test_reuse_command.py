@@ -160,7 +160,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),
         (["add", "big"], "'big' is there already (active)"),
-        (["forget", "nobody"], "nothing is kept of user 'nobody'"),
+        (["forget", "nobody"], "nothing is stored of user 'nobody'"),
         (["dance"], "No such command"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

@@ -231,7 +231,7 @@ def test_a_forgotten_user_is_a_new_one_and_old_decisions_stay_gone(memory):
     assert forget(memory, study, "ann") == 2
     assert [history.user for history in histories(memory, study)] == ["bo"]
     assert b"ann" not in b"".join(str(entry).encode() for entry in memory.show()["robots"])
-    with pytest.raises(NotFoundError, match="nothing is kept of user 'ann'"):
+    with pytest.raises(NotFoundError, match="nothing is stored of user 'ann'"):
         forget(memory, study, "ann")
     with pytest.raises(NotFoundError, match="never made here, or forgotten"):
         update(memory, study, old, 8.0)

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from lifelore.agent.reuse import user_belief
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, open_history, user_key
 from lifelore.agent.reuse.one_user import choose, forget, update
+from lifelore.agent.reuse.past import PastUser
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_belief import basis_of, open_belief, replayed
 from lifelore.agent.reuse.user_state import from_bytes
@@ -86,7 +87,7 @@ def test_outcomes_in_any_order_give_the_bits_of_a_replay(data):
     study = study_of(data.draw(st.sampled_from([0.0, 0.1])))
     size = data.draw(st.integers(1, 70))
     decisions = [Decision(i, POLICIES[i % 3], 1.0, False, 0, 0) for i in range(size)]
-    state = replayed(study, "", study.library.prior, ())
+    state = replayed(study, None, PastUser(), ())
     for one in decisions:
         state = state.after(study, [one], state.head)
     late = data.draw(st.lists(st.integers(0, size - 1), unique=True))
@@ -105,7 +106,7 @@ def test_outcomes_in_any_order_give_the_bits_of_a_replay(data):
 def test_checkpoints_stay_few_and_near_every_open_decision():
     """With d decisions after an open one, its outcome costs at most 2 d + 2 steps; 3 log2 n + 3 stay."""
     study = study_of()
-    state = replayed(study, "", study.library.prior, ())
+    state = replayed(study, None, PastUser(), ())
     for number in range(3000):
         state = state.after(study, [Decision(number, "big", 1.0, False, 0, 0)], state.head)
     assert len(state.checkpoints) <= 3 * np.log2(3000) + 3
@@ -131,7 +132,7 @@ def test_a_belief_of_earlier_decisions_is_not_read_again(memory, monkeypatch):
         update(memory, study, choose(memory, study, "ann")["decision"], 3.0)
     monkeypatch.setattr(type(memory), "recall", counting)
     update(memory, study, choose(memory, study, "ann")["decision"], 3.0)
-    assert read == [5]
+    assert read == [5]  # the open decision: five cells, none of the others
 
 
 def of_earlier_lifelore(memory, study, n=5):
@@ -173,7 +174,7 @@ def test_another_library_another_prior_and_a_merge_mean_a_replay(memory, tmp_pat
     changing = replace(study, change=0.2)
     assert same_as_naive(changing, open_belief(memory, changing, key).state, decisions)
     on_the_web = open_belief(memory, study, key, context="web").state
-    assert on_the_web.basis == basis_of(study, np.array([0.1, 0.1, 0.8]))
+    assert on_the_web.basis == basis_of(study, "web", PastUser())
     assert not same_as_naive(study, on_the_web, decisions)
     with open_memory(tmp_path / "other.db") as copy:
         copy.merge_from(memory)

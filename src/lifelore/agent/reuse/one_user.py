@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
 from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
 from lifelore.agent.reuse.user_belief import UserBelief, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -225,9 +226,9 @@ def _kept(memory: Memory, study: Study) -> Study:
 
 
 def forget(memory: Memory, study: Study, user: str) -> int:
-    """Forget a user's decisions, outcomes and belief for good; the number of contributions removed.
+    """Forget a user's past, decisions, outcomes and belief for good; the number of contributions removed.
 
-    The library still contains the outcomes of the log: remove the user's lines from it and fit again.
+    The library still follows from the user's lines in the log: remove them and fit again.
 
     Raises
     ------
@@ -235,8 +236,8 @@ def forget(memory: Memory, study: Study, user: str) -> int:
         Nothing is known of the user.
     """
     key = user_key(study.name, user)
-    if not open_history(memory, study, key).decisions:
-        raise NotFoundError(
-            f"nothing is kept of user '{user}' in study '{study.name}'; lines of the log are in the log alone"
-        )
-    return memory.forget(robot_of(study.name, key))
+    decided = bool(open_history(memory, study, key).decisions)
+    in_past = forget_past(memory, study.name, key)
+    if not (decided or in_past):
+        raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
+    return memory.forget(robot_of(study.name, key)) if decided else 0

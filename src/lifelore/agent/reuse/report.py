@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.agent.reuse.history import Decision, History, histories
+from lifelore.agent.reuse.past import Past, PastUser, read_past
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_belief import last_belief
 from lifelore.core.atomic_write import atomic_write
@@ -63,7 +64,7 @@ def report(
         The disk refuses.
     """
     known = [history for history in histories(memory, study) if history.decisions]
-    document = _document(study, known)
+    document = _document(study, known, read_past(memory, study.name))
     if log is not None:
         _write(Path(log), _log_text(study, known))
     if out is not None:
@@ -71,7 +72,7 @@ def report(
     return document
 
 
-def _document(study: Study, known: list[History]) -> dict[str, Any]:
+def _document(study: Study, known: list[History], past: Past) -> dict[str, Any]:
     decisions = [decision for history in known for decision in history.decisions]
     groups = {
         name: [history for history in known if _ended(history, control)]
@@ -90,7 +91,7 @@ def _document(study: Study, known: list[History]) -> dict[str, Any]:
         "uplift": _difference(means["personal"], means["control"]),
         "policies": _policies(study, groups["control"]),
         "regret": {
-            name: _estimate([_regret(study, history, name == "control") for history in group])
+            name: _estimate([_regret(study, history, past, name == "control") for history in group])
             for name, group in groups.items()
         },
         "by_decision": _by_decision(groups),
@@ -138,9 +139,10 @@ def _policies(study: Study, control: list[History]) -> list[dict[str, Any]]:
     return rows
 
 
-def _regret(study: Study, history: History, control: bool) -> float:
+def _regret(study: Study, history: History, every_past: Past, control: bool) -> float:
     """Mean over decisions of what the best policy under the last belief is expected to bring more."""
-    expected_utilities = expected_utility(last_belief(study, history), study.library.performance.mean)
+    past = every_past.users.get(history.key, PastUser())
+    expected_utilities = expected_utility(last_belief(study, history, past), study.library.performance.mean)
     expected = dict(zip(study.library.policies, expected_utilities, strict=True))
     best = max(expected[policy] for policy in study.active)
     lost = [best - expected[one.policy] for one in _ended(history, control) if one.policy in expected]

@@ -1,12 +1,13 @@
 """The belief about one user, as memory stores it or as a replay of the evidence computes it.
 
 Memory stores the evidence (`history`) and beside it the belief that follows (`user_state`). The stored belief
-holds for one library, one prior and one set of cells. Where any of them is another, the belief is computed again
-from the evidence, with the same bits: after a new fit, after a merge of memories, and for histories of an
-earlier Lifelore.
+holds for one library, one prior, one past (`past`) and one set of cells. Where any of them is another, the
+belief is computed again from the evidence, with the same bits: after a new fit, after a merge of memories, and
+for histories of an earlier Lifelore.
 """
 
 import hashlib
+import json
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
@@ -14,9 +15,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, read_decisions
+from lifelore.agent.reuse.past import PastUser, read_index, read_past_user
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes
+from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes, learn
 from lifelore.memory import Memory
+
+NAMED_TYPE = 0.99
+"""Belief in the type that a log names for a user; at 1, no outcome could correct a wrong name."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,26 +86,47 @@ def open_belief(memory: Memory, study: Study, key: str, user: str = "", context:
     about = stored.about if stored else {"user": user}
     context = context or about.get("context")
     history = History(study.name, key, about["user"], context, ())
-    prior = study.prior_of(context)
-    basis = basis_of(study, prior)
     state = from_bytes(stored.content) if stored else None
-    if state is None or state.basis != basis:
-        state = replayed(study, basis, prior, read_decisions(memory, study, key) if stored else ())
-    return UserBelief(history, context, stored.token if stored else None, state)
+    index = read_index(memory, study.name)
+    origin = {"study": study.fingerprint, "past": index.get("token"), "context": context}
+    if state is None or state.origin != origin:
+        past = read_past_user(memory, study.name, index, key)
+        context = context or past.context
+        basis = basis_of(study, context, past)
+        if state is None or state.basis != basis:
+            state = replayed(study, context, past, read_decisions(memory, study, key) if stored else ())
+        state = replace(state, origin=origin, context=context)
+    return UserBelief(history, state.context, stored.token if stored else None, state)
 
 
-def replayed(study: Study, basis: str, prior: NDArray[np.float64], decisions: tuple[Decision, ...]) -> UserState:
-    """The state after all decisions, from the prior on."""
-    start = Checkpoint(0, study.algorithm.start(prior), 0.0)
-    return UserState(basis, 0, (start,)).after(study, decisions, start)
+def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
+    """The state after the past and all decisions, from the prior on."""
+    log_belief, surprise = study.algorithm.start(prior_of(study, context, past)), 0.0
+    for policy, outcome in past.outcomes:
+        surprise += learn(study, log_belief, policy, outcome)
+    start = Checkpoint(0, log_belief, surprise)
+    state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
+    return state.after(study, decisions, start)
 
 
-def last_belief(study: Study, history: History) -> NDArray[np.float64]:
+def last_belief(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
     """The belief after all decisions of a history, (n_types,)."""
-    prior = study.prior_of(history.context)
-    return study.algorithm.belief(replayed(study, "", prior, history.decisions).head.log_belief)
+    state = replayed(study, history.context or past.context, past, history.decisions)
+    return study.algorithm.belief(state.head.log_belief)
 
 
-def basis_of(study: Study, prior: NDArray[np.float64]) -> str:
+def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:
+    """Prior over types before the past, (n_types,): the context's, with `NAMED_TYPE` on a type a log names."""
+    prior = study.prior_of(context)
+    if past.type not in study.library.types:
+        return prior
+    named = np.zeros(len(prior))
+    named[study.library.types.index(past.type)] = NAMED_TYPE
+    return named + (1 - NAMED_TYPE) * prior
+
+
+def basis_of(study: Study, context: str | None, past: PastUser) -> str:
     """Hash of all that a belief follows from, beside the decisions."""
-    return hashlib.sha256(study.fingerprint.encode() + prior.tobytes()).hexdigest()[:32]
+    prior = prior_of(study, context, past)
+    text = study.fingerprint + json.dumps(past.outcomes)
+    return hashlib.sha256(text.encode() + prior.tobytes()).hexdigest()[:32]

@@ -15,7 +15,7 @@ import struct
 import zlib
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,10 @@ class UserState:
     ----------
     basis : str
         Hash of the library, the dynamics, the prior and the user's past, see `user_belief`.
+    origin : dict
+        Plain data that tell without a look at the past whether `basis` still holds.
+    context : str, optional
+        Whose prior counts.
     first_open : int
         Number of the first decision without an outcome; that of the head where there is none.
     checkpoints : tuple of Checkpoint
@@ -58,6 +62,8 @@ class UserState:
     """
 
     basis: str
+    origin: dict[str, Any]
+    context: str | None
     first_open: int
     checkpoints: tuple[Checkpoint, ...]
 
@@ -95,7 +101,13 @@ class UserState:
 
     def to_bytes(self) -> bytes:
         """The state as bytes; `from_bytes` restores every bit."""
-        header = {"format": FORMAT, "basis": self.basis, "open": self.first_open}
+        header = {
+            "format": FORMAT,
+            "basis": self.basis,
+            "origin": self.origin,
+            "context": self.context,
+            "open": self.first_open,
+        }
         text = json.dumps(header | {"n": len(self.checkpoints)}).encode()
         numbers = np.array([point.number for point in self.checkpoints], "<i8")
         surprise = np.array([point.surprise for point in self.checkpoints], "<f8")
@@ -120,7 +132,7 @@ def from_bytes(content: bytes | None) -> UserState | None:
     surprise = np.frombuffer(body, "<f8", n, length + 8 * n).tolist()
     beliefs = np.frombuffer(body, "<f8", -1, length + 16 * n).reshape(n, -1).astype(np.float64)
     points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, strict=True))
-    return UserState(header["basis"], header["open"], points)
+    return UserState(header["basis"], header["origin"], header["context"], header["open"], points)
 
 
 def learn(study: "Study", log_belief: NDArray[np.float64], policy: str | None, outcome: float | None) -> float:
