@@ -183,17 +183,26 @@ def update(
 def report(
     out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and report.png.")] = None,
     log: Annotated[str | None, Option(metavar="FILE", help="CSV file for all decisions.")] = None,
+    incumbent: Annotated[
+        str | None, Option(metavar="POLICY", help="Policy in place until now; default: that of the fit, if any.")
+    ] = None,
+    split: Annotated[
+        str | None,
+        Option(
+            metavar="user|time|both", help="Count only users that the fit did not know, later decisions, or both."
+        ),
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Report uplift and regret compared with the control group, with 95 % intervals."""
+    """Report the uplift over the control group, the best single policy and the incumbent, with 95 % intervals."""
     from lifelore.agent.reuse.report import report as reported
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
-        document = reported(memory, study, out, log)
+        document = reported(memory, study, out, log, incumbent=incumbent, split=split)
     if as_json:
         print_json(document)
         return
@@ -343,19 +352,29 @@ def _count(items: list[Any], singular: str, plural: str) -> str:
 def _print_report(document: dict[str, Any]) -> None:
     pending = f"{document['pending']} without an outcome yet"
     print(f"study {document['study']}: {document['decisions']} decisions, {pending}")
+    single, incumbent = document["best_single"], document["incumbent"]
     for label, estimate in (
         ("chosen by belief", document["personal"]),
         ("control group", document["control"]),
         ("uplift", document["uplift"]),
+        (f"uplift over the best single policy, {single['name']}", single["uplift"]),
+        *([(f"uplift over the incumbent, {incumbent['name']}", incumbent["uplift"])] if incumbent else []),
         ("regret by the library, chosen by belief", document["regret"]["personal"]),
         ("regret by the library, control group", document["regret"]["control"]),
     ):
         print(f"  {label}: {_estimate(estimate)}")
+    rows = [row for row in document["policies"] if row["outcome"]]
+    if rows:
+        print("  each policy in the control group:")
+    width = max((len(row["name"]) for row in rows), default=0)
+    for row in sorted(rows, key=lambda row: -row["outcome"]["value"]):
+        retired = "" if row["state"] == "active" else f" ({row['state']})"
+        print(f"    {row['name']:{width}}  {_estimate(row['outcome'])}{retired}")
 
 
 def _estimate(estimate: dict[str, Any] | None) -> str:
     if estimate is None:
-        return "no outcome yet"
+        return "not measured, no outcome yet"
     users = " and ".join(map(str, estimate["n"])) if isinstance(estimate["n"], list) else estimate["n"]
     interval = f" ({estimate['ci95'][0]:.4g} to {estimate['ci95'][1]:.4g})" if estimate["ci95"] else ""
     return f"{estimate['value']:.4g}{interval}, {users} users"

@@ -1,5 +1,6 @@
 """The verb `reuse fit`: a log becomes a policy library, its types named in the log or found from outcomes."""
 
+import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -120,6 +121,7 @@ def _study(
     if ACTIVE not in states.values():
         raise InputError("the logs must hold a policy that is not retired, got none")
     fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
+    fitted["time"] = int(time.time())
     return Study(
         settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, fitted,
@@ -175,7 +177,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
             for number, name in enumerate(library.types)
         ],
         "policies": [
-            {"name": policy, "state": state, "mean": _overall(study, policy)}
+            {"name": policy, "state": state, "mean": study.expected(policy)}
             for policy, state in sorted(study.states.items())
         ],
         "means": mean.tolist(),
@@ -188,11 +190,3 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "explore": study.explore,
         "change": study.change,
     }
-
-
-def _overall(study: Study, policy: str) -> float | None:
-    """Expected outcome of a policy for a user of whom nothing is known."""
-    if policy not in study.library.policies:
-        return None
-    column = study.library.performance.mean[:, study.library.index_of_policy(policy)]
-    return float(study.library.prior @ column)

@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log_columns import Lines, check_word, read_outcome
+from lifelore.agent.reuse.log_columns import COUNTED, Lines, check_word, read_outcome
 from lifelore.agent.reuse.log_format import LogFormat
 from lifelore.agent.reuse.log_lines import read_lines
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -131,12 +131,6 @@ class ReuseLog:
         found[self.user.codes[said]] = column.codes[said]
         return found
 
-    def take(self, rows: NDArray[np.int64]) -> "ReuseLog":
-        """The log of some rows; every name keeps its place."""
-        columns = (self.user, self.policy, self.type, self.context, self.decision)
-        taken = (Column(column.names, column.codes[rows]) for column in columns)
-        return ReuseLog(*taken, self.outcomes[rows], self.file[rows], self.line[rows], self.files, self.pending)
-
 
 def read_log(paths: Sequence[str | Path], form: LogFormat | None = None) -> ReuseLog:
     """Read logs as one.
@@ -185,25 +179,25 @@ def _lines(path: Path, form: LogFormat) -> Lines:
 
 
 def _joined(lines: Sequence[Lines], paths: Sequence[str]) -> ReuseLog:
-    columns = [
+    user, policy, type_, context, decision = (
         _column([part.names[place] for part in lines], [part.codes[place] for part in lines]) for place in range(5)
-    ]
-    outcomes = np.concatenate([part.outcomes for part in lines])
-    file = np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines])
-    files = (
-        ReadFile(path, part.size, part.digest, part.last_line) for path, part in zip(paths, lines, strict=True)
     )
+    counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
     return ReuseLog(
-        *columns, outcomes, file, np.concatenate([part.line for part in lines]), tuple(files),
-        *(sum(part.counts[name] for part in lines)
-          for name in ("pending", "filled_outcomes", "filled_policies", "without_policy")),
+        user=user, policy=policy, type=type_, context=context, decision=decision,
+        outcomes=np.concatenate([part.outcomes for part in lines]),
+        file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
+        line=np.concatenate([part.line for part in lines]),
+        files=tuple(ReadFile(path, part.size, part.digest, part.last_line)
+                    for path, part in zip(paths, lines, strict=True)),
+        **counts,
     )  # fmt: skip
 
 
-def _column(names: Sequence[Sequence[str]], codes: Sequence[NDArray[np.int64]]) -> Column:
+def _column(names: Sequence[tuple[str, ...]], codes: Sequence[NDArray[np.int64]]) -> Column:
     """One column of several files', its names sorted."""
     used = [(own, np.unique(code, return_inverse=True)) for own, code in zip(names, codes, strict=True)]
-    every = sorted({own[code] for own, (seen, _) in used for code in seen.tolist()})
+    every: list[str] = sorted({own[code] for own, (seen, _) in used for code in seen.tolist()})
     place = {name: number for number, name in enumerate(every)}
     moved = [np.array([place[own[code]] for code in seen.tolist()], np.int64)[rows] for own, (seen, rows) in used]
     return Column(tuple(every), np.concatenate(moved))

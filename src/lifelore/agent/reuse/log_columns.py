@@ -13,6 +13,8 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST
 
 LONGEST = 200
 WORDS = ("user", "policy", *OPTIONAL)
+COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
+"""Reasons for which lines are left out or filled; see `ReuseLog`."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,8 +63,8 @@ class ColumnReader:
     _last_line: int = 0
 
     def __post_init__(self) -> None:
-        self._counts = dict.fromkeys(("pending", "filled_outcomes", "filled_policies", "without_policy"), 0)
-        self._missing = {"", *self.form.missing}
+        self._counts = dict.fromkeys(COUNTED, 0)
+        self._missing: set[str] = {"", *self.form.missing}
         # What a word of the file becomes; each different word is checked once.
         self._clean: list[dict[str, str]] = [{} for _ in WORDS]
         self._fill = _filling_outcome(self.form)
@@ -81,7 +83,7 @@ class ColumnReader:
         policies = words[1]
         absent = policies < 0
         if absent.any():
-            policies, here = self._without_policy(policies, absent, here, line)
+            words[1], here = self._without_policy(policies, absent, here)
         self._parts.append((outcomes[here], line[here], *(column[here] for column in words)))
 
     def lines(self) -> Lines:
@@ -101,7 +103,7 @@ class ColumnReader:
         except ValueError:
             outcomes = np.array([self._outcome(word, number) for word, number in zip(words, line, strict=True)])
         bad = ~(np.abs(outcomes) <= LARGEST)
-        for place in np.flatnonzero(bad):
+        for place in np.flatnonzero(bad).tolist():
             self._outcome(words[place], line[place])
         missing = int(bad.sum())
         if self._fill is not None:
@@ -152,7 +154,9 @@ class ColumnReader:
             )
         return own
 
-    def _without_policy(self, policies, absent, here, line):
+    def _without_policy(
+        self, policies: NDArray[np.int64], absent: NDArray[np.bool_], here: NDArray[np.bool_]
+    ) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Lines without a policy: left out, or given the policy that the format names."""
         if self.form.missing_policy == LEAVE_OUT:
             self._counts["without_policy"] += int(absent.sum())

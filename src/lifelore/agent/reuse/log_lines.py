@@ -61,11 +61,9 @@ def _take(
     places: dict[str, int],
     name: str,
 ) -> None:
-    for fields, line in zip(rows, at, strict=True):
-        if len(fields) != len(header):
-            raise InputError(
-                f"{name} line {line}: must have {len(header)} fields like the header, got {len(fields)}"
-            )
+    if set(map(len, rows)) != {len(header)}:
+        fields, line = next(pair for pair in zip(rows, at, strict=True) if len(pair[0]) != len(header))
+        raise InputError(f"{name} line {line}: must have {len(header)} fields like the header, got {len(fields)}")
     by_place = list(zip(*rows, strict=True))
     found = [by_place[places[column]] if column in places else None for column in ("outcome", *WORDS)]
     columns.take(found, np.array(at))

@@ -87,6 +87,11 @@ class Past:
         files = {number: file for number, file in self.files.items() if number not in numbers}
         return Past(users, files, self.generation)
 
+    def users_of(self, by: str) -> set[str]:
+        """Keys of the users with lines of a fit, or of `warm`."""
+        files = {number for number, file in self.files.items() if file.by == by}
+        return {key for key, user in self.users.items() if files & set(user.rows)}
+
     @property
     def n_rows(self) -> int:
         """Number of outcomes."""

@@ -133,6 +133,18 @@ class Study:
         """Each policy's name by the number that stands for it in records."""
         return {policy_number(policy): policy for policy in self.states}
 
+    def expected(self, policy: str) -> float | None:
+        """Expected outcome of a policy for a user of whom nothing is known; None where the library lacks it."""
+        if policy not in self.library.policies:
+            return None
+        return float(self.library.prior @ self.library.performance.mean[:, self.library.index_of_policy(policy)])
+
+    @property
+    def best_single(self) -> str:
+        """The policy in use that is expected to serve all users best, by the users of the fit alone."""
+        expected = self.library.prior @ self.library.performance.mean
+        return max(self.active, key=lambda policy: expected[self.library.index_of_policy(policy)])
+
     def prior_of(self, context: str | None) -> NDArray[np.float64]:
         """Prior over types, (n_types,): that of a known context, else everybody's."""
         return self.contexts.get(context or "", self.library.prior)

@@ -28,7 +28,7 @@ STARTS = 6
 """Number of starts for each number of types, half of them k-means++; more cost time and may fit better."""
 STEPS, ENOUGH = 300, 1e-7
 """Largest number of steps of a start, and the relative gain in log likelihood below which it ends."""
-SAMPLED_USERS = 10_000
+SAMPLED_USERS = 5_000
 """Of more users, a random sample of so many gives the number of types and the start for all; more cost time."""
 PATIENCE = 2
 """Number of sizes tried beyond the best so far."""
