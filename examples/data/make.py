@@ -1,17 +1,22 @@
-"""Makes the example files of this folder again: an office's map, a cloud of a table, a log of choices.
+"""Makes the example files of this folder again: an office's map, jobs and runs in it, a cloud of a table, a log.
 
-All three are drawn by a generator. The cloud needs the extra `sim`. Run: python examples/data/make.py
+All are simulated. The cloud needs the extra `sim`. Run: python examples/data/make.py
 """
 
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
+from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.floor import floor_of
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.domains.buildings.office import office_map
+from lifelore.domains.worlds import make_world
 
 HERE = Path(__file__).parent
 POLICIES = ("calm", "dance", "jazz", "news")
@@ -30,6 +35,37 @@ def make_map(folder: Path) -> None:
         f"image: office.png\nresolution: {office.resolution}\norigin: [-5.0, -3.0, 0.0]\nnegate: 0\n"
         "occupied_thresh: 0.65\nfree_thresh: 0.196\n"
     )
+
+
+def make_jobs(folder: Path) -> None:
+    """Jobs of one morning between three places of the office."""
+    world = make_world("building", map=folder / "office.yaml")
+    floor = floor_of(read_occupancy_map(folder / "office.yaml"), world)
+    states = stream(0, "example jobs").choice(world.n_states, 3, replace=False)
+    places = floor.metres(floor.anchors[states])  # the free point of each place that is farthest from obstacles
+    (dock, lab, store) = (f"{x:.3f},{y:.3f}" for x, y in places)
+    jobs = [f"09:00,lab,{lab}", f"09:30,store,{store}", f"10:10,dock,{dock}", "10:45,lab,,", "11:15,dock,,"]
+    (folder / "jobs.csv").write_text("\n".join(["time,name,x,y", *jobs]) + "\n")
+
+
+def make_runs(folder: Path) -> None:
+    """Twenty runs along shortest paths, with a pose every 0.1 m and localisation noise of 2 cm."""
+    world = make_world("building", map=folder / "office.yaml")
+    draw, lines = stream(0, "example runs"), ["run,time,x,y,outcome"]
+    for run in range(20):
+        start, goal = (int(state) for state in draw.choice(world.n_states, 2, replace=False))
+        best = greedy_policy(optimal_q(world.task(goal).tables(), world.discount))
+        path = [start]
+        while path[-1] != goal:
+            path.append(int(world.neighbour[path[-1], best[path[-1]]]))
+        points = world.positions(np.array(path))
+        points = np.vstack([*(np.linspace(a, b, 6)[:-1] for a, b in pairwise(points)), points[-1:]])
+        points[1:-1] += draw.normal(0, 0.02, points[1:-1].shape)
+        last = len(points) - 1
+        lines += [
+            f"{run},{0.2 * i:.1f},{x:.2f},{y:.2f},{'goal' if i == last else ''}" for i, (x, y) in enumerate(points)
+        ]
+    (folder / "runs.csv").write_text("\n".join(lines) + "\n")
 
 
 def make_cloud(folder: Path) -> None:
@@ -60,5 +96,5 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_log, make_cloud):
+    for make in (make_map, make_jobs, make_runs, make_log, make_cloud):
         make(place)
