@@ -3,8 +3,10 @@ PYTHON ?= python3
 PYTHONS ?= $(PYTHON)
 VENV := .venv
 BIN := $(VENV)/bin
-# Tests marked as one group share a worker: the tests of one claim share its one quick run.
-PARALLEL := -n auto --dist loadgroup
+# In the order of the folders: the claims and the processes come before many small files, so both cores end together.
+PARALLEL := -n auto --no-loadscope-reorder
+# Each worker has a core of its own; threads of linear algebra would only take it from the other workers.
+PYTEST = OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest $(PARALLEL)
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 
 # Real scenes and maps lie beside the checkout where they are at hand; tests read this variable alone.
@@ -45,13 +47,13 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
 
 test: setup-test ## The tests, on all cores
-	$(BIN)/python -m pytest $(PARALLEL) -m "not soak"
+	$(PYTEST) -m "not soak"
 
 test-fast: setup-test ## The quick part of the tests: no claims, processes or pictures
-	$(BIN)/python -m pytest $(PARALLEL) -m "not soak and not slow"
+	$(PYTEST) -m "not soak and not slow"
 
 coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
-	$(BIN)/python -m pytest $(PARALLEL) -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
+	$(PYTEST) -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
 
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"

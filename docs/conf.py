@@ -57,6 +57,7 @@ ROOMS = {
     "lifelore.interaction": "Policy reuse",
     "lifelore.domains": "Worlds",
     "lifelore.bridges": "Bridges to other systems",
+    "lifelore.figures": "Figures",
     "lifelore.memory": "Memory",
     "lifelore.core": "Tasks, learners and protocols",
 }

@@ -1,7 +1,11 @@
 """A real PostgreSQL for all tests that want one, places where no memory has been yet, and no haste in any test."""
 
+import gc
 import itertools
+import re
 from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
 
 import psycopg
 import pytest
@@ -9,18 +13,55 @@ from hypothesis import HealthCheck, settings
 
 Places = Callable[[str], str]
 SLOW = ("experiments", "app", "figures")
-"""Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out as a whole."""
+"""Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
+QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/test_cloud_image.py")
+"""Quick files of these folders, a file a room."""
+
+# As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
+gc.set_threshold(100_000)
 
 # On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
 settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
 settings.load_profile("patient")
 
 
+def is_slow(path: Path, config: pytest.Config) -> bool:
+    """Whether a file of tests, or a folder within one of `SLOW`, is slow as a whole."""
+    tests = config.rootpath / "tests"
+    if not path.is_relative_to(tests):
+        return False
+    name = path.relative_to(tests)
+    return len(name.parts) > 1 and name.parts[0] in SLOW and name.as_posix() not in QUICK
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Slow files are not even imported where slow tests are left out."""
+    return True if "not slow" in config.option.markexpr and is_slow(collection_path, config) else None
+
+
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
-        folder = item.path.relative_to(item.config.rootpath).parts
-        if folder[:1] == ("tests",) and folder[1] in SLOW:
+        if is_slow(item.path, item.config):
             item.add_marker(pytest.mark.slow)
+
+
+def scope_of(nodeid: str) -> str:
+    """The claim of a test of the registry, else the file: tests of a scope share a worker and so a fixture."""
+    file = nodeid.partition("::")[0]
+    claim = re.search(r"\[(C\d+\.\d+)\]$", nodeid) if file.endswith("experiments/test_registry.py") else None
+    return claim[1] if claim else file
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Hand out scopes; pytest-xdist 3.8 ignores the marks of its own groups where pytest is 9.2 or newer."""
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Scheduling(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return scope_of(nodeid)
+
+    return Scheduling(config, log)
 
 
 @pytest.fixture(scope="session")

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 
 from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.action.priors.prior_file import save_prior
+from lifelore.action.priors.prior_file import load_prior, save_prior
 from lifelore.experiments.bench.action.deep_worlds import GUIDED, SEVEN, UNIFORM
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "deep_rl.md").read_text(encoding="utf-8")
-EXPLORES, COUNTS, MASKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.S)
+EXPLORES, LIVES, COUNTS, MASKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.S)
 
 
 def run(code: str, folder: Path, *shorter: tuple[str, str]) -> str:
@@ -33,9 +33,19 @@ def run(code: str, folder: Path, *shorter: tuple[str, str]) -> str:
 def test_dqn_explores_by_a_prior(tmp_path):
     pytest.importorskip("stable_baselines3")
     said = run(EXPLORES + "print(model.num_timesteps, len(prior))", tmp_path, ("15_000", "600"))
-    steps, contexts = map(int, said.split())
+    steps, contexts = map(int, said.splitlines()[-1].split())
     assert steps == 600
     assert contexts == 7
+    assert len(load_prior(tmp_path / "ways.npz")) == 7  # the masks below read this file
+
+
+@pytest.mark.deep
+def test_a_life_becomes_the_exploration_of_a_network(tmp_path):
+    pytest.importorskip("stable_baselines3")
+    said = run(LIVES + "print(model.num_timesteps, len(prior))", tmp_path, ("3_000", "600"))
+    steps, contexts = map(int, said.split())
+    assert steps == 600
+    assert contexts > 1
 
 
 @pytest.mark.deep
@@ -55,7 +65,7 @@ def test_masks(tmp_path):
     assert int(said) == 512
 
 
-@pytest.mark.parametrize("code", [EXPLORES, COUNTS, MASKS])
+@pytest.mark.parametrize("code", [EXPLORES, LIVES, COUNTS, MASKS])
 def test_what_a_user_writes_is_short(code):
     assert len([line for line in code.splitlines() if line.strip()]) <= 15
 

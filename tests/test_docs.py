@@ -20,7 +20,7 @@ from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
 COURIER = (DOCS / "courier.md").read_text(encoding="utf-8")
-SEARCH, FEATURES = re.findall(r"```python\n(.*?)```", PRIORS, flags=re.S)
+EXPLORE, LEARNT, FEATURES = re.findall(r"```python\n(.*?)```", PRIORS, flags=re.S)
 TEACH, ADVISE = (re.sub(r"#.*", "", line).split() for line in re.findall(r"^lifelore .*", PRIORS, flags=re.M))
 
 
@@ -65,12 +65,23 @@ def test_modules_and_files_named_on_a_page_exist(page):
 
 
 @pytest.mark.slow
-def test_a_prior_is_learnt_kept_and_searched_with(tmp_path):
-    said = run([sys.executable, "-W", "error", "-c", SEARCH], tmp_path)
-    played, report = said.splitlines()
-    assert played.startswith("EpisodeResult(steps=")
-    assert f"{ast.literal_eval(report)['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
+def test_a_prior_is_learnt_kept_and_explored_by(tmp_path):
+    uniform, guided, report = run([sys.executable, "-W", "error", "-c", EXPLORE], tmp_path).splitlines()
+    for line in (uniform, guided):
+        earned, collisions = re.findall(r"return (\S+), (\d+) collisions", line)[0]
+        assert earned.replace("-", "−") in PRIORS
+        assert f" {collisions}" in PRIORS
+    assert report.startswith("<ActionPrior: 4 actions, 83 contexts")
+    numbers = ast.literal_eval(report[report.index("{") :])
+    assert f"{numbers['exclusion_rate']:.1%}".replace("%", " %") + " of the cells" in PRIORS
     assert len(load_prior(tmp_path / "percepts.npz")) > 10
+
+
+@pytest.mark.slow
+def test_vectors_become_contexts(tmp_path):
+    code, key = run([sys.executable, "-W", "error", "-c", LEARNT], tmp_path).split(" ", 1)
+    assert 0 <= int(code) < 32
+    assert key.startswith("learnt contexts ")
 
 
 @pytest.mark.slow

@@ -10,8 +10,11 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from lifelore.action.features.learnt_contexts import LearntContexts as LearntContexts
     from lifelore.action.priors.action_prior import ActionPrior as ActionPrior
     from lifelore.agent.external_world.live_in import live_in as live_in
+    from lifelore.agent.external_world.stored_prior import BatchContexts as BatchContexts
+    from lifelore.agent.external_world.stored_prior import prior_from_memory as prior_from_memory
     from lifelore.agent.live.life import live as live
     from lifelore.agent.live.life_settings import LifeSettings as LifeSettings
     from lifelore.agent.perceive.perceive import PerceiveSettings as PerceiveSettings
@@ -29,6 +32,7 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import World as World
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.worlds import make_world as make_world
+    from lifelore.figures.prior_table import plot_prior as plot_prior
     from lifelore.interaction.adaptation.beat import Beat as Beat
     from lifelore.interaction.library.policy_library import PolicyLibrary as PolicyLibrary
     from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
@@ -45,11 +49,13 @@ __version__ = "0.1.0"
 
 _HOME = {
     "ActionPrior": "lifelore.action.priors.action_prior",
+    "BatchContexts": "lifelore.agent.external_world.stored_prior",
     "BayesianPolicyReuse": "lifelore.interaction.reuse.bayesian_policy_reuse",
     "Beat": "lifelore.interaction.adaptation.beat",
     "Domain": "lifelore.core.mdp",
     "GymnasiumWorld": "lifelore.bridges.gymnasium_world",
     "LabelledCloud": "lifelore.core.labelled_cloud",
+    "LearntContexts": "lifelore.action.features.learnt_contexts",
     "LifeSettings": "lifelore.agent.live.life_settings",
     "LifeloreError": "lifelore.core.errors",
     "Memory": "lifelore.memory",
@@ -72,6 +78,8 @@ _HOME = {
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",
     "perceived_scene": "lifelore.perception.perceived_scene",
+    "plot_prior": "lifelore.figures.prior_table",
+    "prior_from_memory": "lifelore.agent.external_world.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",
     "to_scene": "lifelore.perception.segmentation.table_frame",
 }

@@ -1,6 +1,7 @@
 """`lifelore` as a whole: nothing heavy for its help, one line for a mistake, and what every command has."""
 
 import ast
+import re
 import subprocess
 import sys
 from importlib.metadata import entry_points
@@ -10,6 +11,8 @@ import typer
 
 import lifelore
 from lifelore.app import command_line
+from lifelore.domains.worlds import domain_names
+from lifelore.experiments.bench import BENCHES
 
 HEAVY = ("numba", "sklearn", "matplotlib", "sqlalchemy", "scipy", "gymnasium", "numpy")
 TOLD_WHAT_IT_IMPORTED = """
@@ -43,6 +46,7 @@ def test_the_installed_program_is_this_command_line():
 
 def test_version(ask):
     assert ask("version").out == f"{lifelore.__version__}\n"
+    assert ask("--version").out == f"{lifelore.__version__}\n"
     assert ask("version", "--json").document == {"version": lifelore.__version__}
 
 
@@ -71,6 +75,22 @@ def leaves(command, path: tuple[str, ...] = ()):
         yield path, command
 
 
+@pytest.mark.parametrize("group", [[], ["memory"], ["reuse"]], ids=["lifelore", "memory", "reuse"])
+def test_no_sentence_of_a_list_of_commands_is_cut_off(group, ask, monkeypatch):
+    monkeypatch.setenv("COLUMNS", "80")
+    listed = ask(*group, "--help").out.split("Commands:\n")[1]
+    assert len(listed.splitlines()) >= 5
+    assert "..." not in listed
+
+
+def test_help_lists_every_benchmark_and_domain(ask):
+    shown = " ".join(ask("bench", "--help").out.split())
+    assert [name for name in BENCHES if name not in re.findall(r"[a-z]+", shown)] == []
+    for verb in ("live", "teach"):
+        shown = " ".join(ask(verb, "--help").out.split())
+        assert [name for name in domain_names() if name not in shown.split("--domain")[1][:120]] == []
+
+
 COMMANDS = dict(leaves(typer.main.get_command(command_line.app)))
 
 
@@ -80,6 +100,7 @@ def test_the_contract_names_these_commands():
         "perceive",
         "learn-relations",
         "scenes",
+        "learn-from",
         "teach",
         "advise",
         "reproduce",
@@ -104,7 +125,7 @@ def test_every_command_has_json_and_says_what_it_is(path, ask):
 
 
 @pytest.mark.parametrize("unbuffered", ["", "1"])
-@pytest.mark.parametrize("arguments", [["version"], ["memory", "show", "--json"], ["--help"]], ids=" ".join)
+@pytest.mark.parametrize("arguments", [["version"], ["reproduce", "--list", "--json"], ["--help"]], ids=" ".join)
 def test_output_to_a_full_disk_is_one_line(arguments, unbuffered, start, answer, monkeypatch):
     monkeypatch.setenv("PYTHONUNBUFFERED", unbuffered)
     with open("/dev/full", "w") as full:

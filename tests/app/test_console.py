@@ -1,13 +1,14 @@
-"""JSON that others can read, a bar for a terminal only, and Ctrl-C that first asks politely."""
+"""JSON documents, progress on a terminal and in a pipe, and Ctrl-C."""
 
 import json
 import os
 import pty
 import signal
+import time
 
 import pytest
 
-from lifelore.app.console import print_json, progress_bar, stop_on_interrupt
+from lifelore.app.console import _Pace, print_json, progress_bar, stop_on_interrupt
 
 
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])
@@ -22,10 +23,49 @@ def test_one_document(capsys):
     assert json.loads(capsys.readouterr().out) == {"γ": [1, None, 0.5]}
 
 
-def test_without_a_terminal_there_is_no_bar(capfd):
+def test_without_a_terminal_short_work_prints_nothing(capfd):
     with progress_bar("living") as progress:
-        assert progress is None
+        progress(1, 2, "task 0")
     assert capfd.readouterr() == ("", "")
+
+
+def test_without_a_terminal_long_work_prints_lines_also_within_a_piece(capfd):
+    with progress_bar("living", every=0.02) as progress:
+        progress(1, 3, "task 7")
+        shown = ""
+        while shown.count("\n") < 2:
+            shown += capfd.readouterr().err
+    assert shown.startswith("living 1/3 (task 7): 0:00:00 elapsed, about 0:00:00 left\n")
+    time.sleep(0.05)
+    assert capfd.readouterr() == ("", "")
+
+
+def test_remaining_time_is_that_of_the_open_pieces():
+    now = 100.0
+    pace = _Pace(clock=lambda: now)
+    now = 103.0
+    assert pace.text() == "0:00:03 elapsed"  # nothing is known before the first piece is finished
+    pace.update(0, 4, "")
+    assert pace.remaining() is None
+    now = 110.0
+    pace.update(1, 4, "a")  # 10 s a piece
+    assert pace.remaining() == 30
+    now = 114.0
+    assert pace.remaining() == 26
+    now = 135.0  # the second piece takes long: two more pieces of 10 s at least
+    assert pace.remaining() == 20
+    assert pace.text() == "0:00:35 elapsed, about 0:00:20 left"
+    pace.update(4, 4, "d")
+    assert pace.remaining() == 0
+
+
+def test_a_change_of_pace_is_followed():
+    now = 0.0
+    pace = _Pace(clock=lambda: now)
+    for done in range(1, 61):
+        now += 10.0 if done <= 40 else 1.0
+        pace.update(done, 100, "")
+    assert pace.remaining() == 40
 
 
 def test_the_first_interrupt_asks_and_the_second_insists(capsys):
@@ -53,6 +93,7 @@ def read_all(terminal: int) -> str:
         shown += part
 
 
+@pytest.mark.slow
 def test_on_a_terminal_a_bar_moves_on_stderr_and_stdout_is_still_pure(start, known, monkeypatch):
     monkeypatch.setenv("TERM", "xterm-256color")
     ours, theirs = pty.openpty()
@@ -71,6 +112,7 @@ def test_on_a_terminal_a_bar_moves_on_stderr_and_stdout_is_still_pure(start, kno
     assert "living" not in out
 
 
+@pytest.mark.slow
 def test_into_a_pipe_nothing_is_said_beside_the_answer(start, answer, known):
     said = answer(start("live", "--domain", "lattice", "--tasks", 2, "--memory", known, "--json"))
     assert (said.status, said.err) == (0, "")

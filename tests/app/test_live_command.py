@@ -183,7 +183,7 @@ def test_a_map_is_lived_in_and_named_in_the_report(ask, tmp_path):
 
 def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     said = ask("live", "--domain", "lattice", "--tasks", 6, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "")
+    assert (said.status, said.err) == (0, "new folder out\n")
     for words in ("6 tasks in lattice, 341 places", "this robot has finished 6 tasks in all", "steps to 80 %",
                   "lore compared with scratch, last third", "wrote out/summary.json"):  # fmt: skip
         assert words in said.out
@@ -195,7 +195,7 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
 
 def test_json_and_pictures_at_once(ask):
     said = ask(*LATTICE, "--tasks", 2, "--memory", "life.db", "--out", "out")
-    assert (said.status, said.err) == (0, "")
+    assert (said.status, said.err) == (0, "new folder out\n")
     assert json.loads(Path("out/summary.json").read_text()) == said.document
 
 
@@ -207,6 +207,18 @@ def test_nothing_is_forgotten_when_the_pictures_cannot_be_kept(ask, known, monke
     assert known.read_bytes() == before
     with open_memory(known) as memory:
         assert memory.tasks("robot") == 2
+
+
+def test_the_measures_go_into_a_long_table(ask, tmp_path):
+    said = ask(*LATTICE, "--tasks", 1, "--seed", 3, "--memory", "life.db", "--csv", tmp_path / "life.csv")
+    assert (said.status, said.err) == (0, "")
+    header, *rows = (tmp_path / "life.csv").read_text(encoding="utf-8").splitlines()
+    assert header == "run,task,agent,episode,measure,value"
+    lore = said.document["tasks"][0]["agents"]["lore"]
+    assert f"3,0,lore,,steps_to_80,{lore['steps_to_80']}" in rows
+    assert any(row.startswith("3,0,scratch,0,return,") for row in rows)
+    refused = ask(*LATTICE, "--memory", "none.db", "--csv", tmp_path / "no" / "life.csv")
+    assert "measures cannot be written to" in refused.refusal
 
 
 def test_every_episode_is_logged_where_it_is_told(ask, tmp_path):

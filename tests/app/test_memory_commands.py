@@ -1,5 +1,6 @@
 """`lifelore memory …` from end to end, and what else says its piece in JSON: doctor, reproduce."""
 
+import sqlite3
 from pathlib import Path
 
 import numpy as np
@@ -170,10 +171,12 @@ def test_doctor(ask, known):
     report = ask("doctor", "--memory", known, "--json").document
     assert set(report) == REPORT
     assert all(set(entry) == {"name", "version", "for"} for entry in report["packages"])
-    assert all(set(entry) == {"what", "ok", "finding"} for entry in report["checks"])
+    assert all(set(entry) == {"what", "ok", "finding", "advice"} for entry in report["checks"])
     checks = {entry["what"]: entry for entry in report["checks"]}
     assert set(checks) == {"kernels", "kernel cache", "memory", "C compiler"}
-    assert checks["memory"] == {"what": "memory", "ok": True, "finding": f"{known}, 1 robots"}
+    assert checks["memory"] == {
+        "what": "memory", "ok": True, "finding": f"{known}, 1 robots", "advice": None,
+    }  # fmt: skip
     said = ask("doctor", "--memory", known)
     assert (said.status, said.err) == (0, "")
     assert all(name in said.out for name in ("numba", "sqlalchemy", "ok   memory"))
@@ -182,10 +185,32 @@ def test_doctor(ask, known):
 def test_doctor_finds_what_is_wrong_and_leaves_it(ask, tmp_path):
     (tmp_path / "diary.txt").write_text("Dear diary")
     said = ask("doctor", "--memory", "diary.txt")
-    assert said.status == 0
+    assert said.status == 1
     assert "BAD  memory" in said.out
     assert "is not a Lifelore memory" in " ".join(said.out.split())
+    assert "To repair it: name another file" in " ".join(said.out.split())
     assert (tmp_path / "diary.txt").read_text() == "Dear diary"
+
+
+def test_doctor_checks_every_record(ask, known):
+    with sqlite3.connect(known) as conn:
+        conn.execute("UPDATE lifelore_cells SET value = value + 1")
+    said = ask("doctor", "--memory", known, "--json")
+    (memory,) = (entry for entry in said.document["checks"] if entry["what"] == "memory")
+    assert (said.status, memory["ok"]) == (1, False)
+    assert "lifelore memory import EXPORT --memory NEW" in memory["advice"]
+
+
+def test_reading_verbs_create_no_memory(ask, tmp_path):
+    for verb in (["show"], ["export", "export.db"], ["forget", "robot"]):
+        refused = ask("memory", *verb, "--memory", "typo/m.db")
+        assert refused.status == 2
+        assert "typo/m.db does not exist; check the path" in refused.err
+    assert "the first life creates" in ask("memory", "show").err
+    said = ask("doctor", "--memory", "typo/m.db")
+    assert said.status == 1
+    assert "check the path" in said.out
+    assert not list(tmp_path.glob("**/*.db"))
 
 
 def test_the_ledger_of_claims(ask):

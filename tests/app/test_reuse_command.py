@@ -176,7 +176,7 @@ def test_mistakes_are_one_line_and_lose_nothing(arguments, said, reuse, log, liv
 
 
 def test_no_memory_is_made_into_a_study_by_asking(reuse):
-    assert "no study 'default'" in reuse("choose", "--user", "ann").refusal
+    assert "m.db does not exist; check the path" in reuse("choose", "--user", "ann").refusal
 
 
 TOLD_WHAT_IT_IMPORTED = """

@@ -194,6 +194,7 @@ def test_hashable_by_hand():
         hashable(np.array([object()]))
 
 
+@pytest.mark.slow
 @given(st.dictionaries(st.text(max_size=3), st.integers(), max_size=5), st.randoms())
 def test_order_of_a_dict_does_not_matter(seen, random):
     shuffled = list(seen.items())

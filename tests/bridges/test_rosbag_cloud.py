@@ -68,6 +68,7 @@ def test_clouds_come_back_in_order(tmp_path, kind):
     assert read_bag_cloud(path, "/points", 1).points[0, 0] == 1.0
 
 
+@pytest.mark.slow
 def test_a_topic_must_be_named_where_there_are_two_and_exist(tmp_path):
     path = recorded(tmp_path, "mcap", ("/left", "/right"))
     with pytest.raises(NotFoundError, match="/left, /right; name one"):
@@ -106,6 +107,7 @@ def test_without_rosbags_the_extra_is_named(tmp_path, monkeypatch):
         read_bag_cloud(tmp_path)
 
 
+@pytest.mark.slow
 def test_the_command_line_looks_into_a_bag(tmp_path, capsys):
     from lifelore.app.command_line import run
 

@@ -11,6 +11,7 @@ from lifelore.core.metrics import (
     RESAMPLES,
     difference_estimate,
     entropy,
+    interquartile_mean_estimate,
     mean_estimate,
     ratio_estimate,
 )
@@ -115,3 +116,37 @@ def test_values_that_break_a_rule(values):
 def test_entropy_by_hand():
     probs = np.array([[0.5, 0.5, 0.0], [1.0, 0.0, 0.0], [1 / 3, 1 / 3, 1 / 3]])
     assert entropy(probs) == pytest.approx([np.log(2), 0.0, np.log(3)])
+
+
+# ---- interquartile means -----------------------------------------------------------------------------
+
+
+def test_the_interquartile_mean_is_the_mean_of_the_middle_half():
+    estimate = interquartile_mean_estimate([[1, 2], [3, 4], [5, 6], [-900, 900]])
+    assert (estimate.value, estimate.median, estimate.n) == ((2 + 3 + 4 + 5) / 4, 3.5, 8)
+
+
+def test_its_interval_resamples_runs_within_each_task():
+    """The naive twin on the same draws: two loops, sorting by hand."""
+    values = np.random.default_rng(3).normal([0.0, 10.0, 50.0], 1.0, (6, 3))
+    draws = stream(6, "bootstrap", "strata", 3).integers(0, 6, size=(RESAMPLES, 6, 3))
+    means = []
+    for drawn in draws:
+        sample = sorted(values[drawn[run, task], task] for run in range(6) for task in range(3))
+        means.append(sum(sample[4:14]) / 10)
+    low, high = np.quantile(means, [0.025, 0.975])
+    assert interquartile_mean_estimate(values).ci95 == pytest.approx((low, high))
+
+
+def test_tasks_that_differ_do_not_widen_the_interval():
+    """Within each task all runs are nearly equal; resampling without strata would mix tasks 0 and 100."""
+    values = np.array([0.0, 100.0]) + np.linspace(0, 0.01, 5)[:, None]
+    low, high = interquartile_mean_estimate(values).ci95
+    assert high - low < 0.02
+
+
+def test_an_interquartile_interval_needs_three_runs_and_spread():
+    assert interquartile_mean_estimate([[1.0, 2.0], [3.0, 4.0]]).ci95 is None
+    assert interquartile_mean_estimate([[1.0, 2.0]] * 5).ci95 is None
+    with pytest.raises(InputError, match="values must be at least one number"):
+        interquartile_mean_estimate([[np.nan]])

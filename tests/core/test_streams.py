@@ -1,6 +1,7 @@
 """Streams by name: they never move between versions, and never meet."""
 
 import numpy as np
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -17,6 +18,7 @@ def test_golden_numbers():
     assert stream(-1, "C3.2", "q-learning", 12).integers(0, 10**9, 3).tolist() == GOLDEN[2]
 
 
+@pytest.mark.slow
 @given(st.integers(-(10**12), 10**12), names, st.integers(-(10**12), 10**12), names)
 def test_depends_on_seed_and_names_alone(seed, path, other_seed, other_path):
     same = [(type(n), n) for n in (seed, *path)] == [(type(n), n) for n in (other_seed, *other_path)]

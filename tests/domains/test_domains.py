@@ -17,6 +17,7 @@ def test_every_public_name_can_be_imported_and_every_home_is_public():
         domains.nothing  # noqa: B018
 
 
+@pytest.mark.slow
 def test_importing_registers_and_loads_nothing_heavy():
     code = (
         "import sys, gymnasium; before = set(sys.modules); import lifelore.domains; "

@@ -37,9 +37,9 @@ def test_seeds_draw_different_worlds(name):
 
 def test_a_building_from_a_map(tmp_path):
     write_occupancy_map(tmp_path / "m.yaml", OccupancyMap(np.zeros((20, 30), np.uint8), 0.1, (1.0, 2.0, 0.0)))
-    world = make_world("building", map=tmp_path / "m.yaml", cell=1.0, robot_radius=0.1)
+    world = make_world("building", map=tmp_path / "m.yaml", cell=1.0, robot_radius=0.05)
     assert (world.n_states, world.frame.cell, world.frame.origin) == (6, 1.0, (1.0, 2.0, 0.0))
-    thinned = make_world("building", map=tmp_path / "m.yaml", cell=0.8, robot_radius=0.1, min_free=0.6)
+    thinned = make_world("building", map=tmp_path / "m.yaml", cell=0.8, robot_radius=0.05, min_free=0.6)
     # 2 m by 3 m in cells of 0.8 m: the upper and right strips of 0.4 m and 0.6 m cover 1/2 and 3/4 of a cell.
     assert thinned.n_states == 2 * 4
 

@@ -56,8 +56,8 @@ def test_claims_that_cannot_be_run(claim_id, rule):
         claim_of(claim_id)
 
 
-# Tests of one claim go to one worker, so that its quick run is run once.
-@pytest.mark.parametrize("claim_id", [pytest.param(i, marks=pytest.mark.xdist_group(i)) for i in IDS])
+# Tests of one claim go to one worker (see the scheduler in tests/conftest.py), so that its quick run is run once.
+@pytest.mark.parametrize("claim_id", IDS)
 class TestEveryClaim:
     def test_names_itself(self, claim_id):
         assert claim_of(claim_id).id == claim_id
@@ -111,7 +111,7 @@ class TestEveryClaim:
         assert asked <= set(quick[0](claim_id)["measured"])
 
 
-@pytest.mark.parametrize("claim_id", [pytest.param(i, marks=pytest.mark.xdist_group(i)) for i in FAMILIES])
+@pytest.mark.parametrize("claim_id", FAMILIES)
 def test_result_does_not_depend_on_threads_and_does_on_the_seed(claim_id, quick, tmp_path):
     alone = quick[0](claim_id)
     threads = reproduce([claim_id], "quick", jobs=3, out=tmp_path)[0]

@@ -41,3 +41,18 @@ def test_a_task_without_a_way_shows_its_goal(corridor, tmp_path):
     figure = draw_world_map(corridor.shape, corridor.cells, corridor.neighbour, [way])
     assert any(line.get_marker() == "*" for line in figure.axes[0].lines)
     save_figure(figure, tmp_path / "world.png")
+
+
+@pytest.mark.parametrize("shape", [(60, 3), (20, 20), (3, 90)])
+def test_title_and_legend_fit_into_the_picture(shape):
+    world = GridWorld.from_free("hall", np.ones(shape, bool))
+    ways = [
+        {"label": f"task {i}, reached from 100 % of starts", "goal": (0, 0), "paths": []} for i in range(26, 30)
+    ]
+    title = "second_floor_of_the_old_library.yaml: paths of lore in its last 4 tasks"
+    figure = draw_world_map(world.shape, world.cells, world.neighbour, ways, goals=[(0, 1)], cell=0.5, title=title)
+    figure.draw_without_rendering()
+    for part in (figure.legends[0], figure.texts[0]):
+        box = part.get_window_extent()
+        assert figure.bbox.x0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert figure.bbox.y0 <= box.y0 < box.y1 <= figure.bbox.y1

@@ -9,7 +9,7 @@ from PIL import Image
 
 from lifelore.core.errors import NotFoundError, StoreError
 from lifelore.figures import style
-from lifelore.figures.style import COLOURS, MAX_BYTES, colour_of, house_style, new_figure, save_figure
+from lifelore.figures.style import COLOURS, colour_of, house_style, new_figure, save_figure
 
 
 def test_style_is_put_back():
@@ -52,16 +52,20 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path):
 
 
 def noisy_figure():
-    figure = new_figure(6, 6)
-    figure.subplots().imshow(np.random.default_rng(0).random((500, 500, 3)))
+    figure = new_figure(2, 2)
+    figure.subplots().imshow(np.random.default_rng(0).random((200, 200, 3)))
     return figure
 
 
-def test_a_rich_figure_is_made_to_fit(tmp_path):
+@pytest.mark.parametrize(("limit", "width"), [(100_000, 360), (30_000, 200)], ids=["fewer colours", "coarser"])
+def test_a_rich_figure_is_made_to_fit(limit, width, tmp_path, monkeypatch):
+    monkeypatch.setattr(style, "MAX_BYTES", limit)
     full = BytesIO()
     noisy_figure().savefig(full, format="png", dpi=180)
     path = save_figure(noisy_figure(), tmp_path / "figure.png")
-    assert full.tell() > MAX_BYTES >= path.stat().st_size
+    assert full.tell() > limit >= path.stat().st_size
+    with Image.open(path) as image:
+        assert image.size == (width, width)
 
 
 def test_what_cannot_fit_or_be_written_is_one_line(tmp_path, monkeypatch):

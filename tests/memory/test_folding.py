@@ -51,6 +51,7 @@ def test_folding_agrees_with_a_dictionary(at_a_time, merge, parts):
     assert folded.origin == 99 + len(parts)
 
 
+@pytest.mark.slow
 @given(st.lists(st.integers(-(2**63), 2**63 - 1), min_size=1, max_size=6))
 def test_sums_are_exact_or_refused(numbers):
     parts = stored([{1: number} for number in numbers], "add")

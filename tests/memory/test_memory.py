@@ -241,6 +241,21 @@ def test_what_is_only_read_is_neither_made_nor_changed(file, tmp_path: Path):
     assert not (tmp_path / "no").exists()
 
 
+def test_a_memory_that_must_exist_is_not_created(file, tmp_path: Path):
+    with pytest.raises(StoreError, match=r"no/m.db does not exist; check the path"):
+        open_memory(tmp_path / "no" / "m.db", create=False)
+    assert not (tmp_path / "no").exists()
+    (tmp_path / "empty.db").touch()
+    with pytest.raises(StoreError, match="holds no Lifelore memory"):
+        open_memory(tmp_path / "empty.db", create=False)
+    assert (tmp_path / "empty.db").read_bytes() == b""
+    with open_memory(file) as memory:
+        give(memory, "a", 0, record({1: 1}))
+    with open_memory(file, create=False) as memory:
+        give(memory, "a", 1, record({1: 1}))
+        assert memory.tasks("a") == 2
+
+
 def test_folders_are_created(tmp_path: Path):
     with open_memory(tmp_path / "a b" / "c%20?#" / "m.db") as memory:
         give(memory, "a", 0, record({1: 1}))

@@ -180,6 +180,7 @@ def test_a_memory_merged_with_itself_stays(where):
         assert content(memory) == before
 
 
+@pytest.mark.slow
 def test_ties_of_the_clock_fall_alike_everywhere(new_place, monkeypatch):
     """Equal stamps are settled by the robots' names byte by byte, whatever the server's language."""
     monkeypatch.setattr("lifelore.memory.ledger.time.time_ns", lambda: 1)
@@ -235,6 +236,7 @@ def test_another_place_is_merged_by_its_name(where, new_place):
         assert content(memory) == content(other)
 
 
+@pytest.mark.slow
 def test_many_at_once_count_as_they_would_one_by_one(new_place, back_end):
     """The same memory twice, the receiving one among the sources, one robot's task in two of them, a tombstone."""
     sources = [new_place("sqlite") for _ in range(3)]
@@ -276,6 +278,7 @@ def merging_otherwise(place: str) -> None:
         memory.contribute("z", [Record("k", "own", 1, "union", [2], [5])], process="p", seq=0, task={})
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("spoil", "message"),
     [

@@ -42,6 +42,7 @@ PACKAGES = {
 }
 SLOW = 5.0
 """Million Q-learning steps a second; slower kernels are probably not compiled."""
+RESTORE = "restore an export into a new memory: lifelore memory import EXPORT --memory NEW"
 
 
 def examine(memory: str | None = None) -> dict:
@@ -51,7 +52,7 @@ def examine(memory: str | None = None) -> dict:
     -------
     dict
         ``lifelore``, ``python``, ``system``, ``cores``; ``packages``: [{"name", "version" or None, "for"}];
-        ``checks``: [{"what", "ok", "finding"}].
+        ``checks``: [{"what", "ok", "finding", "advice"}]; the advice is None where the check is ok.
     """
     return {
         "lifelore": version("lifelore"),
@@ -75,11 +76,16 @@ def _kernels() -> dict:
     method = QLearning(episodes=300, epsilon=0.1, epsilon_floor=0.1)
     speeds = []
     for attempt in range(3):
-        began = time.perf_counter()
+        began = time.thread_time()
         learner, _ = method.learn(tables, 0.95, world=stream(0, "world"), own=stream(0, "own", attempt))
-        speeds.append(learner.cursor[TOTAL] / (time.perf_counter() - began) / 1e6)
+        speeds.append(learner.cursor[TOTAL] / (time.thread_time() - began) / 1e6)
     speed = float(np.max(speeds))
-    return _check("kernels", speed > SLOW, f"{speed:.0f} million Q-learning steps a second on one core")
+    return _check(
+        "kernels",
+        speed > SLOW,
+        f"{speed:.0f} million Q-learning steps a second on one core",
+        "end other heavy programs and examine again; check that NUMBA_DISABLE_JIT is not set",
+    )
 
 
 def _kernel_cache() -> dict:
@@ -89,18 +95,25 @@ def _kernel_cache() -> dict:
         with tempfile.TemporaryFile(dir=folder):
             return _check("kernel cache", True, str(folder))
     except OSError as error:
-        return _check("kernel cache", False, f"{folder} cannot be written ({error.strerror}); set NUMBA_CACHE_DIR")
+        finding = f"{folder} cannot be written ({error.strerror}), so every start compiles the kernels again"
+        return _check("kernel cache", False, finding, "set NUMBA_CACHE_DIR to a folder that you may write")
 
 
 def _memory(where: str | None) -> dict:
     place = locate(where)
-    if isinstance(place, Path) and not place.exists():
+    if where is None and isinstance(place, Path) and not place.exists():
         return _check("memory", True, f"none yet; the first life creates {place}")
     try:
-        with open_memory(where) as opened:
-            return _check("memory", True, f"{opened.location}, {len(opened.robots())} robots")
+        with open_memory(where, create=False) as opened:
+            problems, robots = opened.check(), len(opened.robots())
     except LifeloreError as error:
-        return _check("memory", False, str(error))
+        finding, _, advice = str(error).partition("; ")
+        return _check("memory", False, finding, advice.removeprefix("nothing was changed: ") or RESTORE)
+    if problems:
+        return _check(
+            "memory", False, f"{opened.location}: {len(problems)} problems, first: {problems[0]}", RESTORE
+        )
+    return _check("memory", True, f"{opened.location}, {robots} robots")
 
 
 def _compiler() -> dict:
@@ -108,5 +121,5 @@ def _compiler() -> dict:
     return _check("C compiler", True, found or "none; only `bench kernels` uses it")
 
 
-def _check(what: str, ok: bool, finding: str) -> dict:
-    return {"what": what, "ok": ok, "finding": finding}
+def _check(what: str, ok: bool, finding: str, advice: str | None = None) -> dict:
+    return {"what": what, "ok": ok, "finding": finding, "advice": None if ok else advice}

@@ -33,9 +33,10 @@ def advise(
     robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [map: 0.2].")] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Watch agents step by step and advise those that seem lost; one JSON line of output for each line of input.
+    """Advise agents that seem lost, step by step.
 
-    Use it when experts have walked in the same world and you do not know the goals of the agents.
+    Each JSON line of input, a step of an agent, gives one JSON line of output. Use it when experts have walked in
+    the same world and you do not know the goals of the agents.
     """
     from contextlib import nullcontext
 

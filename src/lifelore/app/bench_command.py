@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
-            "Benefit: courier, recognition, relations, pictures, deep."
+            "Benefit: courier, recognition, worlds, contexts, relations, pictures, deep."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,
@@ -20,9 +20,10 @@ def bench(
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Measure Lifelore and other methods in turn, in one process; ratios compare paired rounds.
+    """Measure speed and benefit beside other methods.
 
-    Use it to check a claim about speed or benefit on your machine.
+    The methods take turns in one process, and ratios compare paired rounds. Use it to check a claim about speed or
+    benefit on your machine.
     """
     from lifelore.app.console import print_json, progress_bar
     from lifelore.experiments.bench import bench as run

@@ -22,7 +22,6 @@ UsageError: type[Exception] = next(kind for kind in typer.BadParameter.__mro__ i
 
 app = typer.Typer(
     name="lifelore",
-    help="An agent that lives long in one kind of world and becomes good at that world.",
     no_args_is_help=True,
     add_completion=False,
     rich_markup_mode=None,
@@ -35,6 +34,7 @@ def _register() -> None:
         advise_command,
         bench_command,
         doctor_command,
+        learn_from_command,
         learn_relations_command,
         live_command,
         memory_commands,
@@ -43,19 +43,39 @@ def _register() -> None:
         reuse_command,
         scenes_command,
         teach_command,
+        way_command,
     )
 
     app.command("live")(live_command.live)
+    app.command("way")(way_command.way)
     app.command("perceive")(perceive_command.perceive)
     app.command("learn-relations")(learn_relations_command.learn_relations)
     app.command("scenes")(scenes_command.scenes)
     app.command("teach")(teach_command.teach)
+    app.command("learn-from")(learn_from_command.learn_from)
     app.command("advise")(advise_command.advise)
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)
     app.command("doctor")(doctor_command.doctor)
+
+
+def _print_version(chosen: bool) -> None:
+    if chosen:
+        from lifelore import __version__
+
+        print(__version__)
+        raise typer.Exit
+
+
+@app.callback()
+def lifelore(
+    version: bool = typer.Option(
+        False, "--version", is_eager=True, callback=_print_version, help="Print the version."
+    ),
+) -> None:
+    """An agent that lives long in one kind of world and becomes good at that world."""
 
 
 @app.command()

@@ -3,9 +3,12 @@
 import json
 import signal
 import sys
-from collections.abc import Iterator
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from threading import Event
+from datetime import timedelta
+from threading import Event, Thread
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -13,6 +16,8 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as in shells."""
+RECENT = 20
+"""Finished pieces whose mean time predicts the next pieces; fewer follow a change of pace faster."""
 
 
 def print_json(document: Any) -> None:
@@ -25,37 +30,92 @@ def print_json_line(document: Any) -> None:
     print(json.dumps(document, allow_nan=False), flush=True)
 
 
-@contextmanager
-def progress_bar(action: str) -> "Iterator[Progress | None]":
-    """A callback ``(done, total, label)`` that draws a bar on stderr; None if stderr is no terminal."""
-    if not sys.stderr.isatty():
-        yield None
-        return
-    from rich.console import Console
-    from rich.progress import (
-        BarColumn,
-        MofNCompleteColumn,
-        Progress,
-        TextColumn,
-        TimeElapsedColumn,
-        TimeRemainingColumn,
-    )
+class _Pace:
+    """Elapsed and remaining time of a job, from the pieces that are finished."""
 
-    columns = (
-        TextColumn("{task.description}"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("left"),
-        TimeRemainingColumn(),
-    )
+    def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
+        self._clock = clock
+        self.done, self.total, self.label = 0, 0, ""
+        self._finished = deque([(clock(), 0)], maxlen=RECENT + 1)
+        self._began = clock()
+
+    def update(self, done: int, total: int, label: str) -> None:
+        self.done, self.total, self.label = done, total, label
+        self._finished.append((self._clock(), done))
+
+    def remaining(self) -> float | None:
+        """Seconds until the end if the next pieces take as long as the last; None before the first is finished."""
+        (first, before), (last, done) = self._finished[0], self._finished[-1]
+        if done <= before:
+            return None
+        mean = (last - first) / (done - before)
+        open_pieces = self.total - done
+        # A piece that takes longer than the mean is about to end; those behind it still take the mean.
+        return mean * max(open_pieces - 1, 0) + (max(mean - (self._clock() - last), 0.0) if open_pieces else 0.0)
+
+    def text(self) -> str:
+        """For instance ``0:01:05 elapsed, about 0:03:10 left``."""
+        elapsed, left = self._clock() - self._began, self.remaining()
+        return f"{_clock_text(elapsed)} elapsed" + ("" if left is None else f", about {_clock_text(left)} left")
+
+
+def _clock_text(seconds: float) -> str:
+    return str(timedelta(seconds=round(seconds)))
+
+
+@contextmanager
+def progress_bar(action: str, every: float = 60.0) -> "Iterator[Progress]":
+    """A callback ``(done, total, label)`` that shows progress on stderr with the elapsed and the remaining time.
+
+    A terminal shows a bar. A pipe or file gets a line after each `every` seconds.
+    """
+    pace = _Pace()
+    with _bar(action, pace) if sys.stderr.isatty() else _lines(action, pace, every) as show:
+        yield show
+
+
+@contextmanager
+def _bar(action: str, pace: _Pace) -> "Iterator[Progress]":
+    from rich.console import Console
+    from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn
+    from rich.text import Text
+
+    class Pace(ProgressColumn):
+        """Pieces and times, drawn again ten times a second, so that the clock runs within a piece too."""
+
+        def render(self, task) -> Text:
+            pieces = f"{pace.done}/{pace.total} " if pace.total else ""
+            return Text(f"{pieces}{pace.label}  {pace.text()}")
+
+    columns = (TextColumn("{task.description}"), BarColumn(), Pace())
     with Progress(*columns, console=Console(stderr=True), transient=True) as bar:
         line = bar.add_task(action, total=None)
 
         def show(done: int, total: int, label: str) -> None:
-            bar.update(line, completed=done, total=total, description=f"{action}: {label}")
+            pace.update(done, total, label)
+            bar.update(line, completed=done, total=total)
 
         yield show
+
+
+@contextmanager
+def _lines(action: str, pace: _Pace, every: float) -> "Iterator[Progress]":
+    """Print a line of progress after each `every` seconds, also while one piece takes longer."""
+    ended = Event()
+
+    def report() -> None:
+        while not ended.wait(every):
+            of = f" {pace.done}/{pace.total}" if pace.total else ""
+            label = f" ({pace.label})" if pace.label else ""
+            print(f"{action}{of}{label}: {pace.text()}", file=sys.stderr, flush=True)
+
+    reporter = Thread(target=report, daemon=True)
+    reporter.start()
+    try:
+        yield pace.update
+    finally:
+        ended.set()
+        reporter.join()
 
 
 @contextmanager

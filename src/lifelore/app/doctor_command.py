@@ -16,10 +16,12 @@ def doctor(
         ),
     ] = False,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
-) -> None:
-    """List installed and missing packages, test that memory opens, and measure the speed of the kernels.
+) -> int:
+    """Examine the installation and a memory.
 
-    Use it after installing, or when a verb fails or is slow.
+    It lists installed and missing packages, checks every byte of the memory, measures the speed of the kernels,
+    and names the repair of what is bad. Use it after installing, or when a verb fails or is slow. The exit status
+    is 1 if a check fails.
     """
     from lifelore.app.console import print_json
     from lifelore.core.errors import InputError
@@ -28,11 +30,12 @@ def doctor(
         if memory is not None:
             raise InputError("memory is not examined while kernels are compiled: leave --memory or --warm out")
         _compile(as_json)
-        return
+        return 0
     from lifelore.agent.doctor import examine
 
     report = examine(memory)
     print_json(report) if as_json else _print(report)
+    return 0 if all(entry["ok"] for entry in report["checks"]) else 1
 
 
 def _compile(as_json: bool) -> None:
@@ -62,3 +65,5 @@ def _print(report: dict) -> None:
     console.print(packages)
     for entry in report["checks"]:
         console.print(f"{'ok  ' if entry['ok'] else 'BAD '} {entry['what']}: {entry['finding']}", highlight=False)
+        if entry["advice"]:
+            console.print(f"     To repair it: {entry['advice']}", highlight=False)

@@ -39,7 +39,7 @@ def learn_relations(
     ] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Train a model of spatial relations on scenes with labelled pairs of objects.
+    """Train a model of spatial relations on labelled scenes.
 
     Use it if the shipped model does not know your relations, objects or camera; then give the model to perceive.
     """

@@ -12,6 +12,9 @@ SHOWN = (
     ("first_return", "first return"),
 )
 
+LISTED = 20
+"""Maximum number of tasks with chosen goals that are listed, the last ones."""
+
 
 def print_life(report: dict, written: list[str]) -> None:
     """Print means of each agent over the first and last third of the tasks, then the ratios to scratch."""
@@ -32,8 +35,23 @@ def print_life(report: dict, written: list[str]) -> None:
         for name, ratios in report["summary"].items():
             if name != "agents":
                 console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
+    for task in tasks[-LISTED:]:
+        if "position" in task:
+            console.print(_job_line(task), highlight=False, soft_wrap=True)
     for path in written:
         console.print(f"wrote {path}", highlight=False)
+
+
+def _job_line(task: dict) -> str:
+    """A task whose goal the user chose, with the result of the first agent."""
+    name, result = next(iter(task["agents"].items()))
+    x, y = task["position"]
+    where = " ".join(part for part in (task.get("time"), task.get("name"), f"{x:g},{y:g}") if part)
+    reached = "" if result["reached"] else " (cap, 80 % not reached)"
+    return (
+        f"task {task['index']}: {where}: {name} {result['steps_to_80']:,} steps to 80 %{reached}, "
+        f"{result['collisions']:,} collisions"
+    )
 
 
 def _building_line(building: dict) -> str:
@@ -71,7 +89,7 @@ def _short(x: float) -> str:
     for size, letter in ((1e6, "M"), (1e3, "k")):
         if abs(x) >= size:
             return f"{x / size:,.1f}{letter}"
-    return f"{x:,.0f}"
+    return f"{round(x) or 0:,}"  # no "-0"
 
 
 def _ratio_line(name: str, ratios: dict) -> str:
@@ -79,7 +97,7 @@ def _ratio_line(name: str, ratios: dict) -> str:
     who = name.removesuffix("_vs_scratch")
     return (
         f"{who} compared with scratch, last third: steps to 80 % {_ratio(steps)}, collisions {_ratio(hits)}, "
-        f"first return {ratios['jumpstart']['value']:+,.0f}"
+        f"first return {round(ratios['jumpstart']['value']) or 0:+,}"
     )
 
 

@@ -1,18 +1,30 @@
 """`lifelore live`: live through a stream of tasks in one world."""
 
-from typing import Annotated
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
 
 import typer
+
+if TYPE_CHECKING:
+    from lifelore.agent.live.job_list import Job
+    from lifelore.agent.live.life_settings import Place
 
 Option = typer.Option
 
 
 def live(
-    domain: Annotated[str, Option(help="World: building, or the thesis's worlds lattice and noise.")] = "building",
+    domain: Annotated[
+        str, Option(help="World: building, or the thesis's worlds lattice, noise and advice.")
+    ] = "building",
     map: Annotated[
         str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
     ] = None,
-    tasks: Annotated[int, Option(help="Tasks to live through now.")] = 30,
+    watch: Annotated[
+        str | None,
+        Option(metavar="YAML", help="Like --map; between tasks, read the map again if its files have changed."),
+    ] = None,
+    tasks: Annotated[int | None, Option(help="Tasks to live through now [30; with --goals: its jobs].")] = None,
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres [building: 0.5].")] = None,
     robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [building: 0.2].")] = None,
     destinations: Annotated[
@@ -41,7 +53,26 @@ def live(
         Option(metavar="NAME", help="Name of the building; default: recognise it, or name it after its map."),
     ] = None,
     start: Annotated[
-        str | None, Option(metavar="ROW,COL", help="Cell in which every episode starts; default: any cell.")
+        str | None,
+        Option(
+            metavar="X,Y|NAME|ROW,COL",
+            help="Place in which every episode starts; default: any. building: X,Y in metres of the map's frame, "
+            "or a name in memory; other domains: ROW,COL.",
+        ),
+    ] = None,
+    goal: Annotated[
+        str | None,
+        Option(
+            metavar="X,Y|NAME|ROW,COL",
+            help="Goal of every task; default: drawn for each task. Written as for --start.",
+        ),
+    ] = None,
+    goals: Annotated[
+        str | None,
+        Option(
+            metavar="CSV",
+            help="building: job list with columns time (optional), name, x, y in metres; one task a job.",
+        ),
     ] = None,
     memory: Annotated[
         str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
@@ -57,6 +88,10 @@ def live(
     ] = None,
     l2log: Annotated[
         str | None, Option(metavar="DIR", help="Folder for a log of every episode in L2Logger's format.")
+    ] = None,
+    csv: Annotated[
+        str | None,
+        Option(metavar="FILE", help="CSV in long format: run, task, agent, episode, measure, value."),
     ] = None,
     seed: Annotated[int, Option(help="Draws the world, the tasks and the agents' choices.")] = 0,
     jobs: Annotated[int, Option(help="Threads; results do not depend on their number.")] = 2,
@@ -74,17 +109,18 @@ def live(
     epsilon_floor: Annotated[float, Option(help="q: least ε.")] = 0.01,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> int:
-    """Live through a stream of tasks in one world and learn from each task for the next ones.
+    """Live through tasks in one world and learn from each.
 
     Use it to see what an agent gains from its earlier tasks, in your own map or in a generated office. Memory
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
-    import sys
+    from contextlib import nullcontext
 
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
+    from lifelore.agent.live.long_table import LongTable
     from lifelore.agent.live.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
@@ -93,7 +129,7 @@ def live(
     settings = LifeSettings(
         world=WorldSettings(
             domain,
-            map,
+            _map(map, watch),
             cell=cell,
             robot_radius=robot_radius,
             discount=discount,
@@ -109,17 +145,37 @@ def live(
         memory=MemorySettings(memory, robot, building),
         agent=agent,
         compare=compare,
-        tasks=tasks,
+        tasks=30 if tasks is None else tasks,
         destinations=destinations,
-        start=_row_column(start),
+        start=_place("start", start, domain),
         jobs=jobs,
+        goal=_place("goal", goal, domain),
+        goals=() if goals is None else _jobs(goals, tasks),
+        watch=watch is not None,
     )
+    new_folders = _missing_folders(memory, out)
     if out is not None:
         check_folder(out)
-    notify = lambda line: print(line, file=sys.stderr)  # noqa: E731
-    watch = None if l2log is None else LifeLog(l2log, domain).add
-    with stop_on_interrupt() as stop, progress_bar("living") as progress:
-        life = live_through(settings, progress=progress, stop=stop, watch=watch, notify=notify)
+    log = None if l2log is None else LifeLog(l2log, domain)
+    with (
+        LongTable(csv, seed) if csv is not None else nullcontext() as table,
+        stop_on_interrupt() as stop,
+        progress_bar("living") as progress,
+    ):
+
+        def show(done: int, total: int, label: str) -> None:
+            # Before the first task, when no setting can be refused any more: a mistyped path is seen at once.
+            for folder in new_folders if done == 0 else ():
+                _notify(f"new folder {folder}")
+            progress(done, total, label)
+
+        def record(task: dict, results: dict) -> None:
+            if log:
+                log.add(task, results)
+            if table:
+                table.add_results(task, results)
+
+        life = live_through(settings, progress=show, stop=stop, watch=record, notify=_notify)
         written = write_portfolio(life, out) if out is not None else []
     if as_json:
         print_json(life.report)
@@ -128,13 +184,48 @@ def live(
     return INTERRUPTED if life.stopped else 0
 
 
-def _row_column(text: str | None) -> tuple[int, int] | None:
-    if text is None:
-        return None
+def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
+    """The folders that a life will create."""
+    from lifelore.memory.location import locate
+
+    place = locate(memory)
+    folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
+    return [folder for folder in folders if not folder.exists()]
+
+
+def _map(map: str | None, watch: str | None) -> str | None:
     from lifelore.core.errors import InputError
 
+    if map is not None and watch is not None and map != watch:
+        raise InputError(f"watch and map exclude each other, got {watch} and {map}; give one of them")
+    return map if watch is None else watch
+
+
+def _notify(line: str) -> None:
+    print(line, file=sys.stderr)
+
+
+def _place(argument: str, text: str | None, domain: str) -> "Place | None":
+    """A point in metres or a name in buildings, else a cell (row, column)."""
+    if text is None:
+        return None
+    from lifelore.agent.live.destinations import destination_from_text
+    from lifelore.core.errors import InputError
+
+    if domain == "building":
+        place = destination_from_text(argument, text)
+        return place.point or place.name
     try:
         row, column = (int(part) for part in text.split(","))
     except ValueError:
-        raise InputError(f"start must be ROW,COL, two whole numbers, got '{text}'") from None
+        raise InputError(f"{argument} must be ROW,COL, two whole numbers, got '{text}'") from None
     return row, column
+
+
+def _jobs(path: str, tasks: int | None) -> "tuple[Job, ...]":
+    from lifelore.agent.live.job_list import read_jobs
+    from lifelore.core.errors import InputError
+
+    if tasks is not None:
+        raise InputError(f"tasks does not apply with goals, whose jobs are the tasks, got {tasks}; leave it out")
+    return read_jobs(path)

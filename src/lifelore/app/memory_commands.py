@@ -8,7 +8,7 @@ if TYPE_CHECKING:
     from lifelore.memory import Memory
 
 memory = typer.Typer(
-    help="Show, export, import, merge or forget the content of a memory, for example to share it in a fleet.",
+    help="Show, export, import, merge or forget memories.",
     no_args_is_help=True,
 )
 
@@ -18,12 +18,12 @@ AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdou
 
 @memory.command()
 def show(where: Where = None, as_json: AsJson = False) -> None:
-    """List the robots that contributed, the buildings they know, and the stored records with their sizes."""
+    """List robots, the buildings that they know, and records."""
     from lifelore.app.console import print_json
     from lifelore.app.memory_table import print_memory
     from lifelore.memory import open_memory
 
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         overview = opened.show()
         overview["buildings"] = (
             _buildings(opened) if any(one["kind"] == "building" for one in overview["lore"]) else []
@@ -35,10 +35,13 @@ def show(where: Where = None, as_json: AsJson = False) -> None:
 def export(
     path: Annotated[str, typer.Argument(metavar="FILE")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Write all contributions to one portable file; use it for backups, or to move a memory."""
+    """Write all contributions to one portable file.
+
+    Use it for backups, or to move a memory.
+    """
     from lifelore.memory import open_memory
 
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         count = opened.export_to(path)
     _say({"exported": count, "file": path}, f"{count} contributions written to {path}", as_json)
 
@@ -47,7 +50,10 @@ def export(
 def import_(
     paths: Annotated[list[str], typer.Argument(metavar="FILE…")], where: Where = None, as_json: AsJson = False
 ) -> None:
-    """Add exported files, all or none; contributions stored already or forgotten are skipped."""
+    """Add exported files, all or none.
+
+    Contributions that are stored already or were forgotten are skipped.
+    """
     _merge(paths, where, as_json)
 
 
@@ -57,9 +63,10 @@ def merge(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Add the content of other memories, all or none; use it to share what several robots learnt.
+    """Add the content of other memories, all or none.
 
-    The other memories are not changed. The result does not depend on order and grouping.
+    Use it to share the knowledge of several robots. The other memories are not changed. The result does not depend
+    on order and grouping.
     """
     _merge(others, where, as_json)
 
@@ -74,14 +81,17 @@ def forget(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Delete all contributions of a robot, or a building, for ever: no later import restores them."""
+    """Delete all contributions of a robot, or a building, for ever.
+
+    No later import restores them.
+    """
     from lifelore.agent.live.building_memory import forget_building
     from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
     if (robot is None) == (building is None):
         raise InputError("forget needs a robot or --building NAME, and not both; see: lifelore memory show")
-    with open_memory(where) as opened:
+    with open_memory(where, create=False) as opened:
         if building is not None:
             done = forget_building(opened, building)
             _say(done, f"building {building} forgotten: {done['records']} records", as_json)

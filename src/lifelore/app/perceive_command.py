@@ -8,6 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
+from lifelore.bridges.rosbag import is_bag
+
 Option = typer.Option
 Files = dict[str, str | None]
 """Files named by --pddl, --dot and --plot."""
@@ -51,7 +53,7 @@ def perceive(
         Option("--json", help="One JSON document on stdout and nothing else; with --watch one line a cloud."),
     ] = False,
 ) -> int:
-    """Find objects, contact points and spatial relations in point clouds.
+    """Find objects, contacts and relations in point clouds.
 
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
@@ -75,7 +77,7 @@ def perceive(
         return _watched(watch, settings, files, as_json)
 
     def source(cloud: str):
-        return _out_of_bag(cloud, topic, index or 0, units, labels) if _is_bag(cloud) else cloud
+        return _out_of_bag(cloud, topic, index or 0, units, labels) if is_bag(cloud) else cloud
 
     if clouds and len(clouds) > 1:
         return _several(clouds, source, settings, files, as_json)
@@ -173,14 +175,10 @@ def _cut(segment: str | None, colours: int | None):
 
 
 def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:
-    if (topic is not None or index is not None) and not _is_bag(cloud):
+    if (topic is not None or index is not None) and not is_bag(cloud):
         from lifelore.core.errors import InputError
 
         raise InputError(f"topic and index choose a cloud of a rosbag, but '{cloud}' is no rosbag: leave them out")
-
-
-def _is_bag(path: str) -> bool:
-    return path.endswith((".bag", ".mcap", ".db3")) or os.path.isfile(os.path.join(path, "metadata.yaml"))
 
 
 def _out_of_bag(path: str, topic: str | None, index: int, units: str, labels: str):

@@ -22,7 +22,7 @@ def reproduce(
     seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Run claims of the thesis as experiments and compare the results with the thesis.
+    """Run claims of the thesis and compare the results.
 
     Use it to check a claim yourself. You can stop it and start it again: finished parts are stored.
     """

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from lifelore.memory import Memory
 
 reuse = typer.Typer(
-    help="Choose for each user a policy that served similar users well: fit a log, choose, update, report.",
+    help="Choose for each user a policy that served similar users.",
     no_args_is_help=True,
 )
 
@@ -49,7 +49,7 @@ def fit(
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Learn types of users, and the outcomes of each policy with each type, from logs.
+    """Learn types of users and outcomes of policies from logs.
 
     Use it first, and again when there are more outcomes.
     """
@@ -123,7 +123,10 @@ def report(
     seed: Unused = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Report uplift and regret compared with the control group, with 95 % intervals."""
+    """Report uplift and regret with 95 % intervals.
+
+    Both compare with the control group.
+    """
     from lifelore.agent.reuse.report import report as reported
     from lifelore.app.console import print_json
 
@@ -160,7 +163,10 @@ def add(
     where: Where = None,
     as_json: AsJson = False,
 ) -> None:
-    """Add a policy: a retired one as it was, a new one first to the control group only."""
+    """Add a new policy, or use a retired policy again.
+
+    A new policy is first given to the control group only.
+    """
     from lifelore.agent.reuse.one_user import add as added
 
     with _opened(name, where) as (memory, study):
@@ -190,7 +196,7 @@ def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
     from lifelore.agent.reuse.study import open_study
     from lifelore.memory import open_memory
 
-    with open_memory(where, durable=True) as memory:
+    with open_memory(where, durable=True, create=False) as memory:
         yield memory, open_study(memory, name)
 
 

@@ -28,10 +28,11 @@ def scenes(
     jobs: Annotated[int, Option(help="Processes; the files do not depend on their number.")] = 1,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Simulate objects that fall on a table, and record them with a simulated depth camera (extra: sim).
+    """Simulate scenes of objects on a table (extra: sim).
 
-    Use it to make labelled scenes for learn-relations or for tests. It writes a PCD file for each scene, and the
-    true relations, planes and gaps of all scenes as relations.csv, planes.csv and gaps.csv.
+    The objects fall on the table, and a simulated depth camera records them. Use it to make labelled scenes for
+    learn-relations or for tests. It writes a PCD file for each scene, and the true relations, planes and gaps of
+    all scenes as relations.csv, planes.csv and gaps.csv.
     """
     from lifelore.agent.perceive.scenes import make_scenes
     from lifelore.app.console import print_json, progress_bar

@@ -14,7 +14,9 @@ def teach(
         str, Option(metavar="FILE", help="File that the demonstrations are appended to, one JSON line a step.")
     ],
     name: Annotated[str, Option(help="Name of the person who teaches.")] = "person",
-    domain: Annotated[str, Option(help="World: lattice, noise or building.")] = "noise",
+    domain: Annotated[
+        str, Option(help="World: building, or the thesis's worlds lattice, noise and advice.")
+    ] = "noise",
     map: Annotated[
         str | None, Option(metavar="YAML", help="building: a ROS map; default: a generated office.")
     ] = None,
@@ -27,9 +29,10 @@ def teach(
     ] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout; pictures go to stderr.")] = False,
 ) -> None:
-    """Walk to a few goals with w a s d or the arrow keys, and end each line with Enter.
+    """Walk to goals by keyboard, to teach the agent a prior.
 
-    Use it to record demonstrations, from which the agent learns a prior. The keys may also come from a pipe.
+    Use w a s d or the arrow keys, and end each line with Enter. Use it to record demonstrations, from which the
+    agent learns a prior. The keys may also come from a pipe.
     """
     from lifelore.agent.teach import teach as run
     from lifelore.app.console import print_json

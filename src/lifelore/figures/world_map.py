@@ -1,5 +1,6 @@
 """The world an agent lives in, and the ways it has learnt to take through it."""
 
+import textwrap
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+_LETTERS = 9.5
+"""Letters of a title that fit in an inch."""
+_LABEL = 3.0
+"""Inches of a label of the legend, with its mark; narrow pictures get fewer columns."""
 _TASK_COLOURS = (BLUE, VERMILION, GREEN, PURPLE, ORANGE, SKY)
 
 
@@ -55,7 +60,8 @@ def draw_world_map(
     cells = np.asarray(cells)
     height, width = np.ptp(cells, axis=0) + 3
     with house_style():
-        figure = new_figure(*_size(height, width))
+        inches = _size(height, width)
+        figure = new_figure(*inches)
         axes = figure.subplots()
         draw_floor_plan(axes, shape, cells, neighbour, wall_width=_wall_width(width))
         for i, way in enumerate(ways):
@@ -70,9 +76,11 @@ def draw_world_map(
         axes.plot([], [], "o", color=GREY, markersize=6, markeredgecolor=PAPER, label="start of a way")
         if cell:
             draw_scale_bar(axes, cell)
-        axes.set_title(title)
-        axes.set_anchor("N")  # else the layout takes room for the title off a plan it has not fitted yet
-        figure.legend(loc="outside lower center", ncols=2 if width < 60 else 3, markerscale=0.7)
+        # The plan may be much narrower than the figure, and a title of the axes would begin at the plan.
+        figure.suptitle(textwrap.fill(title, int(_LETTERS * inches[0])), x=0.01, horizontalalignment="left")
+        axes.set_anchor("N")
+        columns = int(np.clip(inches[0] / _LABEL, 1, 3))
+        figure.legend(loc="outside lower center", ncols=columns, markerscale=0.7)
     return figure
 
 

@@ -8,20 +8,22 @@ from typing import Any, Self
 
 from sqlalchemy import URL, Connection, text
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import audit, cache, ledger, merging, overview
 from lifelore.memory.contribution import new_contribution
 from lifelore.memory.export import export
 from lifelore.memory.folding import fold
 from lifelore.memory.location import locate
-from lifelore.memory.store import Store, check_source, open_file, open_postgresql, open_source
+from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 
 NAMED = 10
 """Maximum number of robots that an error message lists."""
 
 
-def open_memory(where: str | Path | None = None, *, durable: bool = False, read_only: bool = False) -> "Memory":
+def open_memory(
+    where: str | Path | None = None, *, durable: bool = False, read_only: bool = False, create: bool = True
+) -> "Memory":
     """Open a memory; create it if there is none.
 
     Parameters
@@ -36,12 +38,15 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False, read_
         its own settings.
     read_only : bool
         Only read an existing memory; do not create, migrate or write to one.
+    create : bool
+        With False the memory must exist. If its file or folder cannot be written, it is opened only for reading.
 
     Raises
     ------
     StoreError
         The file is damaged, belongs to another program or a newer Lifelore, or cannot be written; it is not
-        changed. With `read_only` also if there is no memory, or one of an older Lifelore.
+        changed. With `read_only` also if there is no memory, or one of an older Lifelore. With ``create=False``
+        also if there is no memory.
     InputError
         The URL is not one of PostgreSQL.
     MissingExtraError
@@ -61,6 +66,10 @@ def open_memory(where: str | Path | None = None, *, durable: bool = False, read_
     place = locate(where)
     if read_only:
         return Memory(open_source(place))
+    if not create:
+        if where is None and isinstance(place, Path) and not place.exists():
+            raise StoreError(f"there is no memory yet: the first life creates {place}; name another with --memory")
+        return Memory(open_existing(place, durable=durable))
     return Memory(open_file(place, durable=durable) if isinstance(place, Path) else open_postgresql(place))
 
 

@@ -91,11 +91,16 @@ def _look(path: Path, *, immutable: bool) -> None:
                 raise StoreError(f"memory {path} is damaged ({message}); nothing was changed: restore an export")
 
 
+def is_writable(path: Path) -> bool:
+    """Whether SQLite may write the file, and its side files into the folder."""
+    return os.access(path, os.W_OK) and os.access(path.parent, os.W_OK)
+
+
 def connect_source(path: Path) -> sqlite3.Connection:
     """A connection that reads another memory and does not change its content."""
     if not is_in_use(read_header(path)):
         return connect(path, "ro")
-    if os.access(path, os.W_OK) and os.access(path.parent, os.W_OK):
+    if is_writable(path):
         # An ordinary connection takes SQLite's locks and deletes its side files when it closes.
         conn = connect(path, "rw")
         conn.execute("PRAGMA query_only = ON")

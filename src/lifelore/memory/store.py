@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Literal
 
@@ -12,7 +12,7 @@ from lifelore.core.errors import MissingExtraError, StoreError
 from lifelore.memory import schema
 from lifelore.memory.location import describe
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
-from lifelore.memory.sqlite_file import connect, connect_source, refuse_unless_ours
+from lifelore.memory.sqlite_file import connect, connect_source, is_writable, refuse_unless_ours
 
 # Any fixed number, the same for all processes that write to a database.
 _WRITERS_LOCK = schema.APPLICATION_ID
@@ -77,13 +77,18 @@ class Store:
             with self.writing() as conn:
                 schema.take_step(conn, number)
 
-    def require_current(self) -> None:
-        """Raise StoreError unless all migrations are done; the source of a merge is never migrated."""
+    def require_memory(self) -> int:
+        """The number of the memory's last migration; StoreError if the database holds no memory."""
         with self.reading() as conn:
             found = schema.version(conn)
         schema.refuse_newer(self.location, found)
         if found == 0:
             raise StoreError(f"memory {self.location} holds no Lifelore memory; check the name")
+        return found
+
+    def require_current(self) -> None:
+        """Raise StoreError unless all migrations are done; the source of a merge is never migrated."""
+        found = self.require_memory()
         if found < schema.LATEST:
             raise StoreError(
                 f"memory {self.location} is of an older Lifelore (schema {found}); open it once by itself"
@@ -110,6 +115,17 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
 def open_postgresql(url: URL) -> Store:
     """Open the memory in a PostgreSQL database; create it if there is none."""
     return _ready(_server(url), None)
+
+
+def open_existing(place: Path | URL, *, durable: bool = False) -> Store:
+    """Open a memory that exists; only for reading if its file or folder cannot be written."""
+    if isinstance(place, Path):
+        check_source(place)
+        if not is_writable(place):
+            return open_source(place, checked=True)
+    with closing(_source_file(place) if isinstance(place, Path) else _server(place)) as found:
+        found.require_memory()
+    return open_file(place, durable=durable) if isinstance(place, Path) else open_postgresql(place)
 
 
 def open_source(place: Path | URL, *, checked: bool = False) -> Store:

@@ -66,6 +66,7 @@ def test_as_it_goes_normally_advice_falls_silent():
     assert walk.gain[-1] == pytest.approx(np.log(1.2 / 1.1))
 
 
+@pytest.mark.slow
 @settings(max_examples=40)
 @given(st.integers(0, 10**6), st.integers(1, 3), st.booleans(), st.sampled_from([1.0, 0.4]))
 def test_as_the_naive_twin(seed, n_goals, follows_advice, share):

@@ -1,6 +1,7 @@
 """Action priors: closed forms, a dictionary twin, merging, forms, masks, entropy, and records."""
 
 import math
+import sys
 
 import numpy as np
 import pytest
@@ -8,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.action.priors.action_prior import FORMS, MOST_WEIGHT, ONE, ActionPrior
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError, MissingExtraError, NotFoundError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 
@@ -359,3 +360,39 @@ def test_broken_rules(call, message):
 def test_an_unknown_form_names_the_known_ones():
     with pytest.raises(NotFoundError, match=f"one of {', '.join(FORMS)}, got 'mean'"):
         ActionPrior(2).probs([1], "mean")
+
+
+# ---- tables ------------------------------------------------------------------------------------------
+
+
+def test_columns_in_long_format_by_hand():
+    prior = ActionPrior(2, alpha0=0.5)
+    prior.update([9, 7, 7], [[False, True], [True, False], [True, True]])
+    columns = prior.to_columns(labels={7: ("wall", 1)})
+    assert {name: column.tolist() for name, column in columns.items()} == {
+        "context": [7, 7, 9, 9],
+        "label": ["('wall', 1)", "('wall', 1)", "9", "9"],
+        "action": [0, 1, 0, 1],
+        "count": [2.0, 1.0, 0.0, 1.0],
+        "probability": [0.625, 0.375, 0.25, 0.75],
+    }
+    assert list(prior.to_columns()) == ["context", "action", "count", "probability"]
+    assert all(len(column) == 0 for column in ActionPrior(2).to_columns({}).values())
+
+
+def test_a_frame_is_the_columns_where_pandas_is_installed():
+    pandas = pytest.importorskip("pandas")
+    prior = counted(2.0, 1.0)
+    assert prior.to_frame().equals(pandas.DataFrame(prior.to_columns()))
+
+
+def test_a_frame_without_pandas_names_the_next_step(monkeypatch):
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(MissingExtraError, match=r"pip install pandas, or use to_columns\(\)"):
+        counted(2.0, 1.0).to_frame()
+
+
+def test_repr_gives_the_size_and_the_key():
+    prior = prior_of([([(1, [True, False, True]), (2, [True, False, False])], 0.5)])
+    assert repr(prior) == "<ActionPrior: 3 actions, 2 contexts, 1.5 counts, alpha0=0.1, key='key'>"
+    assert repr(ActionPrior(2)) == "<ActionPrior: 2 actions, 0 contexts, 0 counts, alpha0=0.1>"

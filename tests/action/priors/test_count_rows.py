@@ -31,6 +31,7 @@ def test_merged_rows_are_a_dictionary(known, added):
     assert total.tolist() == [twin[code] for code in sorted(twin)]
 
 
+@pytest.mark.slow
 @given(st.lists(codes, min_size=1, max_size=30))
 def test_sorting_by_digits_is_a_stable_sort(wanted):
     wanted = np.array(wanted, np.int64)

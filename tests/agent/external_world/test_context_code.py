@@ -38,6 +38,7 @@ FLAT = LEAVES | st.lists(LEAVES, max_size=3).map(tuple) | st.frozensets(LEAVES, 
 PARTS = FLAT | st.lists(FLAT, max_size=3).map(tuple)
 
 
+@pytest.mark.slow
 @given(PARTS, PARTS)
 def test_contexts_share_a_code_exactly_if_they_are_equal(one, other):
     assert (context_code(one) == context_code(other)) == (one == other)

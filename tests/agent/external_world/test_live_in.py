@@ -92,15 +92,34 @@ def test_only_what_is_worth_something_is_counted(tmp_path):
     assert about == {"prior": "foreign", "world": "doors", "means": "doors"}
 
 
-def test_a_world_without_positive_reward_teaches_nothing():
+def test_a_world_whose_returns_are_all_equal_teaches_nothing_and_warns():
     class Dull(Doors):
         def step(self, action):
             return "behind", -1.0, True, False
 
-    report = live_in(Dull(), tasks=3, episodes=20)
+    with pytest.warns(UserWarning, match="The action prior is empty after 3 tasks in doors"):
+        report = live_in(Dull(), tasks=3, episodes=20)
     assert report["n_contexts"] == 0
+    assert len(report["warnings"]) == 1
     assert numbers_of(report, "lore", "mean_return") == numbers_of(report, "scratch", "mean_return")
     assert not any(numbers_of(report, "lore", "reached"))
+
+
+def test_a_world_of_costs_teaches_by_the_best_returns():
+    """Door 3 costs 1, every other door 10: the best tenth of the episodes took door 3."""
+
+    class Costly(Doors):
+        def step(self, action):
+            return "behind", -1.0 if action == 3 else -10.0, True, False
+
+    report = live_in(Costly(), tasks=12, episodes=60)
+    assert (report["n_contexts"], report["warnings"]) == (1, [])
+    # After t tasks the first choice is right with (t + α⁰) / (t + 8 α⁰), 0.89 on average over the last six tasks:
+    # two wrong choices of six, which make the mean -4, have odds below 1 in 7.
+    assert np.mean(numbers_of(report, "lore", "first_return")[6:]) > -4
+    # Uniform exploration takes door 3 first once in eight tasks: a mean of -8.9.
+    lore, scratch = (np.mean(numbers_of(report, who, "mean_return")) for who in ("lore", "scratch"))
+    assert lore > scratch + 1
 
 
 @pytest.mark.slow
@@ -116,6 +135,7 @@ def test_first_choice_follows_the_counts():
     assert abs(scratch - 1 / 8) < 5 * np.sqrt(1 / 8 * 7 / 8 / 300)
 
 
+@pytest.mark.filterwarnings("ignore:The action prior is empty")
 def test_both_agents_are_given_the_same_episodes():
     world = Doors()
     live_in(world, tasks=2, episodes=5)
@@ -207,6 +227,7 @@ def test_two_lives_on_one_memory_are_one_life(tmp_path):
         assert memory.check() == []
 
 
+@pytest.mark.filterwarnings("ignore:The action prior is empty")
 def test_lore_is_shared_by_key_and_number_of_actions_only(tmp_path):
     path = tmp_path / "m.db"
     live_in(Doors(), tasks=4, episodes=60, memory=path, key="doors", robot="a")
@@ -248,6 +269,7 @@ def test_report_is_plain_json_of_the_shape_of_live():
         "tasks",
         "summary",
         "memory",
+        "warnings",
         "seconds",
     }
     assert (report["domain"], report["map"], report["n_states"]) == ("doors", None, 1)
@@ -269,6 +291,7 @@ def test_same_seed_same_life_and_another_seed_another():
 # ---- stopping ------------------------------------------------------------------------------------
 
 
+@pytest.mark.filterwarnings("ignore:The action prior is empty")
 def test_stop_keeps_the_finished_tasks(tmp_path):
     stop, path = Event(), tmp_path / "m.db"
 

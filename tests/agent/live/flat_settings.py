@@ -6,7 +6,7 @@ from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, Me
 from lifelore.domains.worlds import WorldSettings
 
 LEARNING = ("learner", "episodes", "max_steps", "learning_rate", "epsilon", "epsilon_decay", "epsilon_floor")
-LIFE = ("agent", "tasks", "destinations", "start", "jobs")
+LIFE = ("agent", "tasks", "destinations", "start", "jobs", "goal", "goals", "watch")
 
 
 def flat_settings(**flat: Any) -> LifeSettings:

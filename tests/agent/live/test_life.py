@@ -168,6 +168,7 @@ def test_a_new_door_is_found(tmp_path):
     assert all(task["agents"]["lore"]["reached"] for task in life.report["tasks"])
 
 
+@pytest.mark.slow
 def test_an_entirely_different_building_on_the_same_frame_is_not_mixed_in(tmp_path):
     live(settings(tmp_path, domain="building", seed=1, tasks=2))
     life = live(settings(tmp_path, domain="building", seed=2, tasks=1, prior="none", robot="guest"))

@@ -10,7 +10,7 @@ import pytest
 
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.life import Life, live
-from lifelore.agent.live.report import FILES, PRIOR_FILES, check_folder, write_portfolio
+from lifelore.agent.live.report import FILES, MASK_FILES, PRIOR_FILES, check_folder, write_portfolio
 from lifelore.core.errors import InputError, StoreError
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.figures.style import colour_of
@@ -18,6 +18,8 @@ from lifelore.figures.style import colour_of
 from .flat_settings import flat_settings
 
 PNG = b"\x89PNG\r\n\x1a\n"
+GRID_FILES = [name for name in FILES if name not in MASK_FILES]
+"""Files of a life in a world without a map."""
 _QUICK = {"tasks": 3, "jobs": 1}
 
 
@@ -30,7 +32,7 @@ def life(tmp_path_factory) -> Life:
 def folder(life, tmp_path_factory) -> Path:
     """The portfolio of `life`, to be read only."""
     out = tmp_path_factory.mktemp("portfolio") / "deep" / "out"
-    assert write_portfolio(life, str(out)) == [str(out / name) for name in FILES]
+    assert write_portfolio(life, str(out)) == [str(out / name) for name in GRID_FILES]
     return out
 
 
@@ -44,8 +46,8 @@ def _no_constant(name: str):
 
 @pytest.mark.slow
 def test_everything_is_written_and_nothing_else_is_left(folder):
-    assert sorted(path.name for path in folder.iterdir()) == sorted(FILES)
-    for name in FILES:
+    assert sorted(path.name for path in folder.iterdir()) == sorted(GRID_FILES)
+    for name in GRID_FILES:
         content = (folder / name).read_bytes()
         if name.endswith(".png"):
             assert content.startswith(PNG)
@@ -58,6 +60,7 @@ def test_summary_is_the_report_as_strict_json(life, folder):
     assert json.loads(text, parse_constant=_no_constant) == json.loads(json.dumps(life.report))
 
 
+@pytest.mark.slow
 def test_paths_walk_from_cell_to_cell_and_end_at_their_goal(life, folder):
     with (folder / "paths.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -74,6 +77,7 @@ def test_paths_walk_from_cell_to_cell_and_end_at_their_goal(life, folder):
         assert np.abs(np.diff(path, axis=0)).sum(axis=1) == pytest.approx(life.world.frame.cell, abs=1e-3)
 
 
+@pytest.mark.slow
 def test_the_prior_reads_back_as_a_map(life, folder):
     assert read_occupancy_map(folder / "prior.yaml").state.shape == life.world.shape
 
@@ -87,7 +91,7 @@ def test_without_a_prior_its_files_are_not_there_nor_left_over(tmp_path, setting
         (out / name).write_text("of an earlier life")
     written = write_portfolio(_life(tmp_path, tasks=2, **settings), str(out))
     assert not any((out / name).exists() for name in PRIOR_FILES)
-    assert written == [str(out / name) for name in FILES if name not in PRIOR_FILES]
+    assert written == [str(out / name) for name in GRID_FILES if name not in PRIOR_FILES]
 
 
 @pytest.mark.slow
@@ -103,7 +107,7 @@ def test_without_a_prior_its_files_are_not_there_nor_left_over(tmp_path, setting
 )
 def test_other_lives(tmp_path, settings):
     written = write_portfolio(_life(tmp_path, **settings), str(tmp_path / "out"))
-    assert {Path(path).name for path in written} >= set(FILES) - set(PRIOR_FILES)
+    assert {Path(path).name for path in written} >= set(GRID_FILES) - set(PRIOR_FILES)
 
 
 def test_a_life_without_a_task_leaves_its_report(life, tmp_path):

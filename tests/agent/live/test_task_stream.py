@@ -31,7 +31,9 @@ def test_destinations_recur():
 def test_starts_are_anywhere_but_the_goal_or_the_given_start():
     task = stream_of().task(0)
     assert set(task.starts) == set(range(LATTICE.n_states)) - {task.goal}
-    assert stream_of(start=(1, 3)).task(0).starts.tolist() == [2]
+    fixed = TaskStream(LATTICE, flat_settings(), start=2)
+    assert fixed.task(0).starts.tolist() == [2]
+    assert fixed.task(0, goal=7).goal == 7
 
 
 def test_agents_share_their_streams():

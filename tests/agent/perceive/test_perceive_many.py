@@ -32,6 +32,7 @@ def without_seconds(entry: dict) -> dict:
     return {key: value for key, value in entry.items() if key not in ("seconds", "source")}
 
 
+@pytest.mark.slow
 def test_each_is_what_it_is_alone(clouds):
     entries = list(perceive_many(clouds, UPRIGHT))
     assert [entry["source"] for entry in entries] == clouds

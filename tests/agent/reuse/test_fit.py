@@ -119,6 +119,7 @@ def test_contexts_have_priors_of_their_own(fitted):
     assert study.prior_of(None) is study.library.prior
 
 
+@pytest.mark.slow
 def test_fitting_again_keeps_users_and_what_was_retired(fitted, memory):
     _, study = fitted(list(many(MEANS)))
     made = choose(memory, study, "ann")

@@ -60,6 +60,7 @@ def test_policies_are_chosen_as_often_as_said(memory):
         assert chosen[policy] / 200 == pytest.approx(probability, abs=0.177)
 
 
+@pytest.mark.slow
 def test_the_same_seed_chooses_the_same_and_another_need_not(memory, tmp_path):
     study = study_of()
     first = [choose(memory, study, f"user {i}", seed=1)["policy"] for i in range(30)]
@@ -180,6 +181,7 @@ def test_a_context_gives_the_prior_and_is_kept(memory):
     assert choose(memory, study, "bo", context="never heard of")["belief"]["reader"] == pytest.approx(0.6)
 
 
+@pytest.mark.slow
 def test_a_retired_policy_is_chosen_no_more_and_stays_evidence(memory):
     study = study_of(control=0.3)
     study.keep(memory)
@@ -207,6 +209,7 @@ def test_the_incumbent_cannot_be_retired(memory):
         study_of(incumbent="none")
 
 
+@pytest.mark.slow
 def test_a_new_policy_goes_to_the_held_out_until_a_fit_knows_it(memory):
     study = add(memory, study_of(control=0.5), "new")
     made = [choose(memory, study, f"user {i}") for i in range(120)]

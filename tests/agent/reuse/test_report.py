@@ -43,6 +43,7 @@ def lived(memory, study, users=12, times=3):
     return said
 
 
+@pytest.mark.slow
 def test_numbers_by_hand(memory, study):
     said = lived(memory, study)
     document = report(memory, study)
@@ -64,6 +65,7 @@ def test_numbers_by_hand(memory, study):
     assert document["policies"][0]["outcome"]["value"] == pytest.approx(expected)
 
 
+@pytest.mark.slow
 def test_the_interval_of_many_users_is_the_normal_one(memory, study, monkeypatch):
     said = lived(memory, study, 20)
     resampled = report(memory, study)["personal"]
@@ -78,6 +80,7 @@ def test_the_interval_of_many_users_is_the_normal_one(memory, study, monkeypatch
     assert set(document["personal"]) == set(resampled)
 
 
+@pytest.mark.slow
 def test_regret_is_what_the_last_belief_says(memory, study):
     """One user, surely of the first type in the end: x brings 8, y 2."""
     user = next(f"u{i}" for i in range(99) if study.holds_out(f"u{i}"))
@@ -105,6 +108,7 @@ def test_the_folder_and_the_log(memory, study, tmp_path):
     assert fields["probability"] == ("0.5" if fields["group"] == "control" else "1.0")
 
 
+@pytest.mark.slow
 def test_a_decision_is_a_whole_number_on_the_axis(memory, study):
     lived(memory, study)
     ticks = draw_reuse_report(report(memory, study)).axes[0].get_xticks()

@@ -20,21 +20,26 @@ from .fresh_python import run
 KERNELS_RUN = Path(__file__).parents[1] / "kernels_run.py"
 PACKAGE = Path(lifelore.__file__).parent
 
+DRAWING = """
+from lifelore.core.compiled.jit import kernel
+from lifelore.core.compiled.random_state import next_uniform
+
+@kernel(allocates=False)
+def draw(state, out):
+    for i in range(out.size):
+        out[i] = next_uniform(state)
+"""
+"""A kernel that calls a kernel of another file, and compiles in a tenth of the time of a learner."""
+
 DRAW = """
 import sys
 import numpy as np
-from lifelore.core.learning.curve import new_curve
-from lifelore.core.mdp import Tables
-from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
 import lifelore
+from lifelore.core.drawing import draw
 assert lifelore.__file__.startswith(sys.argv[1]), lifelore.__file__
-tables = Tables(
-    np.zeros((1, 2, 1), np.int32), np.zeros((1, 2, 1)), np.full((1, 2, 1), 2, np.uint8), np.ones(1),
-    np.zeros(1, np.int32),
-)
-who, curve = new_learner(1, 2, np.random.default_rng(0), np.random.default_rng(1)), new_curve(1)
-learn(tables, uniform_rows(tables), Schedule(np.ones(1), np.ones(1), 50, 0.9), who, curve, 50)
-print(who.visits[0, 0], who.own_random[0])
+state, out = np.array([1, 2], np.uint64), np.zeros(50)
+draw(state, out)
+print(out.sum(), state[0])
 """
 
 
@@ -53,9 +58,10 @@ def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
 
 @pytest.fixture
 def copied(tmp_path):
-    """A copy of the package, and what `DRAW` prints with it in a fresh process."""
+    """A copy of the package with the kernel `DRAWING`, and what `DRAW` prints with it in a fresh process."""
     package = tmp_path / "lifelore"
     shutil.copytree(PACKAGE, package, ignore=shutil.ignore_patterns("__pycache__"))
+    (package / "core" / "drawing.py").write_text(DRAWING)
 
     def draw(**environment) -> str:
         paths = {"PYTHONPATH": str(tmp_path), "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "NUMBA_DISABLE_JIT": "0"}
@@ -108,6 +114,7 @@ def test_the_cache_is_named_after_all_that_kernels_read(tmp_path):
     assert PACKAGE / "core" / "mdp.py" in kernel_sources(PACKAGE)
 
 
+@pytest.mark.slow
 def test_imports_are_found_as_python_finds_them(tmp_path):
     """The quick reading of import statements beside the parser, on this package and on unusual layouts."""
 
@@ -209,7 +216,7 @@ def test_compiled_kernels_travel_with_their_folder(copied, tmp_path):
     kept = {path: path.stat().st_mtime_ns for path in cache.rglob("*.nb*")}
     said = run(
         "-c",
-        DRAW + "print(sum(learn.stats.cache_misses.values()))",
+        DRAW + "print(sum(draw.stats.cache_misses.values()))",
         str(other),
         PYTHONPATH=str(other),
         NUMBA_CACHE_DIR=str(cache),

@@ -73,6 +73,7 @@ def test_the_last_share_is_at_least_one_episode():
     assert asymptotes(WITH, 1).tolist() == [6.0, 7.0, 5.0]
 
 
+@pytest.mark.slow
 @settings(max_examples=30, deadline=None)
 @given(curves, curves, st.integers(1, 6), st.integers(0, 60))
 def test_trading_places_turns_the_signs(own, other, window, threshold):

@@ -162,6 +162,7 @@ def test_better_than_the_rest_is_not_a_tie():
     assert np.array_equal(who.own_random, before)  # greedy and untied: the learner's stream is not read
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), st.sampled_from([1, 2, 3]), st.sampled_from([0.0, 0.1, 1.0]))
 def test_same_as_the_naive_twin(draw_world, naive_learn, seed, n_outcomes, epsilon):
@@ -211,6 +212,7 @@ def test_threads_change_no_bit(draw_world, threads):
     assert not np.array_equal(alone[0].q, alone[1].q)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(5))
 def test_converges_to_the_optimum_where_every_action_keeps_mass(draw_world, seed):
     tables = draw_world(seed, n_states=10, n_actions=3)

@@ -75,6 +75,7 @@ def slow(life: np.ndarray) -> dict[str, float]:
     }
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(lives, lives)
 def test_lives_are_measured_one_by_one(one, other):

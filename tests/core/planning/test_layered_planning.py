@@ -24,6 +24,7 @@ def rows_of(tables: Tables, size: int):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(seeds, st.sampled_from([1, 3]), st.sampled_from([0.0, 0.5, 0.95]))
 def test_same_as_sweeps_over_all_layers(draw_layers, seed, n_outcomes, discount):

@@ -89,6 +89,7 @@ def test_layouts_by_name():
         s_maze(400)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", layout_names())
 def test_every_layout_can_be_played_by_every_size(name):
     game = ball_game(name)
@@ -185,6 +186,7 @@ def test_a_ball_that_stays_makes_whole_moves_or_none(data):
     assert travel(STAYS, STAYS.radius[kind], x, y, dx, dy, distance) == expected
 
 
+@pytest.mark.slow
 def test_the_goal_is_reached_by_passing_over_its_edge():
     assert step(FIELD, 0, 800, 920, EAST, 40, 0.0, NO_SLIP, *NO_PUSH) == (840, 920, False, True)
     assert not step(FIELD, 0, 800, 920, EAST, 30, 0.0, NO_SLIP, *NO_PUSH)[3]
@@ -254,6 +256,7 @@ def test_costs_equal_a_plain_dijkstra(name, radius, care):
     np.testing.assert_allclose(found, naive_costs(game.field.clearance, radius, game.layout.goal, care), rtol=1e-5)
 
 
+@pytest.mark.slow
 def test_costs_in_the_open_by_hand():
     game = ball_game(open_field())
     # Without care: from x = 540 it is 300 straight to the goal at x = 840; on the border no ball fits.

@@ -131,13 +131,21 @@ def test_a_cell_need_not_be_a_multiple_of_a_pixel():
     assert world.cells.tolist() == [[0, 1], [0, 2]]
 
 
-def test_obstacles_grow_by_the_radius_and_unknown_does_not():
+def test_obstacles_grow_by_the_radius_and_specks_of_unknown_do_not():
     # The obstacle blocks three pixels on each side (0.3 m, centre to centre); the unknown blocks itself.
-    for plan, cells in (
-        ("......#......?..", [0, 1, 2]),
-        ("......#.........", [10, 11, 12, 13, 14, 15]),
-    ):
-        assert building_from_map(floor_plan(plan), 0.1, 0.3).cells[:, 1].tolist() == cells
+    middle = "..........#....?......"
+    free = "." * len(middle) + "\n"
+    cells = building_from_map(floor_plan(4 * free + middle + "\n" + 4 * free), 0.1, 0.3).cells
+    assert cells[cells[:, 0] == 4, 1].tolist() == [14, 16, 17, 18]
+
+
+def test_the_picture_s_edge_is_an_obstacle():
+    # Nothing is known beyond the edge: a robot of 0.3 m keeps three of ten pixels away from each side.
+    cells = building_from_map(floor_plan("..........\n" * 10), 0.1, 0.3).cells
+    assert cells.min(axis=0).tolist() == [3, 3]
+    assert cells.max(axis=0).tolist() == [6, 6]
+    with pytest.raises(InputError, match="no free cell is left for robot_radius 99"):
+        building_from_map(floor_plan("..........\n" * 10), 0.1, 99.0)
 
 
 def test_the_percept_sees_a_thin_wall():
@@ -180,17 +188,20 @@ def test_a_beam_through_a_window_is_no_place_for_a_robot():
 
 def test_specks_of_unknown_are_not_free_and_do_not_grow():
     plan = floor_plan("""
-        .......
-        ...?...
-        .......
-        .??....
-        .??....
+        .........
+        .........
+        ....?....
+        .........
+        ..??.....
+        ..??.....
+        .........
+        .........
     """)
     world = building_from_map(plan, cell=0.1, robot_radius=0.1)
     free = world.state_of >= 0
-    assert not free[1, 3]
-    assert free[0, 3]  # beside a speck of 0.01 m²
-    assert not free[3, 3]  # beside an island of 0.04 m²
+    assert not free[2, 4]
+    assert free[1, 4]  # beside a speck of 0.01 m²
+    assert not free[4, 4]  # beside an island of 0.04 m²
 
 
 def test_what_makes_the_world_is_in_its_fingerprint():
@@ -225,6 +236,8 @@ def build_slowly(occupancy: OccupancyMap, cell: float, radius: float):
     def is_free(r, c):
         if not (0 <= r < rows and 0 <= c < columns and state[r, c] == FREE):
             return False
+        if min(r + 1, rows - r, c + 1, columns - c) * resolution <= radius + 1e-9:
+            return False  # the centre of a pixel outside the picture is as near
         if not len(obstacles):
             return True
         distance = np.sqrt(((obstacles - (r, c)) ** 2).sum(axis=1)) * resolution

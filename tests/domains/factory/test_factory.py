@@ -127,6 +127,7 @@ def test_one_component_on_a_line_by_hand(discount):
     assert not q[task.completed].any()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("components", [[4], [0, 8], [1, 3, 5]])
 def test_layer_by_layer_same_as_sweeps_over_everything(components):
     task = factory().task(components)

@@ -44,6 +44,7 @@ def test_the_maze_of_figure_3_1():
     assert world.neighbour.size == 76
 
 
+@pytest.mark.slow
 def test_the_thesis_range_and_defaults():
     worlds = [noise_maze(np.random.default_rng(seed)) for seed in range(20)]
     shares = np.array([1 - world.n_states / 441 for world in worlds])

@@ -22,6 +22,7 @@ def test_a_camera_looks_down_at_the_origin_at_the_asked_depth():
     assert pytest.approx([0, -np.cos(np.radians(40)), -np.sin(np.radians(40))]) == view.rotation.T @ [0, 0, 1]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("camera", "depth", "stated"), [(KINECT, 0.73, 1.9e-3), (STEREO, 0.8, 0.4e-3)], ids=["kinect", "stereo"]
 )

@@ -196,6 +196,7 @@ def test_labels_are_objects_above_the_table(camera):
     assert abs(scene.cloud.of(TABLE)[:, 2].mean()) < 0.003
 
 
+@pytest.mark.slow
 def test_a_users_mesh_takes_part(tmp_path):
     trimesh = pytest.importorskip("trimesh")
     path = tmp_path / "brick.stl"

@@ -73,6 +73,7 @@ def test_the_algorithm_as_printed_gives_the_same_decisions(epsilon):
             beat.end_episode()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("epsilon", [0.0, 0.4])
 def test_beat_is_policy_reuse(epsilon):
     """C4.16: ε-greedy, transition signal, action sets as policies, same generator."""
@@ -91,6 +92,7 @@ def test_beat_is_policy_reuse(epsilon):
         assert np.array_equal(beat.log_belief, reuse.log_belief)
 
 
+@pytest.mark.slow
 def test_logs_hold_what_products_lose():
     lib, probs, _ = library()
     beat, world, state, product = Beat(lib), np.random.default_rng(2), 0, np.ones(N_TYPES)

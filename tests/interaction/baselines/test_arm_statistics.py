@@ -8,6 +8,7 @@ from lifelore.interaction.baselines.arm_statistics import ArmStatistics
 payoffs = st.lists(st.floats(-1e3, 1e3), min_size=2, max_size=20)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(payoffs, payoffs)
 def test_one_at_a_time_gives_the_mean_and_deviation_of_all(first, second):

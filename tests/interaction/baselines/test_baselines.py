@@ -49,6 +49,7 @@ def test_one_task_is_a_batch_of_one(name, library):
     assert isinstance(make(name, library).select(), int)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", NAMES)
 def test_the_best_policy_of_each_task_is_played_in_the_end(name, library):
     noise = np.random.default_rng(2).normal(0, 0.1, (1500, 6, 4))

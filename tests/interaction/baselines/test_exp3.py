@@ -35,6 +35,7 @@ def test_policies_are_drawn_by_their_probabilities():
     assert np.abs(shares - probs).max() < 0.0177
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.lists(st.tuples(st.integers(0, 2), st.floats(-1e6, 1e6)), max_size=60),

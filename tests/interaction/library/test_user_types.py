@@ -23,6 +23,7 @@ def drawn(n_users=120, each=15, family="gaussian", seed=0, means=MEANS):
     return UserRows(users, policies, values, (n_users, means.shape[1])), true
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("family", ["gaussian", "categorical"])
 def test_types_that_are_there_are_found_and_counted(family):
     rows, true = drawn(family=family, each=15 if family == "gaussian" else 40)
@@ -95,6 +96,7 @@ def test_the_same_seed_finds_the_same_types():
     assert np.array_equal(first.probs, second.probs)
 
 
+@pytest.mark.slow
 def test_constant_outcomes_and_single_users():
     one = UserRows(np.zeros(2, int), np.arange(2), np.ones(2), (1, 2))
     assert user_types(one, np.random.default_rng(0)).n_types == 1

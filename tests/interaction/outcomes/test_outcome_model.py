@@ -94,6 +94,7 @@ def test_densities_integrate_to_the_laws_the_model_states(name):
         assert square == pytest.approx(model.deviation[pair] ** 2 + model.mean[pair] ** 2, rel=2e-3)
 
 
+@pytest.mark.slow
 @continuous
 @pytest.mark.parametrize("threshold", [-12.3, -1.0, 0.0, 2.4, 5.0, 11.0])
 def test_excess_and_exceedance_agree_with_integration(name, threshold):
@@ -282,6 +283,7 @@ def test_one_type_one_policy_one_sample(name):
     assert model.table().probs.shape[:2] == (1, 1)
 
 
+@pytest.mark.slow
 @every_model
 @settings(deadline=None, max_examples=60)
 @given(

@@ -40,6 +40,7 @@ def test_against_the_naive_twin(seed, shrinkage):
     assert found.pooled == pytest.approx(pooled)
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=40)
 @given(st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=12))
 def test_one_at_a_time_is_all_at_once_with_the_same_pooled_variance(values):

@@ -67,6 +67,7 @@ def test_an_episode_is_that_of_the_printed_algorithm(kind, hazard):
             assert scores == pytest.approx(rule.scores(model, belief), rel=1e-8)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("hazard", [0.0, 0.1])
 def test_many_rows_have_the_bits_of_single_rows_and_of_the_plain_rule(kind, hazard, monkeypatch):

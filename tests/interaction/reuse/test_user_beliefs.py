@@ -52,6 +52,7 @@ def drawn(model: PolicyLibrary, random: np.random.Generator, n: int):
     return random.normal(scale=40, size=n)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", ["return", "category", "own", "student-t", "histogram"])
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):

@@ -19,6 +19,7 @@ def same_bits(one, other) -> bool:
     return np.asarray(one, np.float64).tobytes() == np.asarray(other, np.float64).tobytes()
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=200)
 @given(seeds, st.integers(1, 60), st.sampled_from([1.0, 0.999, 0.9, 0.3]), st.booleans())
 def test_least_kept(seed, n_types, mass, some_impossible):
@@ -66,6 +67,7 @@ print([name for name in ("numba", "scipy.special", "scipy") if name in sys.modul
 """
 
 
+@pytest.mark.slow
 def test_five_rules_and_an_agents_updates_need_neither_compiler_nor_scipy():
     done = subprocess.run([sys.executable, "-c", WITHOUT], capture_output=True, text=True, check=True)
     assert done.stdout.strip() == "[]"

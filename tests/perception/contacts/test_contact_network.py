@@ -60,6 +60,7 @@ def test_of_equally_short_edges_those_of_networkx_are_taken(places):
     assert spanning_edges(at).tolist() == edges_of_networkx(at)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(2, 40))
 def test_edges_among_scattered_points_are_those_of_networkx(seed, n):

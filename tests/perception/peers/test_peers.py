@@ -68,6 +68,7 @@ def test_names_of_the_objects_carry_nothing(name, seen, lesson):
             assert (again.a, again.b) == (said.b, said.a)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_a_relation_for_every_near_pair_with_confidence(name, seen, lesson):
     clouds, truths = lesson
@@ -95,6 +96,7 @@ def test_fit_is_looking_and_learning(name, seen, lesson):
     ).predict_pairs(seen[name][7])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", PEERS)
 def test_a_scene_of_one_object_has_no_pair_of_objects(name, seen, lesson):
     clouds, truths = lesson
@@ -111,6 +113,7 @@ def test_it_refuses_to_answer_before_it_has_learnt(name, lesson):
         PEERS[name]().predict(lesson[0][0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LEARNT)
 def test_it_refuses_lessons_that_do_not_fit(name, seen, lesson):
     _, truths = lesson
@@ -121,12 +124,14 @@ def test_it_refuses_lessons_that_do_not_fit(name, seen, lesson):
         PEERS[name]().fit_pairs(seen[name][:1], doubted)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LEARNT)
 def test_one_word_is_enough_to_learn(name, seen):
     said = PEERS[name]().fit_pairs(seen[name][:1], [(PairLabel(2, 3, "near"), PairLabel(3, 2, "near", 1))])
     assert of_pair(said.predict_pairs(seen[name][0]), 2, 3).relation == "near"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", LEARNT)
 def test_a_pair_with_two_relations_is_refused(name, seen):
     for other in (PairLabel(2, 3, "adjacent"), PairLabel(3, 2, "on")):

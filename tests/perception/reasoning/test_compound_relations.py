@@ -89,6 +89,7 @@ def plain_twin(rows, things):
     return tuple(sorted(found))
 
 
+@pytest.mark.slow
 @settings(max_examples=80, deadline=None)
 @given(st.lists(st.tuples(st.integers(2, 6), st.integers(1, 6), st.sampled_from(CORE_RELATIONS)), max_size=10))
 def test_facts_are_those_of_the_plain_twin(triples):

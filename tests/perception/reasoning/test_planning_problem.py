@@ -61,6 +61,7 @@ def test_names_given_are_made_valid_and_kept_apart():
         pddl_names([2], {3: "cup"})
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.dictionaries(st.integers(2, 20), st.text(max_size=12)))
 def test_every_name_is_one_of_pddl_and_no_two_are_alike(names):

@@ -1,5 +1,6 @@
 """The region calculus: who touches whom, by hand, and one relation for every pair."""
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -22,6 +23,7 @@ def test_what_rests_touches_and_neighbours_touch_when_they_look_as_near():
     assert "dc(2, 4)" in facts
 
 
+@pytest.mark.slow
 @given(
     st.lists(st.tuples(st.integers(2, 6), st.integers(1, 6), st.sampled_from(CORE_RELATIONS), st.floats(0, 1))),
     st.sets(st.integers(2, 9)),

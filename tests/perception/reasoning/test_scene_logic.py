@@ -190,6 +190,7 @@ def test_wrong_input_is_refused():
     assert most_likely_scene([]).relations == ()
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(st.lists(st.tuples(st.integers(1, 7), st.integers(1, 7)).filter(lambda pair: pair[0] != pair[1])))
 def test_circles_are_the_strongly_connected_components(pairs):

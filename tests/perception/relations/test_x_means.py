@@ -77,6 +77,7 @@ def test_clusters_that_are_apart_are_found(k, formula):
     assert adjusted_rand_score(truth, found.labels) == 1
 
 
+@pytest.mark.slow
 @settings(deadline=None, max_examples=25)
 @given(st.integers(0, 10_000), st.integers(5, 60))
 def test_what_is_found_is_a_fixed_point_of_k_means(seed, n):

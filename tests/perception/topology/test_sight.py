@@ -1,6 +1,7 @@
 """Lines of sight: free, hidden, and not measured, by hand and against plain geometry."""
 
 import numpy as np
+import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial import KDTree
@@ -32,6 +33,7 @@ def test_without_a_camera_there_is_no_telling():
 coordinate = st.integers(-20, 20).map(lambda k: k / 10)
 
 
+@pytest.mark.slow
 @settings(deadline=None)
 @given(
     st.lists(st.tuples(*[coordinate] * 3).filter(any), min_size=1, max_size=20),

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.action.priors.context_index import FEW, ContextIndex
 from lifelore.action.priors.count_rows import SEQUENTIAL, draw_by_proportion, merged_rows, rising, sorted_order
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError, MissingExtraError, NotFoundError
 from lifelore.core.metrics import entropy
 from lifelore.core.protocols import Record
 
@@ -59,6 +59,8 @@ class ActionPrior:
     >>> prior.update([7, 7, 9], [[True, False], [True, True], [False, False]])
     >>> prior.probs([7, 9]).tolist()
     [[0.625, 0.375], [0.5, 0.5]]
+    >>> prior
+    <ActionPrior: 2 actions, 1 contexts, 3 counts, alpha0=0.5>
     """
 
     def __init__(self, n_actions: int, alpha0: float = 0.1, key: str = "") -> None:
@@ -76,6 +78,11 @@ class ActionPrior:
 
     def __len__(self) -> int:
         return len(self._codes)
+
+    def __repr__(self) -> str:
+        key = f", key='{self.key}'" if self.key else ""
+        size = f"{len(self)} contexts, {self._counts.sum(dtype=float) / ONE:g} counts"
+        return f"<ActionPrior: {self.n_actions} actions, {size}, alpha0={self.alpha0:g}{key}>"
 
     @property
     def contexts(self) -> NDArray[np.int64]:
@@ -282,6 +289,48 @@ class ActionPrior:
         result = ActionPrior(self.n_actions, self.alpha0, key)
         result._add(coarser, self._counts)
         return result
+
+    # ---- tables ----------------------------------------------------------------------------------
+
+    def to_columns(self, labels: Mapping[int, Any] | None = None) -> dict[str, NDArray[Any]]:
+        """The prior as columns in long format, one row for each context with counts and each action.
+
+        Parameters
+        ----------
+        labels : mapping, optional
+            Context code to a readable label, such as the features behind it; adds the column ``label``.
+
+        Returns
+        -------
+        dict of (n_contexts · n_actions,) arrays
+            ``context`` (code), ``label`` (text, if `labels` are given; the code where they have none), ``action``,
+            ``count`` (Σ w U), ``probability`` (``proportion``, sums to 1 over the actions of a context).
+        """
+        codes = self._codes
+        columns: dict[str, NDArray[Any]] = {"context": np.repeat(codes, self.n_actions)}
+        if labels is not None:
+            named = np.array([str(labels.get(code, code)) for code in codes.tolist()], str)
+            columns["label"] = np.repeat(named, self.n_actions)
+        columns["action"] = np.tile(np.arange(self.n_actions), len(codes))
+        columns["count"] = self.counts(codes).ravel()
+        columns["probability"] = self.probs(codes).ravel()
+        return columns
+
+    def to_frame(self, labels: Mapping[int, Any] | None = None) -> Any:
+        """The columns of `to_columns` as a ``pandas.DataFrame``.
+
+        Raises
+        ------
+        MissingExtraError
+            pandas is not installed; Lifelore does not require it.
+        """
+        try:
+            from pandas import DataFrame  # pyright: ignore[reportMissingImports, reportMissingModuleSource]
+        except ImportError:
+            raise MissingExtraError(
+                "to_frame needs pandas, which is not installed: pip install pandas, or use to_columns()"
+            ) from None
+        return DataFrame(self.to_columns(labels))
 
     # ---- storing ---------------------------------------------------------------------------------
 

@@ -68,6 +68,11 @@ class ContextCodes:
         self._code: dict[Hashable, int] = {}
         self._context: dict[int, Hashable] = {}
 
+    @property
+    def contexts(self) -> dict[int, Hashable]:
+        """Code to context of the contexts met so far."""
+        return dict(self._context)
+
     def __getitem__(self, context: Hashable) -> int:
         """The code of a context; InputError if another context has the same code."""
         try:

@@ -1,9 +1,9 @@
 """`live_in`: an agent lives in a world of the user, through the `World` protocol only."""
 
-import hashlib
 import os
 import time
 import uuid
+import warnings
 from collections.abc import Hashable
 from contextlib import nullcontext
 from dataclasses import dataclass
@@ -12,11 +12,11 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
-from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
+from lifelore.agent.external_world.stored_prior import recalled_prior
 from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
+from lifelore.agent.live.long_table import LongTable
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
@@ -49,15 +49,17 @@ def live_in(
     weight: float = 1.0,
     form: str = "proportion",
     ties: str = "uniform",
+    csv: str | Path | None = None,
     progress: Progress | None = None,
     stop: Event | None = None,
 ) -> dict:
     """Live through `tasks` tasks of a world with two agents, ``lore`` and ``scratch``, on the same random streams.
 
     Both agents learn each task by ε-greedy Q-learning from Q = 0. ``scratch`` explores uniformly. ``lore``
-    explores by the action prior of its earlier tasks: after each task, the best actions of the learnt policy are
-    counted by context, in the states whose value is positive. If no reward of the world is positive, the agent
-    learns no prior (``n_contexts`` stays 0): add a constant to the rewards.
+    explores by the action prior of its earlier tasks: after each task, the useful actions of the learnt policy
+    are counted by context. In a task with a positive value, these are the best actions of the states with a
+    positive value. In a task without (each step costs, no reward is positive), they are relative to the task's
+    best return: the best of the actions taken in the best tenth of the episodes, of those that ended.
 
     Parameters
     ----------
@@ -82,6 +84,9 @@ def live_in(
         As in `QLearning`.
     alpha0, weight, form, ties : float, float, str, str
         As in `PriorSettings`.
+    csv : str or Path, optional
+        File for the measures of each task and the return of each episode in long format, see
+        `lifelore.agent.live.long_table`.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional
@@ -94,7 +99,13 @@ def live_in(
         optimum, collisions, steps and episodes to 80 %). Returns are discounted; ``final_return`` is the mean of
         a task's last tenth of episodes, ``mean_return`` of all episodes; ``reached``: an episode terminated with
         a positive reward. ``summary`` compares the agents over the last third of the tasks; ``n_contexts``: the
-        number of contexts in the prior at the end.
+        number of contexts in the prior at the end. ``warnings``: sentences on what makes the life useless, such
+        as a prior that is still empty; empty where all is well.
+
+    Warns
+    -----
+    UserWarning
+        Each sentence of ``warnings``.
 
     Raises
     ------
@@ -102,7 +113,7 @@ def live_in(
         A setting breaks its rule; a reward is not finite; a context has no stable code (see
         `lifelore.agent.external_world.context_code.context_code`); a memory is given without a key.
     StoreError
-        Memory cannot store the task; earlier tasks stay stored.
+        Memory cannot store the task, or the CSV file cannot be written; earlier tasks stay stored.
     """
     began = time.perf_counter()
     _check_whole(tasks=tasks, episodes=episodes, max_steps=max_steps)
@@ -110,10 +121,16 @@ def live_in(
     learning = QLearning(episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor)
     key = _key_of(world, key, needed=memory is not None)
     settings = _Settings(tasks, robot, key, seed, discount, learning, GuidanceSettings(alpha0, weight, form, ties))
-    with open_memory(memory) if memory is not None else nullcontext() as opened:
-        life = _ExternalLife(world, settings, opened)
+    with (
+        LongTable(csv, seed) if csv is not None else nullcontext() as table,
+        open_memory(memory) if memory is not None else nullcontext() as opened,
+    ):
+        life = _ExternalLife(world, settings, opened, table)
         life.run(progress, stop or Event())
-        return life.report(time.perf_counter() - began)
+        report = life.report(time.perf_counter() - began)
+    for sentence in report["warnings"]:
+        warnings.warn(sentence, stacklevel=2)
+    return report
 
 
 @dataclass(frozen=True)
@@ -188,10 +205,10 @@ def _key_of(world: World, key: str | None, needed: bool) -> str | None:
 class _ExternalLife:
     """A life in progress: its prior, and the memory that stores it."""
 
-    def __init__(self, world: World, settings: _Settings, memory: Memory | None) -> None:
-        self.world, self.settings, self.memory = world, settings, memory
+    def __init__(self, world: World, settings: _Settings, memory: Memory | None, table: LongTable | None) -> None:
+        self.world, self.settings, self.memory, self.table = world, settings, memory, table
         self.name = str(getattr(world, "name", type(world).__name__))
-        self.prior = _recalled(world.n_actions, settings, memory)
+        self.prior = recalled_prior(memory, settings.key, world.n_actions, settings.guidance.alpha0)
         self.tasks_before = memory.tasks(settings.robot) if memory else 0
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.codes, self.states, self.finished = ContextCodes(), set[Hashable](), list[dict]()
@@ -219,6 +236,9 @@ class _ExternalLife:
         for learner in learners.values():
             self.states.update(learner.q)
         self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})
+        if self.table:
+            returns = {name: {"return": learner.returns.returns} for name, learner in learners.items()}
+            self.table.add(self.finished[-1], returns)
 
     def _task(self, index: int, stop: Event) -> ExternalTask:
         learning, discount = self.settings.learning, self.settings.discount
@@ -250,18 +270,18 @@ class _ExternalLife:
             "tasks": self.finished,
             "summary": _summarise(self.finished) if self.finished else {},
             "memory": {"tasks_before": self.tasks_before, "tasks_after": self.tasks_before + len(self.finished)},
+            "warnings": self._warnings(),
             "seconds": round(seconds, 3),
         }
 
-
-def _recalled(n_actions: int, settings: _Settings, memory: Memory | None) -> ActionPrior:
-    """The prior in memory for these contexts and this number of actions; an empty prior if there is none."""
-    # The text "foreign" is part of the key of stored priors.
-    scope = hashlib.sha256(repr(("foreign", settings.key, n_actions)).encode()).hexdigest()[:32]
-    known = memory.recall(PRIOR_KIND, scope, PRIOR_VERSION) if memory else None
-    if known is None:
-        return ActionPrior(n_actions, settings.guidance.alpha0, scope)
-    return ActionPrior.from_record(known, n_actions, settings.guidance.alpha0)
+    def _warnings(self) -> list[str]:
+        if len(self.prior) or not self.finished:
+            return []
+        return [
+            f"The action prior is empty after {len(self.finished)} tasks in {self.name}, so lore explores like "
+            "scratch: no task had a positive value, nor an ended episode with a better return than others. "
+            "Use more episodes or steps, or another reward."
+        ]
 
 
 def _summarise(tasks: list[dict]) -> dict:

@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 from lifelore.action.priors.action_prior import FORMS, ActionPrior
 from lifelore.action.priors.exploration import TIES, TRACE
 from lifelore.agent.external_world.context_code import ContextCodes
+from lifelore.agent.external_world.useful_actions import EpisodeReturns, useful_actions
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.compiled.random_state import random_state
 from lifelore.core.errors import InputError
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import cumulative, epsilon_greedy
-from lifelore.core.planning.planning import learnt_best_actions
 from lifelore.core.protocols import World
 
 STOP_CHECK = 200
@@ -50,6 +50,7 @@ class ExternalLearner:
 
     q : state to (1, n_actions) values, 0 at first
     visited : the (state, context code) pairs in which it acted, in the order met
+    returns : the returns of its episodes, and of the actions taken in them
     """
 
     def __init__(
@@ -59,6 +60,7 @@ class ExternalLearner:
         self.random = random_state(own)
         self.q: dict[Hashable, NDArray[np.float64]] = defaultdict(lambda: np.zeros((1, n_actions)))
         self.visited: dict[tuple[Hashable, int], None] = {}
+        self.returns = EpisodeReturns(n_actions)
         self._rows: dict[int, tuple[NDArray[np.float64], NDArray[np.float64]]] = {}
 
     def act(self, state: Hashable, code: int, epsilon: float) -> int:
@@ -82,10 +84,10 @@ class ExternalLearner:
         return float(self.q[state].max())
 
     def best(self) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Contexts (n,) of the visited states, and their best actions; False where no value is positive."""
+        """Contexts (n,) of the visited states, and their useful actions, see `useful_actions`."""
         codes = np.array([code for _, code in self.visited], np.int64)
         q = np.array([self.q[state][0] for state, _ in self.visited]).reshape(-1, self.n_actions)
-        return codes, learnt_best_actions(q)
+        return codes, useful_actions(q, list(self.visited), self.returns)
 
 
 @dataclass(frozen=True)
@@ -127,6 +129,8 @@ class ExternalTask:
     def _episode(self, learner: ExternalLearner, seed: int, epsilon: float) -> tuple[float, bool]:
         """One episode: its discounted return, and whether it was terminated with a positive reward."""
         state, reward, total, factor = self.world.reset(self.index, seed), 0.0, 0.0, 1.0
+        steps: list[tuple[Hashable, int, int]] = []
+        terminated = False
         for step in range(self.learning.max_steps):
             if step % STOP_CHECK == 0 and self.stop.is_set():
                 raise Stopped
@@ -137,10 +141,12 @@ class ExternalTask:
             future = 0.0 if terminated else self.discount * learner.value(following)
             q = learner.q[state]
             q[0, action] += self.learning.learning_rate * (reward + future - q[0, action])
+            steps.append((state, code, action))
             total, factor, state = total + factor * reward, factor * self.discount, following
             if terminated or truncated:
-                return total, terminated and reward > 0
-        return total, False
+                break
+        learner.returns.add(steps, total, terminated)
+        return total, terminated and reward > 0
 
     def _check_reward(self, reward: float, action: int) -> None:
         if not math.isfinite(reward):

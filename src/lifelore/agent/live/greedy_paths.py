@@ -16,12 +16,15 @@ class GreedyPaths:
     goal : state
     paths : states of each path, from its start on
     arriving : share of the task's starts from which the policy reaches the goal, in [0, 1]
+    goal_point, name : x and y in metres, and name of the goal, if the user gave them
     """
 
     task: int
     goal: int
     paths: list[NDArray[np.int32]]
     arriving: float
+    goal_point: tuple[float, float] | None = None
+    name: str | None = None
 
 
 def greedy_path(world: GridWorld, policy: ArrayLike, start: int, goal: int) -> NDArray[np.int32]:

@@ -6,6 +6,7 @@ import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from threading import Event
 
@@ -14,10 +15,14 @@ import numpy as np
 from lifelore.action.priors.back_off import posterior_mean
 from lifelore.action.priors.exploration import prior_rows, try_costs
 from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
+from lifelore.agent.live.carried_model import carried_model
+from lifelore.agent.live.destinations import NamedPlaces
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
+from lifelore.agent.live.map_watch import MapWatch
 from lifelore.agent.live.model_task import live_model_task
+from lifelore.agent.live.own_places import OwnGoal, own_places
 from lifelore.agent.live.q_task import live_q_task
 from lifelore.agent.live.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.summary import summarise
@@ -32,6 +37,7 @@ from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
 from lifelore.core.streams import stream
+from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import map_from_settings, world_from_settings
@@ -54,6 +60,14 @@ class Life:
         Knowledge of the first agent at the end.
     stopped : bool
         Whether the user asked to stop; the report covers the tasks finished before.
+    occupancy : OccupancyMap, optional
+        The map of a building, laid on the grid of the building's first map.
+    start : int, optional
+        State in which every episode started, if it was given.
+    given : OccupancyMap, optional
+        The map of a building as it was read.
+    first_here : int
+        Number of tasks that were lived before the map was last replaced (`LifeSettings.watch`).
     """
 
     report: dict
@@ -61,6 +75,15 @@ class Life:
     results: list[dict[str, TaskResult]] = field(repr=False)
     lore: Lore = field(repr=False)
     stopped: bool = False
+    occupancy: OccupancyMap | None = field(default=None, repr=False)
+    start: int | None = None
+    given: OccupancyMap | None = field(default=None, repr=False)
+    first_here: int = 0
+
+    @cached_property
+    def floor(self) -> Floor | None:
+        """The building at the resolution of its map; None in worlds without a map."""
+        return None if self.occupancy is None else floor_of(self.occupancy, self.world)
 
 
 Watcher = Callable[[dict, dict[str, TaskResult]], None]
@@ -75,19 +98,20 @@ def live(
     watch: Watcher | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> Life:
-    """Live through ``settings.tasks`` tasks and store what is learnt in memory.
+    """Live through ``settings.n_tasks`` tasks and store what is learnt in memory.
 
     Parameters
     ----------
     settings : LifeSettings
     progress : callable, optional
-        Called as ``progress(done, total, label)`` after each task.
+        Called as ``progress(done, total, label)`` before the first task and after each task.
     stop : threading.Event, optional
         Set it to stop early: the task in progress is dropped, the finished tasks stay.
     watch : callable, optional
         Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
     notify : callable, optional
-        Called before the first task with a line of advice if the world is big.
+        Called with a line of text: before the first task if the world is big, and when a watched map was replaced
+        or cannot be used.
 
     Raises
     ------
@@ -99,6 +123,7 @@ def live(
     stop = stop or Event()
     began = time.perf_counter()
     agents_for(settings.agent, settings.learning.learner)  # a mistake in the name shows before the map is read
+    map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
@@ -107,11 +132,21 @@ def live(
         names, notice = size_of_life(settings, place.world.n_states)
         if notify and notice:
             notify(notice)
-        life = _RunningLife(settings, place, names, memory)
+        life = _RunningLife(settings, place, occupancy, names, memory, map_watch, notify)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)
-        report = _report(settings, place, life, time.perf_counter() - began)
-    return Life(report, place.world, results, life.lores[names[0]], stop.is_set())
+        report = _report(settings, life, time.perf_counter() - began)
+    return Life(
+        report,
+        life.world,
+        results,
+        life.lores[names[0]],
+        stop.is_set(),
+        occupancy=life.place.occupancy,
+        start=life.places.start,
+        given=life.given,
+        first_here=life.first_here,
+    )
 
 
 def _place(
@@ -125,33 +160,103 @@ def _place(
         raise InputError(
             f"building names a map that is remembered, got {name!r} for a life that remembers no map; leave it out"
         )
-    return own_place(world)
+    return own_place(world, occupancy)
+
+
+def _floor_at(place: Place) -> Floor:
+    assert place.occupancy is not None, "a building has a map"
+    return floor_of(place.occupancy, place.world)
 
 
 class _RunningLife:
     """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
-    def __init__(self, settings: LifeSettings, place: Place, names: list[str], memory: Memory) -> None:
-        world = place.world
-        self.settings, self.world, self.names, self.memory = settings, world, names, memory
-        self.unstored = place.news
-        self.stream = TaskStream(world, settings, place.grid.frame)
-        self.scope = prior_scope(world, settings.prior.condition)
+    def __init__(
+        self,
+        settings: LifeSettings,
+        place: Place,
+        given: OccupancyMap | None,
+        names: list[str],
+        memory: Memory,
+        map_watch: MapWatch | None,
+        notify: Callable[[str], None] | None,
+    ) -> None:
+        self.settings, self.names, self.memory, self.notify = settings, names, memory, notify
+        self.unstored: list[Record] = []
+        self._settle(place, given, first=0)
         # Every agent starts from the same knowledge and then learns by itself; only the first one's is stored.
-        first = Lore.recalled(world, self.scope, settings.prior.alpha0, memory, place.grid)
+        first = self._recalled()
         self.lores = {name: first.copy() if i else first for i, name in enumerate(names)}
         self.tasks_before = memory.tasks(settings.memory.robot)
         self.process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
         self.finished: list[dict] = []
+        self.map_watch = map_watch
+        self.map_changes: list[dict] = []
+
+    def _settle(self, place: Place, given: OccupancyMap | None, first: int) -> None:
+        """Live at `place` from task number `first` on; changes nothing if a goal is not free there."""
+        names = NamedPlaces.of(place)
+        places = own_places(self.settings, place.world, lambda: _floor_at(place), names, self.memory, first)
+        stream = TaskStream(place.world, self.settings, place.grid.frame, places.start)
+        self.world, self.place, self.given, self.first_here = place.world, place, given, first
+        self.named, self.places, self.stream = names, places, stream
+        self.scope = prior_scope(place.world, self.settings.prior.condition)
+        self.unstored = self.unstored + place.news
+
+    def _recalled(self) -> Lore:
+        return Lore.recalled(self.world, self.scope, self.settings.prior.alpha0, self.memory, self.place.grid)
+
+    def _look_at_map(self, done: int) -> None:
+        """Replace the world if the watched map has changed; keep it if the new map cannot be used."""
+        index, path = self.tasks_before + done, self.settings.world.map
+        change: dict = {"before_task": index}
+        assert self.map_watch is not None, "only a watched map is looked at"
+        try:
+            given = self.map_watch.changed()
+            if given is None:
+                return
+            change |= self._replace_map(given, done)
+            line = (
+                f"map {path} changed before task {index}: {self.world.n_states:,} places, "
+                f"{int(100 * change['agreement'])} % of the remembered ones agree"
+            )
+        except InputError as error:
+            change |= {"used": False, "reason": str(error)}
+            line = f"map {path} changed before task {index}, but cannot be used: {error}; the last good map stays"
+        self.map_changes.append(change)
+        if self.notify:
+            self.notify(line)
+
+    def _replace_map(self, given: OccupancyMap, done: int) -> dict:
+        """Move all agents to the new map; what agrees with it, they still know."""
+        world = world_from_settings(self.settings.world, given)
+        place = _place(self.settings, world, given, self.memory, self.names[0])
+        old_scope = self.scope
+        self._settle(place, given, done)
+        first, lores, agreement = self._recalled(), {}, 0.0
+        for i, name in enumerate(self.names):
+            lore, old = first.copy() if i else first, self.lores[name]
+            lore.model, share = carried_model(old, place, self.memory)
+            if i and self.scope.key == old_scope.key:
+                lore.prior = old.prior
+            if not i:
+                agreement = share
+            lores[name] = lore
+        self.lores = lores
+        return {"used": True, "n_states": world.n_states, "agreement": round(agreement, 4)}
 
     def run(
         self, pool: ThreadPoolExecutor, progress: Progress | None, stop: Event, watch: Watcher | None
     ) -> list[dict[str, TaskResult]]:
         results = []
-        total = self.settings.tasks
+        total = self.settings.n_tasks
+        if progress:
+            progress(0, total, "")
         for done in range(total):
             if stop.is_set():
                 break
+            if self.map_watch and done:
+                self._look_at_map(done)
             try:
                 results.append(self._live_task(self.tasks_before + done, done, pool, stop))
                 if watch:
@@ -166,7 +271,8 @@ class _RunningLife:
         return results
 
     def _live_task(self, index: int, seq: int, pool: ThreadPoolExecutor, stop: Event) -> dict[str, TaskResult]:
-        task = self.stream.task(index)
+        own = self.places.goal(seq)
+        task = self.stream.task(index, own and own.state)
         tables = task.tables()
         optimal = mean_start_value(tables, optimal_q(tables, task.domain.discount).max(axis=1))
         if optimal <= 0:
@@ -183,18 +289,26 @@ class _RunningLife:
             raise
         goal = int(task.goal)  # type: ignore[arg-type]
         records = {name: self._learn(name, results[name], goal) for name in self.names}
-        about = {"index": index, "goal": self.world.cells[goal].tolist(), "world": self.world.fingerprint}
+        chosen = {} if own is None else own.to_dict()
+        about = {"index": index, "goal": self.world.cells[goal].tolist()}
         self.memory.contribute(
             self.settings.memory.robot,
-            records[self.names[0]] + self.unstored,
+            records[self.names[0]] + self.unstored + self._names(own),
             process=self.process,
             seq=seq,
-            task=about,
+            task=about | chosen | {"world": self.world.fingerprint},
         )
         self.unstored = []
         agents = {name: result.to_dict() for name, result in results.items()}
-        self.finished.append({"index": index, "goal": about["goal"], "optimal_return": optimal, "agents": agents})
+        self.finished.append(about | chosen | {"optimal_return": optimal, "agents": agents})
         return results
+
+    def _names(self, own: OwnGoal | None) -> list[Record]:
+        """The record by which memory knows a named destination from now on."""
+        end = own and own.destination
+        if end is None or end.name is None or end.point is None:
+            return []
+        return [self.named.record(end.name, end.point)]
 
     def _learn(self, name: str, result: TaskResult, goal: int) -> list[Record]:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""
@@ -283,9 +397,9 @@ class _SharedTask:
         )
 
 
-def _report(settings: LifeSettings, place: Place, life: _RunningLife, seconds: float) -> dict:
-    world = place.world
-    return {
+def _report(settings: LifeSettings, life: _RunningLife, seconds: float) -> dict:
+    world, place = life.world, life.place
+    report = {
         "domain": settings.world.domain,
         "map": _text(settings.world.map),
         "n_states": world.n_states,
@@ -297,6 +411,7 @@ def _report(settings: LifeSettings, place: Place, life: _RunningLife, seconds: f
         "memory": {"tasks_before": life.tasks_before, "tasks_after": life.memory.tasks(settings.memory.robot)},
         "seconds": round(seconds, 3),
     }
+    return report | ({"map_changes": life.map_changes} if settings.watch else {})
 
 
 def _settings_document(settings: LifeSettings, world: GridWorld, location: str) -> dict:
@@ -305,7 +420,7 @@ def _settings_document(settings: LifeSettings, world: GridWorld, location: str) 
     document = {
         "domain": settings.world.domain,
         "map": _text(settings.world.map),
-        "tasks": settings.tasks,
+        "tasks": settings.n_tasks,
         "cell": settings.world.cell,
         "robot_radius": settings.world.robot_radius,
         "destinations": settings.destinations,
@@ -332,8 +447,14 @@ def _settings_document(settings: LifeSettings, world: GridWorld, location: str) 
         "epsilon_decay": learning.epsilon_decay,
         "epsilon_floor": learning.epsilon_floor,
     }
-    sizes = {"size": settings.world.size, "loops": settings.world.loops}
-    return document | {name: value for name, value in sizes.items() if value is not None} | world.about
+    optional = {
+        "goal": settings.goal,
+        "goals": len(settings.goals) or None,
+        "watch": settings.watch or None,
+        "size": settings.world.size,
+        "loops": settings.world.loops,
+    }
+    return document | {name: value for name, value in optional.items() if value is not None} | world.about
 
 
 def _text(path: str | Path | None) -> str | None:

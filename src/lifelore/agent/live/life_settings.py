@@ -5,6 +5,7 @@ from math import ceil, isfinite
 
 from lifelore.action.priors.action_prior import FORMS
 from lifelore.action.priors.exploration import TIES
+from lifelore.agent.live.job_list import Job
 from lifelore.core.errors import InputError
 from lifelore.domains.worlds import WorldSettings
 
@@ -15,6 +16,9 @@ MOST_LENGTH = 1e3
 MOST_REWARD = 1e6
 """Largest magnitude of rewards and of the prior's weights: a larger number hides the others by rounding."""
 LONGEST_NAME = 200
+
+Place = tuple[float, float] | str
+"""In buildings x and y in metres of the map's frame, or a name that memory knows; else row and column."""
 
 
 @dataclass(frozen=True)
@@ -142,11 +146,18 @@ class LifeSettings:
     compare : bool, optional
         Whether ``scratch`` lives the same tasks for comparison. None: yes, up to `life_size.BIG` places.
     tasks : int
-        Tasks to live through now, ≥ 1.
+        Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
         Number of recurring places that goals are drawn from; 0: every place.
-    start : (row, column), optional
-        Cell in which every episode starts; None: any cell.
+    start : (x, y) or str, or (row, column), optional
+        Place in which every episode starts; None: any place. In buildings metres of the map's frame, or a name
+        that memory knows; in other worlds a cell.
+    goal : (x, y) or str, or (row, column), optional
+        Goal of every task; None: drawn.
+    goals : tuple of Job
+        Buildings alone: the goals of the tasks in order, one task a job, see `read_jobs`.
+    watch : bool
+        Read the map again between tasks when its files changed.
     jobs : int
         Threads; results do not depend on it.
 
@@ -170,14 +181,32 @@ class LifeSettings:
     compare: bool | None = None
     tasks: int = 30
     destinations: int = 0
-    start: tuple[int, int] | None = None
+    start: Place | None = None
     jobs: int = 2
+    goal: Place | None = None
+    goals: tuple[Job, ...] = ()
+    watch: bool = False
 
     def __post_init__(self) -> None:
         _check_whole("tasks", self.tasks, 1, 10**6)
         _check_whole("destinations", self.destinations, 0, 10**9)
         _check_whole("jobs", self.jobs, 1, 256)
         _check_world(self.world)
+        chosen = [name for name in ("goal", "goals", "destinations") if getattr(self, name)]
+        if len(chosen) > 1:
+            raise InputError(f"{chosen[0]} and {chosen[1]} exclude each other; give one of them")
+        if self.goals and self.world.domain != "building":
+            raise InputError(
+                f"goals needs a building, whose places have metres, got domain '{self.world.domain}'; "
+                "use goal with ROW,COL"
+            )
+        if self.watch and self.world.map is None:
+            raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")
+
+    @property
+    def n_tasks(self) -> int:
+        """Number of tasks of this life: that of the jobs, if there are any."""
+        return len(self.goals) or self.tasks
 
     @property
     def seed(self) -> int:
@@ -204,10 +233,11 @@ def _check_world(world: WorldSettings) -> None:
     """Check also the numbers that this domain does not use, because the report repeats them."""
     _check_magnitude("cell", world.cell, MOST_LENGTH)
     _check_magnitude("robot_radius", world.robot_radius, MOST_LENGTH)
-    _check_magnitude("discount", world.discount, 1.0)
     _check_magnitude("goal_reward", world.goal_reward, MOST_REWARD)
     _check_magnitude("wall_reward", world.wall_reward, MOST_REWARD)
     _check_magnitude("density", world.density, 1.0)
+    if world.discount is not None and not 0 <= world.discount < 1:
+        raise InputError(f"discount must lie in [0, 1), got {world.discount}")
     if world.goal_reward is not None and world.goal_reward <= 0:
         raise InputError(f"goal_reward must be positive, got {world.goal_reward}")
     if world.wall_reward is not None and world.wall_reward > 0:

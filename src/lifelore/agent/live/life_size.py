@@ -25,12 +25,12 @@ def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | 
     agent, learner = settings.agent, settings.learning.learner
     names = agents_for(agent, learner, places <= BIG if settings.compare is None else settings.compare)
     left_out = settings.compare is None and len(names) < len(agents_for(agent, learner))
-    seconds = estimated_seconds(places, len(names), settings.tasks) if learner == "model" else 0.0
+    seconds = estimated_seconds(places, len(names), settings.n_tasks) if learner == "model" else 0.0
     if seconds < LONG and not left_out:
         return names, None
     words = [f"{places:,} places"]
     if seconds:
-        words.append(f"about {_duration(seconds)} for {settings.tasks} tasks of {', '.join(names)}")
+        words.append(f"about {_duration(seconds)} for {settings.n_tasks} tasks of {', '.join(names)}")
     if left_out:
         words.append(f"above {BIG:,} places scratch lives beside {agent} only with --compare")
     advice = "a larger --cell" + (" or fewer agents" if len(names) > 1 else "")

@@ -70,7 +70,7 @@ class Lore:
             else ActionPrior(n_actions, alpha0, scope.key)
         )
         own = memory.recall(transitions.KIND, world.fingerprint, transitions.VERSION)
-        model = transitions.from_record(world, own)
+        model = transitions.from_record(world, own, grid.corner)
         stored = transitions.model_table(world, model)
         if own is None:
             changed = same_place(world, memory, grid)

@@ -1,6 +1,6 @@
 """Recognises the building that a map shows, and makes the world on the building's own grid."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from lifelore.agent.live.building_record import (
@@ -43,12 +43,14 @@ class Place:
         (name, recognised, agreement: share of remembered cells whose surroundings are unchanged, walls: share of
         walls that match, pose: [dx, dy, dyaw] from the map's frame to the building's, reason for a new building)
     news : records of the building that memory is to store with the first task
+    occupancy : the map from which `world` was made, laid on the building's grid; None without a map
     """
 
     world: GridWorld
     grid: BuildingGrid
     report: dict | None = None
     news: list[Record] = field(default_factory=list)
+    occupancy: OccupancyMap | None = None
 
 
 @dataclass(frozen=True)
@@ -58,9 +60,9 @@ class _Recognised:
     walls: float
 
 
-def own_place(world: GridWorld) -> Place:
+def own_place(world: GridWorld, occupancy: OccupancyMap | None = None) -> Place:
     """A world that lies in no remembered building."""
-    return Place(world, BuildingGrid(frame_key(world)))
+    return Place(world, BuildingGrid(frame_key(world)), occupancy=occupancy)
 
 
 def recognised_place(
@@ -88,11 +90,12 @@ def recognised_place(
     found, reason = _recognised(occupancy, world, buildings, memory, name)
     if found is None:
         building = Building.new(occupancy, name or _free_name(settings, occupancy, buildings))
-        return _place(world, (0, 0), building, _Recognised(building, IDENTITY, 1.0), occupancy, memory, reason)
+        new = _Recognised(building, IDENTITY, 1.0)
+        return replace(_place(world, (0, 0), building, new, occupancy, memory, reason), occupancy=occupancy)
     laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
     if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
         world = world_from_settings(settings, laid)
-    return _place(world, corner, found.building, found, occupancy, memory, None)
+    return replace(_place(world, corner, found.building, found, occupancy, memory, None), occupancy=laid)
 
 
 def _place(

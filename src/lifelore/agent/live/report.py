@@ -4,12 +4,14 @@ import json
 import os
 import tempfile
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from lifelore.agent.live.baselines import AGENTS
 from lifelore.agent.live.exports import write_paths, write_prior_map
 from lifelore.agent.live.greedy_paths import GreedyPaths, greedy_paths_of
 from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.nav2_masks import known_places, write_directions, write_masks
 from lifelore.agent.live.summary import third
 from lifelore.agent.live.task_result import THRESHOLD, TaskResult
 from lifelore.core.errors import InputError, StoreError
@@ -19,9 +21,11 @@ from lifelore.figures.style import save_figure
 from lifelore.figures.task_curves import draw_task_curves
 from lifelore.figures.world_map import draw_world_map
 
-PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml")
-FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES)
-"""Files of the folder; the files of the prior are there only if the agent has a prior."""
+PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
+MASK_FILES = ("costs.pgm", "costs.yaml", "keepout.pgm", "keepout.yaml")
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *MASK_FILES)
+"""Files of the folder; the files of the prior are there only if the agent has a prior, the masks only in buildings
+whose moves the agent has learnt."""
 
 
 def check_folder(path: str) -> None:
@@ -104,9 +108,13 @@ def _write_all(life: Life, folder: Path) -> None:
     save_figure(_life_figure(life), folder / "life.png")
     save_figure(_task_figure(life), folder / "learning_curves.png")
     save_figure(_world_figure(life, paths), folder / "world.png")
-    write_paths(folder / "paths.csv", life.world, paths)
+    write_paths(folder / "paths.csv", life.world, paths, life.floor)
     if _has_prior(life):
         _write_prior(life, folder)
+    model = life.lore.model
+    if life.floor is not None and life.given is not None and known_places(model).any():
+        probs = life.lore.prior.probs(life.lore.scope.contexts) if _has_prior(life) else None
+        write_masks(folder, life.world, model, probs, life.floor, life.given)
 
 
 def _agents(life: Life) -> list[str]:
@@ -182,32 +190,39 @@ def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
 
 
 def _last_paths(life: Life) -> list[GreedyPaths]:
-    """Greedy paths of the first agent in the last tasks."""
+    """Greedy paths of the first agent in the last tasks on the present map."""
     world, name = life.world, _agents(life)[0]
-    start = life.report["settings"]["start"]
-    fixed = None if start is None else int(world.state_of[tuple(start)])
-    last = zip(life.report["tasks"][-TASKS_WITH_POLICY:], life.results[-TASKS_WITH_POLICY:], strict=True)
-    return [
-        greedy_paths_of(world, result[name].policy, task["index"], int(world.state_of[tuple(task["goal"])]), fixed)
-        for task, result in last
-    ]
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
+    paths = []
+    for task, result in last:
+        goal = int(world.state_of[tuple(task["goal"])])
+        found = greedy_paths_of(world, result[name].policy, task["index"], goal, life.start)
+        point = task.get("position")
+        paths.append(replace(found, goal_point=point and tuple(point), name=task.get("name")))
+    return paths
 
 
 def _world_figure(life: Life, last: Sequence[GreedyPaths]):
     world = life.world
     shown = [
         {
-            "label": f"task {task.task}, reached from {_percent(task.arriving)} of starts",
+            "label": f"task {_named(task)}, reached from {_percent(task.arriving)} of starts",
             "goal": world.cells[task.goal],
             "paths": [world.cells[path] for path in task.paths],
         }
         for task in last
     ]
-    earlier = [task["goal"] for task in life.report["tasks"][: -len(last)]]
+    tasks = life.report["tasks"]
+    earlier = [task["goal"] for task in tasks[life.first_here : len(tasks) - len(last)]]
     title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
     return draw_world_map(
         world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
     )
+
+
+def _named(task: GreedyPaths) -> str:
+    return f"{task.task} ({task.name})" if task.name else str(task.task)
 
 
 def _percent(share: float) -> str:
@@ -234,3 +249,4 @@ def _write_prior(life: Life, folder: Path) -> None:
     )
     save_figure(figure, folder / "prior.png")
     write_prior_map(folder / "prior.yaml", world, probs, counted)
+    write_directions(folder / "directions.csv", world, probs, counted, life.floor)

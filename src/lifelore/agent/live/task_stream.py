@@ -13,12 +13,15 @@ from lifelore.domains.grids.grid_world import GridWorld
 class TaskStream:
     """Makes the task of each number, in one world.
 
-    `frame` is the key of the grid that the world shares with other maps of its building; default: its own.
+    `frame` is the key of the grid that the world shares with other maps of its building; default: its own. `start`
+    is the state in which every episode starts; default: any.
     """
 
-    def __init__(self, world: GridWorld, settings: LifeSettings, frame: str | None = None) -> None:
+    def __init__(
+        self, world: GridWorld, settings: LifeSettings, frame: str | None = None, start: int | None = None
+    ) -> None:
         self.world, self.seed = world, settings.seed
-        self._start = _start_state(world, settings.start)
+        self._start = start
         places = np.delete(np.arange(world.n_states), [] if self._start is None else self._start)
         if settings.destinations > len(places):
             raise InputError(
@@ -36,10 +39,10 @@ class TaskStream:
         """State of the goal of task `index`, which the agents do not know."""
         return int(stream(self.seed, "task", index, "goal").choice(self._places))
 
-    def task(self, index: int) -> Task:
-        """Goal and starts of task `index`."""
+    def task(self, index: int, goal: int | None = None) -> Task:
+        """Goal and starts of task `index`; the `goal` is drawn if it is not given."""
         starts = None if self._start is None else np.array([self._start], np.int32)
-        return self.world.task(self.goal(index), starts)
+        return self.world.task(self.goal(index) if goal is None else goal, starts)
 
     def world_stream(self, index: int) -> np.random.Generator:
         """Random stream of the episodes' starts; the same for every agent."""
@@ -48,16 +51,3 @@ class TaskStream:
     def own_stream(self, index: int) -> np.random.Generator:
         """Random stream of an agent's choices; equal for all agents, which makes their comparison paired."""
         return stream(self.seed, "task", index, "own")
-
-
-def _start_state(world: GridWorld, start: tuple[int, int] | None) -> int | None:
-    if start is None:
-        return None
-    row, column = start
-    inside = 0 <= row < world.shape[0] and 0 <= column < world.shape[1]
-    if not inside or world.state_of[row, column] < 0:
-        raise InputError(
-            f"start must be a free cell ROW,COL of this world ({world.shape[0]} rows, {world.shape[1]} columns), "
-            f"got {row},{column}"
-        )
-    return int(world.state_of[row, column])

@@ -117,6 +117,11 @@ def agreement(world: GridWorld, record: Record, corner: tuple[int, int] = (0, 0)
     return float(same.mean()) if same.size else 0.0
 
 
+def cells_from(record: Record, cells: NDArray[np.int64], corner: tuple[int, int]) -> NDArray[np.int64]:
+    """Numbers of a record's cells counted from a world's `corner`; -1 for cells below or left of it."""
+    return _shifted(cells, _shift(record, corner))
+
+
 def _shift(record: Record, corner: tuple[int, int]) -> tuple[int, int]:
     """Rows and columns from a record's lower left corner to that of a world."""
     row, column = record.about.get("corner", (0, 0))

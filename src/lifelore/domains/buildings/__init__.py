@@ -1,5 +1,6 @@
 """Buildings: ROS occupancy maps and generated office floors as grid worlds.
 
-Read in this order: `building`, `occupancy_map`, `map_image`, `inflation`, `slivers`; `office` generates a floor
-with `office_plan` and `office_furniture`.
+Read in this order: `building`, `occupancy_map`, `map_image`, `free_space`, `inflation`, `slivers`; then `floor`,
+`clear_path` and `line_of_sight` for paths in metres; `office` generates a floor with `office_plan` and
+`office_furniture`.
 """

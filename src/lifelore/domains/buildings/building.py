@@ -1,28 +1,31 @@
 """A building as a grid world: from a map's pixels to cells a robot can stand in and moves it can make.
 
-Sampling cell centres loses narrow rooms and walks through thin walls. Here a cell is the largest connected
-piece of free space within its square, and two cells are joined exactly where their pieces touch.
+A cell is the largest connected piece of free space within its square (`free_space`). Two cells are joined exactly
+where their pieces touch.
 """
 
 import math
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import ndimage, sparse
+from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.core.errors import InputError
-from lifelore.domains.buildings.inflation import inflate
-from lifelore.domains.buildings.occupancy_map import FREE, UNKNOWN, OccupancyMap
+from lifelore.domains.buildings.free_space import (
+    EDGE,
+    SquareGrid,
+    free_pixels,
+    largest_pieces,
+    solid_pixels,
+    square_grid,
+)
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.buildings.slivers import without_slivers
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 
 MAX_STATES = 2_000_000
-SPECK = 0.01
-"""Square metres: unknown pixels that hang together (also by corners) and cover no more are a speck."""
 _MAX_CELL, _MAX_RADIUS = 1000.0, 100.0  # metres; larger is a slip of units
-_EDGE = 1e-9  # a pixel centre on a cell's border belongs to the cell above it, whatever the floats say
 
 
 def building_from_map(
@@ -36,13 +39,13 @@ def building_from_map(
 ) -> GridWorld:
     """The building a round robot can move in, as a grid world.
 
-    The robot's disc must lie in space known to be free: all other pixels, occupied or unknown, are grown by
-    its radius at full resolution (pixel centre to pixel centre, as in ROS costmaps), which also cuts off the
-    stray beams that a laser throws through windows. Specks of unknown (`SPECK`) are not free, but do not
-    grow: they are a mapper's noise in open floor. A cell of `cell` metres is its largest
-    4-connected piece of free pixels (of equal ones, the first from the top left). A move exists exactly
-    where the pieces of two neighbouring cells touch across their border. The largest connected region of
-    cells is kept (of equal ones, the first from the top left), less its slivers (`min_free`).
+    The robot's disc must lie in space known to be free: all other pixels, occupied, unknown or outside the
+    picture, are grown by its radius at full resolution (pixel centre to pixel centre, as in ROS costmaps), which
+    also cuts off the stray beams that a laser throws through windows. Specks of unknown (`free_space.SPECK`) are
+    not free, but do not grow: they are a mapper's noise in open floor. A cell of `cell` metres is its largest
+    4-connected piece of free pixels (of equal ones, the first from the top left). A move exists exactly where the
+    pieces of two neighbouring cells touch across their border. The largest connected region of cells is kept (of
+    equal ones, the first from the top left), less its slivers (`min_free`).
 
     Parameters
     ----------
@@ -70,14 +73,14 @@ def building_from_map(
         `MAX_STATES` cells are.
     """
     _check(occupancy, cell, robot_radius, min_free)
-    free = ~inflate(_solid(occupancy), robot_radius / occupancy.resolution) & (occupancy.state == FREE)
+    free = free_pixels(occupancy, solid_pixels(occupancy), robot_radius)
     if not free.any():
         raise InputError(
             f"map: no free cell is left for robot_radius {robot_radius} m at {occupancy.resolution} m a pixel "
             "(unknown pixels are not free); use a smaller robot_radius or check the map's thresholds"
         )
-    grid = _square_grid(free.shape, occupancy.resolution, cell)
-    largest = _largest_pieces(free, grid)
+    grid = square_grid(free.shape, occupancy.resolution, cell)
+    largest = largest_pieces(free, grid)
     cells, neighbour = _largest_region(*_touching(largest, grid))
     share = _pixels_in(largest, grid)[tuple(cells.T)] / (cell / occupancy.resolution) ** 2
     cells, neighbour = _only(without_slivers(neighbour, share, min_free), cells, neighbour)
@@ -102,7 +105,7 @@ def building_from_map(
 def _check(occupancy: OccupancyMap, cell: float, robot_radius: float, min_free: float) -> None:
     if not (math.isfinite(cell) and 0 < cell <= _MAX_CELL):
         raise InputError(f"cell must lie in (0, {_MAX_CELL:g}] metres, got {cell}")
-    if cell < occupancy.resolution * (1 - _EDGE):
+    if cell < occupancy.resolution * (1 - EDGE):
         raise InputError(
             f"cell must be at least a pixel of the map, {occupancy.resolution} m, got {cell} m; use a larger cell"
         )
@@ -112,54 +115,7 @@ def _check(occupancy: OccupancyMap, cell: float, robot_radius: float, min_free: 
         raise InputError(f"min_free must be a share of the cell in [0, 1], got {min_free}")
 
 
-def _solid(occupancy: OccupancyMap) -> NDArray[np.bool_]:
-    """Pixels that grow: all that are not free, but for specks of unknown."""
-    unknown = occupancy.state == UNKNOWN
-    piece = np.asarray(ndimage.label(unknown, np.ones((3, 3)))[0], np.int64)  # type: ignore[index]
-    small = np.bincount(piece.ravel()) * occupancy.resolution**2 <= SPECK * (1 + _EDGE)
-    return (occupancy.state != FREE) & ~(unknown & small[piece])
-
-
-class _SquareGrid(NamedTuple):
-    """Which cell row and column each pixel row and column lies in, counted from the top left."""
-
-    shape: tuple[int, int]
-    row_of: NDArray[np.int64]
-    column_of: NDArray[np.int64]
-
-
-def _square_grid(pixels: tuple[int, int], resolution: float, cell: float) -> _SquareGrid:
-    rows, columns = pixels
-    from_bottom, column_of = (
-        np.floor((np.arange(n) + 0.5) * resolution / cell + _EDGE).astype(np.int64) for n in (rows, columns)
-    )
-    shape = (int(from_bottom[-1]) + 1, int(column_of[-1]) + 1)
-    return _SquareGrid(shape, shape[0] - 1 - from_bottom[::-1], column_of)
-
-
-def _largest_pieces(free: NDArray[np.bool_], grid: _SquareGrid) -> NDArray[np.bool_]:
-    """The free pixels that belong to the largest piece of their cell, (rows, columns) bool."""
-    # An empty line between neighbouring cells keeps one labelling pass from joining pieces across them.
-    place = np.ix_(np.arange(free.shape[0]) + grid.row_of, np.arange(free.shape[1]) + grid.column_of)
-    apart = np.zeros((place[0][-1, 0] + 1, place[1][0, -1] + 1), dtype=bool)
-    apart[place] = free
-    labels = np.zeros(apart.shape, np.int32)
-    n_pieces = int(ndimage.label(apart, output=labels))  # type: ignore[arg-type]
-    piece = labels[place]
-    size = np.bincount(piece.ravel(), minlength=n_pieces + 1)
-    cell_of_piece = np.zeros(n_pieces + 1, np.int64)
-    row, column = np.nonzero(piece)
-    cell_of_piece[piece[row, column]] = grid.row_of[row] * grid.shape[1] + grid.column_of[column]
-    pieces = np.arange(1, n_pieces + 1)
-    # Labels run in reading order, so the last key settles ties.
-    order = pieces[np.lexsort((pieces, -size[1:], cell_of_piece[1:]))]
-    first_of_cell = np.unique(cell_of_piece[order], return_index=True)[1]
-    chosen = np.zeros(n_pieces + 1, dtype=bool)
-    chosen[order[first_of_cell]] = True
-    return chosen[piece]
-
-
-def _touching(largest: NDArray[np.bool_], grid: _SquareGrid):
+def _touching(largest: NDArray[np.bool_], grid: SquareGrid):
     """Which cells have a piece, and between which of them (south, east) the pieces touch; bool grids."""
     first_row = np.unique(grid.row_of, return_index=True)[1]
     first_column = np.unique(grid.column_of, return_index=True)[1]
@@ -194,7 +150,7 @@ def _largest_region(exists: NDArray[np.bool_], south: NDArray[np.bool_], east: N
     return np.argwhere(exists)[kept].astype(np.int32), np.ascontiguousarray(neighbour[kept])
 
 
-def _pixels_in(largest: NDArray[np.bool_], grid: _SquareGrid) -> NDArray[np.int64]:
+def _pixels_in(largest: NDArray[np.bool_], grid: SquareGrid) -> NDArray[np.int64]:
     """Pixels of each cell's piece, (rows, columns) of cells."""
     row, column = np.nonzero(largest)
     cell = grid.row_of[row] * grid.shape[1] + grid.column_of[column]

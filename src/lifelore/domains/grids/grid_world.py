@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.jit import inlined
 from lifelore.core.errors import InputError
@@ -173,3 +173,14 @@ class GridWorld:
         y = (self.shape[0] - rows - 0.5) * self.frame.cell
         cos, sin = np.cos(yaw), np.sin(yaw)
         return np.column_stack([x0 + cos * x - sin * y, y0 + sin * x + cos * y])
+
+    def states_at(self, points: ArrayLike) -> NDArray[np.int32]:
+        """The states (n,) int32 in whose cells `points` lie, (n, 2) x and y in metres; -1 where there is none."""
+        x0, y0, yaw = self.frame.origin
+        dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.frame.cell
+        column = np.floor(np.cos(yaw) * dx + np.sin(yaw) * dy)
+        row = self.shape[0] - 1 - np.floor(np.cos(yaw) * dy - np.sin(yaw) * dx)
+        inside = (row >= 0) & (row < self.shape[0]) & (column >= 0) & (column < self.shape[1])
+        states = np.full(len(dx), -1, np.int32)
+        states[inside] = self.state_of[row[inside].astype(int), column[inside].astype(int)]
+        return states

@@ -28,6 +28,8 @@ BENCHES = {
     "merge": "fleet",
     "capacity": "fleet",
     "recognition": "lives",
+    "worlds": "lives",
+    "contexts": "action",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition")

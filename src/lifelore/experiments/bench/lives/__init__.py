@@ -1,1 +1,1 @@
-"""Benchmarks of whole lives: the courier at home and elsewhere, and buildings that grow."""
+"""Benchmarks of whole lives: the courier, buildings that grow or are saved again, and foreign worlds."""

@@ -1,0 +1,103 @@
+"""Writes the measures of a life as CSV in long format: one value a row, as statistics programs take it.
+
+    run,task,agent,episode,measure,value
+
+`run` is the seed of the life. `episode` counts from 0 in each task, and is empty for a measure of the whole task.
+"""
+
+import csv
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+from numpy.typing import NDArray
+
+from lifelore.agent.live.task_result import TaskResult
+from lifelore.core.errors import StoreError
+
+COLUMNS = ("run", "task", "agent", "episode", "measure", "value")
+
+
+class LongTable:
+    """The file, written while the life runs: after each task, its rows are on disk. An older file is replaced.
+
+    Parameters
+    ----------
+    path : path
+    run : int
+        Value of the column ``run``.
+
+    Raises
+    ------
+    StoreError
+        The file cannot be written.
+    """
+
+    def __init__(self, path: str | Path, run: int) -> None:
+        self.path, self.run = Path(path), run
+        try:
+            self._file = self.path.open("w", newline="", encoding="utf-8")
+        except OSError as error:
+            raise self._refused(error) from None
+        self._rows = csv.writer(self._file, lineterminator="\n")
+        self._write([COLUMNS])
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._file.close()
+
+    def add(
+        self, task: Mapping[str, Any], episodes: Mapping[str, Mapping[str, Sequence[float] | NDArray]]
+    ) -> None:
+        """Write a finished task.
+
+        Parameters
+        ----------
+        task : mapping
+            Entry of the report's ``tasks``: ``index``, and ``agents``: agent to measure to value. Measures that
+            are None are left out.
+        episodes : mapping
+            Agent to measure to the value of each episode.
+        """
+        rows: list[tuple[Any, ...]] = []
+        for agent, measures in task["agents"].items():
+            first = self.run, task["index"], agent
+            rows += [(*first, "", name, _number(value)) for name, value in measures.items() if value is not None]
+            for name, values in episodes[agent].items():
+                rows += [(*first, number, name, _number(value)) for number, value in enumerate(values)]
+        self._write(rows)
+
+    def add_results(self, task: Mapping[str, Any], results: Mapping[str, TaskResult]) -> None:
+        """Write a finished task of `lifelore.agent.live.life.live`: its ``watch``."""
+        self.add(task, {agent: _episodes(result) for agent, result in results.items()})
+
+    def _write(self, rows: Sequence[Sequence[Any]]) -> None:
+        try:
+            self._rows.writerows(rows)
+            self._file.flush()
+        except OSError as error:
+            raise self._refused(error) from None
+
+    def _refused(self, error: OSError) -> StoreError:
+        return StoreError(f"measures cannot be written to {self.path}: {error.strerror}; choose another file")
+
+
+def _episodes(result: TaskResult) -> dict[str, NDArray]:
+    curve, n = result.curve, result.complete
+    return {
+        "return": curve.returns[:n],
+        "steps": curve.steps[:n],
+        "collisions": curve.collisions[:n],
+        "reached": curve.reached[:n],
+    }
+
+
+def _number(value: Any) -> float | int:
+    """A plain number: truth values as 0 and 1; `repr` of a float reads back to the same bits."""
+    number = float(value)
+    return int(number) if number.is_integer() else number

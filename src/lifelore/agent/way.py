@@ -1,0 +1,206 @@
+"""`way`: a path in metres between two places of a building, over the transitions that memory holds."""
+
+import csv
+import math
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.live.destinations import Destination, NamedPlaces
+from lifelore.agent.live.recognition import recognised_place
+from lifelore.agent.live.remembered_moves import RememberedMoves
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.domains.buildings.clear_path import clear_path
+from lifelore.domains.buildings.floor import Floor, floor_of
+from lifelore.domains.worlds import WorldSettings, map_from_settings, world_from_settings
+from lifelore.memory import open_memory
+
+CORRIDOR = 2
+"""Moves: how far the path may leave the shortest way from cell to cell; more gives a straighter path, slower."""
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A path from one destination to another.
+
+    start, goal : the destinations, with their points
+    poses : (n, 3) x and y in metres of the map's frame, and the heading in radians
+    places : number of cells on the shortest remembered way
+    contradicted : (n, 2) points of remembered moves that would make the way shorter, but that the map contradicts
+    """
+
+    start: Destination
+    goal: Destination
+    poses: NDArray[np.float64]
+    places: int
+    contradicted: NDArray[np.float64]
+
+    @property
+    def length(self) -> float:
+        """Length of the path in metres."""
+        return float(np.hypot(*np.diff(self.poses[:, :2], axis=0).T).sum())
+
+    def to_dict(self) -> dict:
+        """JSON data with the keys of ``nav_msgs/Path`` (``header``, ``poses``) and further keys about the way."""
+        return path_message(self.poses) | {
+            "from": {"name": self.start.name, "point": list(self.start.point or ())},
+            "to": {"name": self.goal.name, "point": list(self.goal.point or ())},
+            "length": self.length,
+            "places": self.places,
+            "contradicted": self.contradicted.tolist(),
+        }
+
+
+def way(
+    world: WorldSettings,
+    start: Destination,
+    goal: Destination,
+    memory: str | Path | None = None,
+    spacing: float | None = None,
+    building: str | None = None,
+) -> Way:
+    """The shortest way over remembered transitions, as a path that is clear by the robot's radius.
+
+    Parameters
+    ----------
+    world : WorldSettings
+        A building, with the cell and the robot's radius with which the robot lived in it.
+    start, goal : Destination
+        Points, or names that memory knows.
+    memory : str or Path, optional
+        SQLite file or URL; None: the user's own. It is only read.
+    spacing : float, optional
+        Metres: largest distance between two poses; None: only the corners of the path.
+    building : str, optional
+        Name of the building; None: recognise it.
+
+    Raises
+    ------
+    NotFoundError
+        Memory knows no way, or only ways that the map contradicts, or not the name, or not the building.
+    InputError
+        A setting or the map breaks its rule, or a point is no free place.
+    StoreError
+        Memory cannot be read.
+    """
+    if spacing is not None and not (math.isfinite(spacing) and spacing > 0):
+        raise InputError(f"spacing must be a positive number of metres, got {spacing}")
+    if world.domain != "building":
+        raise InputError(f"domain must be building for a way in metres, got {world.domain!r}")
+    occupancy = map_from_settings(world)
+    with open_memory(memory, read_only=True) as opened:
+        place = recognised_place(world, world_from_settings(world, occupancy), occupancy, opened, building)
+        moves, names = RememberedMoves.recalled(place, opened), NamedPlaces.of(place)
+        start, goal = names.located("from", start, opened), names.located("to", goal, opened)
+    floor = floor_of(place.occupancy or occupancy, place.world)
+    chain, contradicted = _KnownPart(moves, floor).chain(start, goal)
+    near = moves.near(chain, CORRIDOR)
+    path = clear_path(floor, near, start.located_point, goal.located_point, moves.true_moves)
+    assert path is not None, "true moves join the pieces of their cells"
+    return Way(start, goal, poses_along(path, spacing), len(chain), contradicted)
+
+
+@dataclass(frozen=True, eq=False)
+class _KnownPart:
+    """What memory knows about a building, with points that a robot can stand at."""
+
+    moves: RememberedMoves
+    floor: Floor
+
+    def chain(self, start: Destination, goal: Destination) -> tuple[list[int], NDArray[np.float64]]:
+        """Cells of the way, and the contradicted points of a shorter remembered way."""
+        first, last = self._cell("from", start), self._cell("to", goal)
+        chain, remembered = self.moves.chain(first, last), self.moves.chain(first, last, true_only=False)
+        contradicted = self.moves.contradicted(remembered)
+        if chain:
+            return chain, contradicted[: 0 if len(remembered) == len(chain) else None]
+        so_far = self._so_far(first, goal)
+        if remembered:
+            at = "; ".join(f"{x:.2f},{y:.2f}" for x, y in contradicted[:3])
+            raise NotFoundError(
+                f"the map contradicts the remembered way from {start} to {goal} in {len(contradicted)} of its "
+                f"{len(remembered) - 1} moves (near {at}), and memory knows no other way; {so_far}"
+            )
+        raise NotFoundError(f"memory knows no way from {start} to {goal}; {so_far}; live more tasks there")
+
+    def _cell(self, argument: str, end: Destination) -> int:
+        states = self.moves.states
+        cell = np.flatnonzero(states == self.floor.state_at(argument, end.located_point))
+        if len(cell):
+            return int(cell[0])
+        x, y, away = self._nearest(np.flatnonzero(states >= 0), end)
+        raise NotFoundError(
+            f"{argument}: memory knows no move at {end}; the nearest place that it knows is {x:.3f},{y:.3f}, "
+            f"{away:.2f} m away; give that place, or live more tasks there"
+        )
+
+    def _so_far(self, start: int, goal: Destination) -> str:
+        """How far the way is known, in words."""
+        reached = np.flatnonzero(np.isfinite(self.moves.reached(start)[0]))
+        x, y, away = self._nearest(reached, goal)
+        return (
+            f"from there it knows the way to {len(reached):,} of its {len(self.moves.cells):,} places, the "
+            f"nearest {x:.3f},{y:.3f}, {away:.2f} m from {goal}"
+        )
+
+    def _nearest(self, cells: NDArray[np.int64], end: Destination) -> tuple[float, float, float]:
+        points = self.floor.metres(self.floor.anchors[self.moves.states[cells]])
+        away = np.hypot(*(points - end.located_point).T)
+        x, y = points[away.argmin()]
+        return x, y, away.min()
+
+
+def poses_along(path: NDArray[np.float64], spacing: float | None = None) -> NDArray[np.float64]:
+    """Poses (m, 3) along a path of corners (n, 2): x, y and the heading towards the next pose in radians.
+
+    Between two corners lie as many poses as `spacing` asks for, at equal distances. The last pose has the heading
+    of the pose before it; a path of a single point has heading 0.
+    """
+    points = [path[:1]]
+    for a, b in pairwise(path):
+        parts = 1 if spacing is None else max(1, math.ceil(np.hypot(*(b - a)) / spacing - 1e-9))
+        points.append(np.linspace(a, b, parts + 1)[1:])
+    along = np.concatenate(points)
+    if len(along) < 2:
+        return np.column_stack([along, np.zeros(len(along))])
+    dx, dy = np.diff(along, axis=0).T
+    heading = np.arctan2(dy, dx)
+    return np.column_stack([along, np.append(heading, heading[-1])])
+
+
+def path_message(poses: NDArray[np.float64], frame: str = "map") -> dict:
+    """A ``nav_msgs/Path`` as JSON data; headings become quaternions about the vertical axis."""
+    header = {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": frame}
+    return {
+        "header": header,
+        "poses": [
+            {
+                "header": header,
+                "pose": {
+                    "position": {"x": x, "y": y, "z": 0.0},
+                    "orientation": {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2), "w": math.cos(yaw / 2)},
+                },
+            }
+            for x, y, yaw in poses.tolist()
+        ],
+    }
+
+
+def write_poses(path: str | Path, poses: NDArray[np.float64]) -> None:
+    """Write poses as CSV with the columns x, y (metres) and heading (radians).
+
+    Raises
+    ------
+    StoreError
+        The file cannot be written.
+    """
+    try:
+        with Path(path).open("w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(["x", "y", "heading"])
+            writer.writerows([f"{value:.4f}" for value in pose] for pose in poses.tolist())
+    except OSError as error:
+        raise StoreError(f"csv: cannot write {path}: {error.strerror}; choose another file") from None

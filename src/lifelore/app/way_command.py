@@ -1,0 +1,74 @@
+"""`lifelore way`: a path in metres between two places of a building, from memory."""
+
+from typing import Annotated
+
+import typer
+
+Option = typer.Option
+
+
+def way(
+    start: Annotated[
+        str, Option("--from", metavar="X,Y|NAME", help="Start: metres in the map's frame, or a known name.")
+    ],
+    goal: Annotated[
+        str, Option("--to", metavar="X,Y|NAME", help="Destination: metres in the map's frame, or a known name.")
+    ],
+    map: Annotated[
+        str | None, Option(metavar="YAML", help="ROS map of the building; default: the generated office.")
+    ] = None,
+    memory: Annotated[
+        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
+    ] = None,
+    csv: Annotated[
+        str | None, Option("--csv", metavar="FILE", help="File for the path: x, y (metres), heading (radians).")
+    ] = None,
+    spacing: Annotated[
+        float | None, Option(help="Largest distance between two poses in metres; default: only the corners.")
+    ] = None,
+    cell: Annotated[float | None, Option(help="Side of a grid cell in metres, as in `live` [0.5].")] = None,
+    robot_radius: Annotated[
+        float | None, Option(help="Radius of the robot in metres, as in `live` [0.2].")
+    ] = None,
+    building: Annotated[
+        str | None, Option(metavar="NAME", help="Name of the building; default: recognise it by its map.")
+    ] = None,
+    seed: Annotated[int, Option(help="Without a map: seed of the generated office.")] = 0,
+    as_json: Annotated[
+        bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
+    ] = False,
+) -> None:
+    """Answer from memory how to drive from one place to another, as a path that is clear of obstacles.
+
+    Use it after `live`. The way leads over remembered moves only, and the path keeps the robot's radius from all
+    that the map does not show as free.
+    """
+    from lifelore.agent.live.destinations import destination_from_text
+    from lifelore.agent.way import way as find_way
+    from lifelore.agent.way import write_poses
+    from lifelore.app.console import print_json
+    from lifelore.domains.worlds import WorldSettings
+
+    settings = WorldSettings("building", map, cell=cell, robot_radius=robot_radius, seed=seed)
+    ends = destination_from_text("from", start), destination_from_text("to", goal)
+    found = find_way(settings, *ends, memory, spacing, building)
+    if csv is not None:
+        write_poses(csv, found.poses)
+    if as_json:
+        print_json(found.to_dict())
+        return
+    print(
+        f"{found.length:.2f} m from {found.start} to {found.goal} over {found.places} remembered places, "
+        f"{len(found.poses)} poses"
+    )
+    if len(found.contradicted):
+        x, y = found.contradicted[0]
+        print(
+            f"a shorter remembered way is not used: the map contradicts {len(found.contradicted)} of its moves, "
+            f"the first near {x:.2f},{y:.2f}"
+        )
+    if csv is not None:
+        print(f"wrote {csv}")
+        return
+    for x, y, heading in found.poses.tolist():
+        print(f"{x:.3f} {y:.3f} {heading:+.3f}")

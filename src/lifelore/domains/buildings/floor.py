@@ -1,0 +1,143 @@
+"""`Floor`: the places of a building at the resolution of its map; metres of the map's frame to pixels and back.
+
+A `GridWorld` says which cells there are. A floor says which pixels each cell consists of, so that a path or a
+point in metres can be compared with the map. Pixel coordinates are (row, column) with whole numbers at pixel
+centres.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy import ndimage
+
+from lifelore.core.errors import InputError
+from lifelore.domains.buildings.free_space import free_pixels, largest_pieces, solid_pixels, square_grid
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, OccupancyMap
+from lifelore.domains.grids.grid_world import GridWorld
+
+
+@dataclass(frozen=True, eq=False)
+class Floor:
+    """Pixels of a building; made by `floor_of`.
+
+    occupancy : the map
+    state : (rows, columns) int32, state whose piece of free space holds the pixel; -1 where the robot has no place
+    solid : (rows, columns) bool, pixels from whose centres the robot's centre stays farther than its radius
+    robot_radius : metres
+    n_states : number of states of the building
+    """
+
+    occupancy: OccupancyMap
+    state: NDArray[np.int32]
+    solid: NDArray[np.bool_]
+    robot_radius: float
+    n_states: int
+
+    @property
+    def radius(self) -> float:
+        """The robot's radius in pixels."""
+        return self.robot_radius / self.occupancy.resolution
+
+    @cached_property
+    def distance(self) -> NDArray[np.float64]:
+        """(rows, columns) pixels from each pixel centre to the nearest solid one; inf if no pixel is solid."""
+        if not self.solid.any():
+            return np.full(self.solid.shape, np.inf)
+        return np.asarray(ndimage.distance_transform_edt(~self.solid))
+
+    def pixels(self, points: ArrayLike) -> NDArray[np.float64]:
+        """Pixel coordinates (n, 2) of `points`, (n, 2) x and y in metres of the map's frame."""
+        x0, y0, yaw = self.occupancy.origin
+        dx, dy = (np.asarray(points, float).reshape(-1, 2) - (x0, y0)).T / self.occupancy.resolution
+        right, up = np.cos(yaw) * dx + np.sin(yaw) * dy, np.cos(yaw) * dy - np.sin(yaw) * dx
+        return np.column_stack([self.state.shape[0] - 0.5 - up, right - 0.5])
+
+    def metres(self, pixels: ArrayLike) -> NDArray[np.float64]:
+        """Points (n, 2) in metres of the map's frame, of (n, 2) pixel coordinates; the inverse of `pixels`."""
+        x0, y0, yaw = self.occupancy.origin
+        row, column = np.asarray(pixels, float).reshape(-1, 2).T
+        right = (column + 0.5) * self.occupancy.resolution
+        up = (self.state.shape[0] - 0.5 - row) * self.occupancy.resolution
+        return np.column_stack(
+            [x0 + np.cos(yaw) * right - np.sin(yaw) * up, y0 + np.sin(yaw) * right + np.cos(yaw) * up]
+        )
+
+    @cached_property
+    def _by_state(self) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Flat pixel numbers sorted by state, and where the pixels of each state begin."""
+        pixel = np.flatnonzero(self.state >= 0)
+        state = self.state.ravel()[pixel]
+        order = np.argsort(state, kind="stable")
+        return pixel[order], np.searchsorted(state[order], np.arange(self.n_states + 1))
+
+    def pixels_of(self, states: ArrayLike) -> NDArray[np.int64]:
+        """Flat numbers of the pixels of these states, ascending."""
+        pixel, begin = self._by_state
+        return np.sort(np.concatenate([pixel[begin[s] : begin[s + 1]] for s in np.unique(states)]))
+
+    @cached_property
+    def anchors(self) -> NDArray[np.int64]:
+        """(n_states, 2) the pixel of each state that is farthest from solid pixels; the first in reading order."""
+        pixel, begin = self._by_state
+        state = self.state.ravel()[pixel]
+        order = np.lexsort((pixel, -self.distance.ravel()[pixel], state))
+        return np.column_stack(np.unravel_index(pixel[order][begin[:-1]], self.state.shape))
+
+    def state_at(self, name: str, point: tuple[float, float]) -> int:
+        """The state in whose piece of free space a point lies; `name` is the argument that an error names.
+
+        Raises
+        ------
+        InputError
+            The robot's centre cannot be at the point; the message says why, and where the nearest free place is.
+        """
+        (row, column) = self.pixels(point)[0]
+        at = round(row), round(column)
+        inside = 0 <= at[0] < self.state.shape[0] and 0 <= at[1] < self.state.shape[1]
+        if inside and self.state[at] >= 0 and self._is_clear((row, column)):
+            return int(self.state[at])
+        x, y = self.metres(self._nearest((row, column)))[0]
+        raise InputError(
+            f"{name} must be a free place of this map, in metres of its frame; {point[0]:g},{point[1]:g} "
+            f"{self._why_not(at if inside else None)}; the nearest free place is {x:.3f},{y:.3f}"
+        )
+
+    def _is_clear(self, pixel: tuple[float, float]) -> bool:
+        reach = int(self.radius) + 2
+        row, column = round(pixel[0]), round(pixel[1])
+        top, left = max(row - reach, 0), max(column - reach, 0)
+        near = np.argwhere(self.solid[top : row + reach + 1, left : column + reach + 1])
+        return bool((np.hypot(*(near + np.array([top, left]) - np.array(pixel)).T) > self.radius).all())
+
+    def _nearest(self, pixel: tuple[float, float]) -> NDArray[np.int64]:
+        free = np.argwhere(self.state >= 0)
+        return free[np.hypot(*(free - np.array(pixel)).T).argmin()]
+
+    def _why_not(self, at: tuple[int, int] | None) -> str:
+        if at is None:
+            return "lies outside the map"
+        seen = self.occupancy.state[at]
+        if seen != FREE:
+            return "is occupied" if seen == OCCUPIED else "is unknown"
+        if self.distance[at] <= self.radius + 1:
+            return f"is nearer to an obstacle than the robot's radius of {self.robot_radius:g} m"
+        return "is free, but belongs to no place that the robot can reach"
+
+
+def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:
+    """The floor of a building that `building_from_map` made of this map."""
+    about = world.about
+    solid = solid_pixels(occupancy)
+    free = free_pixels(occupancy, solid, about["robot_radius"])
+    grid = square_grid(free.shape, occupancy.resolution, about["cell"])
+    state = world.state_of[np.ix_(grid.row_of, grid.column_of)]
+    piece = largest_pieces(free, grid)
+    return Floor(
+        occupancy,
+        np.where(piece, state, np.int32(-1)).astype(np.int32),
+        solid,
+        about["robot_radius"],
+        world.n_states,
+    )

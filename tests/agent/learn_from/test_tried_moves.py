@@ -1,0 +1,73 @@
+"""Poses become moves: worked by hand on a small floor, also turned and shifted."""
+
+import numpy as np
+import pytest
+
+from lifelore.agent.learn_from.run_log import Run
+from lifelore.agent.learn_from.tried_moves import move_directions, tried_moves
+from lifelore.domains.grids.grid_world import Frame, GridWorld
+
+FREE = np.array([[1, 1, 0], [1, 1, 1]], bool)
+FRAMES = [Frame(1.0), Frame(0.5, (10.0, -20.0, 0.0)), Frame(0.5, (3.0, 4.0, 2.0))]
+
+
+def floor(frame: Frame) -> GridWorld:
+    return GridWorld.from_free("floor", FREE, frame=frame)
+
+
+def run(world: GridWorld, cells, outcome=(), heading=None) -> Run:
+    """A run through points given in cells: (column, row from the bottom), 0.5 is the centre of the first cell."""
+    x0, y0, yaw = world.frame.origin
+    right, up = np.array(cells, float).T * world.frame.cell
+    points = np.column_stack(
+        [x0 + np.cos(yaw) * right - np.sin(yaw) * up, y0 + np.sin(yaw) * right + np.cos(yaw) * up]
+    )
+    words = [*outcome, *[""] * (len(cells) - len(outcome))]
+    headings = np.full(len(cells), np.nan) if heading is None else np.array(heading) + yaw
+    return Run("r", np.arange(len(cells), dtype=float), points, headings, words)
+
+
+@pytest.fixture(params=FRAMES, ids=["plain", "shifted", "turned"])
+def world(request):
+    return floor(request.param)
+
+
+def test_states_at_is_the_inverse_of_positions(world):
+    states = np.arange(world.n_states)
+    assert world.states_at(world.positions(states)).tolist() == states.tolist()
+    far = world.positions(states[:1]) + np.array([100.0, 0.0])
+    assert world.states_at(far).tolist() == [-1]
+
+
+def test_moves_point_where_positions_lead(world):
+    for action, direction in enumerate(move_directions(world)):
+        state = np.flatnonzero(world.neighbour[:, action] >= 0)[:1]
+        step = world.positions(world.neighbour[state, action]) - world.positions(state)
+        assert np.allclose(step[0], world.frame.cell * direction)
+
+
+def test_a_drive_is_a_chain_of_moves(world):
+    # Bottom left, east to the middle, a long piece north, then a gap.
+    tried = tried_moves(world, run(world, [(0.5, 0.5), (0.9, 0.5), (1.6, 0.5), (1.6, 1.9), (1.6, -5)]))
+    left, middle, top = (world.state_of[cell] for cell in ((1, 0), (1, 1), (0, 1)))
+    assert (tried.states, tried.actions, tried.targets) == ([left, middle], [2, 0], [middle, top])
+    assert (tried.outside, tried.gaps, tried.contradictions) == (1, 1, 0)
+
+
+def test_a_hop_through_a_wall_is_not_learnt():
+    # Two rows of a floor with a wall between them that is thinner than a cell.
+    neighbour = np.array([[-1, -1, 1, -1], [-1, -1, -1, 0], [-1, -1, 3, -1], [-1, -1, -1, 2]], np.int32)
+    world = GridWorld("thin", (2, 2), np.array([(0, 0), (0, 1), (1, 0), (1, 1)], np.int32), neighbour)
+    tried = tried_moves(world, run(world, [(0.5, 0.5), (0.5, 1.5), (1.5, 1.5)]))
+    assert (tried.states, tried.actions, tried.targets, tried.contradictions) == ([0], [2], [1], 1)
+
+
+def test_bumps_have_the_direction_of_the_heading_or_of_the_drive(world):
+    top = world.state_of[0, 1]
+    wall = tried_moves(world, run(world, [(1.2, 1.5), (1.9, 1.5)], ["", "bump"]))
+    assert (wall.states, wall.actions, wall.targets, wall.new_obstacles) == ([top], [2], [top], [])
+    chair = tried_moves(world, run(world, [(1.2, 1.5), (1.9, 1.5)], ["", "bump"], [0.0, np.pi]))
+    assert (chair.states, chair.actions, chair.targets) == ([top], [3], [top])
+    assert chair.new_obstacles == [(top, 3)]  # the map is free to the west
+    unknown = tried_moves(world, run(world, [(1.5, 1.5)], ["bump"]))
+    assert (unknown.states, unknown.undirected) == ([], 1)

@@ -1,0 +1,254 @@
+"""Ways from memory: over remembered moves only, clear of obstacles, and honest about the rest."""
+
+import csv
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.agent.live.destinations import Destination
+from lifelore.agent.live.job_list import Job
+from lifelore.agent.live.life import live
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
+from lifelore.agent.live.transitions import model_table, to_record
+from lifelore.agent.way import Way, path_message, poses_along, way, write_poses
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.learning.known_world import unknown_world
+from lifelore.domains.buildings.floor import floor_of
+from lifelore.domains.buildings.occupancy_map import UNKNOWN, OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.office import office_map
+from lifelore.domains.worlds import WorldSettings, world_from_settings
+from lifelore.memory import open_memory
+
+LEFT, RIGHT = Destination((1.25, 1.25)), Destination((10.75, 1.25))
+
+
+def two_rooms(folder: Path, name: str, doors: tuple[int, ...]) -> str:
+    """Two rooms of 6 x 6 m side by side, joined by doors 1 m wide from these rows on."""
+    state = np.zeros((62, 121), np.uint8)
+    state[[0, -1], :] = state[:, [0, -1]] = state[:, 60] = 1
+    for door in doors:
+        state[door : door + 10, 60] = 0
+    write_occupancy_map(folder / f"{name}.yaml", OccupancyMap(state, 0.1))
+    return str(folder / f"{name}.yaml")
+
+
+def remember(folder: Path, map: str, left_out: tuple[float, float] | None = None) -> str:
+    """A memory with all true moves of a building, less those of cells right of x and above y in `left_out`."""
+    world = world_from_settings(WorldSettings(map=map))
+    model = unknown_world(world.n_states, 4)
+    model.target[:] = np.where(world.neighbour < 0, np.arange(world.n_states)[:, None], world.neighbour)
+    model.percept[:] = world.percepts
+    if left_out is not None:
+        x, y = world.positions(np.arange(world.n_states)).T
+        unseen = (x > left_out[0]) & (y > left_out[1])
+        model.target[unseen], model.percept[unseen] = -1, -1
+        model.target[np.isin(model.target, np.flatnonzero(unseen))] = -1
+    blank = model_table(world, unknown_world(world.n_states, 4))
+    record = to_record(world, model_table(world, model), blank)
+    with open_memory(folder / "known.db") as memory:
+        memory.contribute("robot", [record], process="p", seq=0, task={})
+    return str(folder / "known.db")
+
+
+def find(map: str, memory: str, start=LEFT, goal=RIGHT, **options) -> Way:
+    return way(WorldSettings(map=map), start, goal, memory, **options)
+
+
+def test_a_way_leads_through_the_door(tmp_path):
+    rooms = two_rooms(tmp_path, "rooms", (2,))  # at the top: y from 5.0 to 6.0 m
+    found = find(rooms, remember(tmp_path, rooms))
+    assert np.allclose(found.poses[[0, -1], :2], [LEFT.point, RIGHT.point])
+    crossing = np.flatnonzero(np.diff(found.poses[:, 0] > 6.05))
+    assert len(crossing) == 1
+    assert 5.0 < found.poses[crossing[0], 1] < 6.0
+    assert len(found.contradicted) == 0
+    # Two straight lines by way of the door's corner (6.05, 5.0 + radius) are a lower bound.
+    bound = np.hypot(6.05 - 1.25, 5.2 - 1.25) * 2 - 0.2
+    assert bound < found.length < bound * 1.1
+
+
+def test_of_two_doors_the_remembered_one_is_used(tmp_path):
+    """The map has a near door at the bottom; memory has never seen it."""
+    rooms = two_rooms(tmp_path, "rooms", (2, 45))
+    near = find(rooms, remember(tmp_path, rooms))
+    (tmp_path / "known.db").unlink()
+    upper = two_rooms(tmp_path, "upper", (2,))
+    world, both = (world_from_settings(WorldSettings(map=name)) for name in (upper, rooms))
+    memory = remember(tmp_path, upper)
+    # The same frame, and percepts that agree in nearly all places: an earlier version of this building.
+    assert world.fingerprint != both.fingerprint
+    far = find(rooms, memory)
+    assert far.length > near.length + 2
+    assert far.poses[:, 1].max() > 5.0 > near.poses[:, 1].max()
+
+
+def test_a_closed_door_contradicts_the_remembered_way(tmp_path):
+    before, after = two_rooms(tmp_path, "before", (2, 45)), two_rooms(tmp_path, "after", (2,))
+    memory = remember(tmp_path, before)
+    around = find(after, memory)
+    assert around.poses[:, 1].max() > 5.0
+    assert len(around.contradicted) >= 1
+    x, y = around.contradicted[0]
+    assert abs(x - 6.05) < 0.6
+    assert 0.6 < y < 1.7
+    closed = two_rooms(tmp_path, "closed", ())
+    with pytest.raises(NotFoundError):  # each room alone is a building of its own
+        find(closed, memory)
+
+
+def test_a_way_that_the_map_contradicts_everywhere_is_named_so(tmp_path):
+    before = two_rooms(tmp_path, "before", (45,))
+    memory = remember(tmp_path, before)
+    after = two_rooms(tmp_path, "after", (2,))  # the door is now at the other end
+    with pytest.raises(NotFoundError) as caught:
+        find(after, memory)
+    assert "the map contradicts the remembered way from 1.25,1.25 to 10.75,1.25" in str(caught.value)
+    assert "from there it knows the way to" in str(caught.value)
+
+
+def test_a_way_not_known_says_how_far_it_is_known(tmp_path):
+    rooms = two_rooms(tmp_path, "rooms", (2,))
+    memory = remember(tmp_path, rooms, left_out=(6.0, 0.0))
+    with pytest.raises(NotFoundError) as caught:
+        find(rooms, memory)
+    message = str(caught.value)
+    assert "to: memory knows no move at 10.75,1.25; the nearest place that it knows is" in message
+    memory = remember_gap(tmp_path, rooms)
+    with pytest.raises(NotFoundError) as caught:
+        find(rooms, memory)
+    message = str(caught.value)
+    assert message.startswith("memory knows no way from 1.25,1.25 to 10.75,1.25; from there it knows the way to ")
+    # The nearest reached place lies just left of the gap; a robot can stand there.
+    near = message.split("the nearest ")[1].split(",")
+    x, y = float(near[0]), float(near[1])
+    assert 5.0 < x < 6.5
+    assert f"{math.hypot(10.75 - x, 1.25 - y):.2f} m from 10.75,1.25" in message
+    assert find(rooms, memory, goal=Destination((x, y))).length > 0
+
+
+def remember_gap(folder: Path, map: str) -> str:
+    """All moves but those across x = 6.5 m."""
+    world = world_from_settings(WorldSettings(map=map))
+    model = unknown_world(world.n_states, 4)
+    model.target[:] = np.where(world.neighbour < 0, np.arange(world.n_states)[:, None], world.neighbour)
+    model.percept[:] = world.percepts
+    right = world.positions(np.arange(world.n_states))[:, 0] > 6.5
+    model.target[right[:, None] != right[model.target]] = -1
+    blank = model_table(world, unknown_world(world.n_states, 4))
+    with open_memory(folder / "gap.db") as memory:
+        record = to_record(world, model_table(world, model), blank)
+        memory.contribute("robot", [record], process="p", seq=0, task={})
+    return str(folder / "gap.db")
+
+
+def test_a_robot_can_drive_back_unless_memory_knows_otherwise(tmp_path):
+    rooms = two_rooms(tmp_path, "rooms", (2,))
+    world = world_from_settings(WorldSettings(map=rooms))
+    for refused in (False, True):
+        model = unknown_world(world.n_states, 4)
+        model.target[:, 2] = world.neighbour[:, 2]  # east alone
+        state = int(world.state_of[9, 4])
+        if refused:
+            model.target[state, 3] = state
+        record = to_record(world, model_table(world, model), model_table(world, unknown_world(world.n_states, 4)))
+        with open_memory(tmp_path / f"{refused}.db") as memory:
+            memory.contribute("robot", [record], process="p", seq=0, task={})
+        east, west = Destination((4.25, 1.75)), Destination((1.25, 1.75))
+        assert find(rooms, str(tmp_path / f"{refused}.db"), west, east).length == pytest.approx(3.0)
+        if refused:
+            with pytest.raises(NotFoundError, match="memory knows no way"):
+                find(rooms, str(tmp_path / f"{refused}.db"), east, west)
+        else:
+            assert find(rooms, str(tmp_path / f"{refused}.db"), east, west).length == pytest.approx(3.0)
+
+
+def test_names_of_a_life_are_known(tmp_path):
+    rooms, memory = two_rooms(tmp_path, "rooms", (2,)), str(tmp_path / "life.db")
+    ends = Destination(LEFT.point, "dock"), Destination(RIGHT.point, "lab")
+    jobs = tuple(Job(end) for end in ends) * 2
+    live(LifeSettings(WorldSettings(map=rooms), memory=MemorySettings(memory), goals=jobs))
+    found = find(rooms, memory, Destination(name="dock"), Destination(name="lab"))
+    assert (found.start, found.goal) == ends
+    assert find(rooms, memory, Destination(name="dock")).goal == RIGHT
+
+
+@pytest.mark.parametrize(
+    ("options", "error", "words"),
+    [
+        ({"start": Destination((0.1, 0.1))}, InputError, "from must be a free place"),
+        ({"goal": Destination((99.0, 0.1))}, InputError, "to must be a free place"),
+        ({"goal": Destination(name="lab")}, NotFoundError, "to: no destination of this building is named 'lab'"),
+        ({"spacing": 0.0}, InputError, "spacing must be a positive number of metres"),
+        ({"spacing": float("nan")}, InputError, "spacing must be a positive number of metres"),
+    ],
+)
+def test_questions_that_break_a_rule(tmp_path, options, error, words):
+    rooms = two_rooms(tmp_path, "rooms", (2,))
+    with pytest.raises(error, match=words):
+        find(rooms, remember(tmp_path, rooms), **options)
+
+
+def test_a_map_that_was_saved_again_has_the_same_names_and_ways(tmp_path):
+    """Padded on the left and shifted: the same spot has other coordinates."""
+    office, memory = office_map(5), str(tmp_path / "life.db")
+    write_occupancy_map(tmp_path / "office.yaml", office)
+    again = np.pad(office.state, ((7, 3), (13, 0)), constant_values=UNKNOWN)
+    origin = (office.origin[0] + 4.0, office.origin[1] - 2.5, 0.0)
+    write_occupancy_map(tmp_path / "again.yaml", OccupancyMap(again, office.resolution, origin))
+    world = world_from_settings(WorldSettings(map=str(tmp_path / "office.yaml")))
+    floor = floor_of(office, world)
+    ends = [tuple(point) for point in floor.metres(floor.anchors[[0, world.n_states - 1]]).tolist()]
+    jobs = tuple(Job(Destination(end, name)) for end, name in zip(ends, ("north", "south"), strict=True)) * 2
+    live(LifeSettings(WorldSettings(map=str(tmp_path / "office.yaml")), memory=MemorySettings(memory), goals=jobs))
+    north, south = Destination(name="north"), Destination(name="south")
+    before, after = (find(str(tmp_path / f"{name}.yaml"), memory, north, south) for name in ("office", "again"))
+    shift = np.array([4.0 + 13 * office.resolution, -2.5 + 3 * office.resolution])
+    assert np.allclose(after.poses[[0, -1], :2], before.poses[[0, -1], :2] + shift, atol=0.1)
+    assert after.length == pytest.approx(before.length, abs=0.5)
+
+
+def test_another_building_or_no_memory(tmp_path):
+    rooms = two_rooms(tmp_path, "rooms", (2,))
+    memory = remember(tmp_path, rooms)
+    with pytest.raises(NotFoundError, match=r"knows no moves of this building with cell 0.25, min_free"):
+        way(WorldSettings(map=rooms, cell=0.25), LEFT, RIGHT, memory)
+    with pytest.raises(NotFoundError, match="knows no moves of this building"):
+        way(WorldSettings(seed=3), LEFT, RIGHT, memory)
+    with pytest.raises(StoreError, match="does not exist"):
+        find(rooms, str(tmp_path / "none.db"))
+    with pytest.raises(InputError, match="domain must be building"):
+        way(WorldSettings("lattice"), LEFT, RIGHT, memory)
+
+
+def test_poses_lie_on_the_path_at_equal_distances_and_look_ahead():
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 0.5]])
+    assert poses_along(corners).tolist() == [[0, 0, 0], [1, 0, math.pi / 2], [1, 0.5, math.pi / 2]]
+    poses = poses_along(corners, 0.3)
+    assert np.allclose(poses[:, 0], [0, 0.25, 0.5, 0.75, 1, 1, 1])
+    assert np.allclose(poses[:, 1], [0, 0, 0, 0, 0, 0.25, 0.5])
+    assert np.allclose(poses[:, 2], [0, 0, 0, 0] + [math.pi / 2] * 3)
+    assert poses_along(corners[:1]).tolist() == [[0, 0, 0]]
+    assert len(poses_along(corners, 0.5)) == 4
+
+
+def test_the_message_has_the_shape_of_a_path():
+    message = path_message(np.array([[1.0, 2.0, math.pi / 2]]))
+    assert set(message) == {"header", "poses"}
+    assert message["header"] == {"stamp": {"sec": 0, "nanosec": 0}, "frame_id": "map"}
+    (stamped,) = message["poses"]
+    assert stamped["header"] == message["header"]
+    assert stamped["pose"]["position"] == {"x": 1.0, "y": 2.0, "z": 0.0}
+    half = math.sqrt(0.5)  # a quarter turn about z
+    assert stamped["pose"]["orientation"] == pytest.approx({"x": 0.0, "y": 0.0, "z": half, "w": half})
+
+
+def test_poses_as_csv(tmp_path):
+    write_poses(tmp_path / "way.csv", np.array([[1.0, 2.0, -0.5], [3.25, 4.0, -0.5]]))
+    with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
+        assert list(csv.reader(file)) == [
+            ["x", "y", "heading"], ["1.0000", "2.0000", "-0.5000"], ["3.2500", "4.0000", "-0.5000"]
+        ]  # fmt: skip
+    with pytest.raises(StoreError, match="csv: cannot write"):
+        write_poses(tmp_path / "no" / "way.csv", np.empty((0, 3)))

@@ -1,0 +1,65 @@
+"""`lifelore way`: what it prints, and the path as JSON and CSV."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
+
+JOBS = "time,name,x,y\n10:00,lab,5.05,3.05\n09:00,dock,0.55,0.55\n11:00,lab,,\n"
+
+
+@pytest.fixture
+def lived(ask, tmp_path: Path) -> list[object]:
+    """Options that name a room of 6 x 4 m and the memory of a life there."""
+    state = np.zeros((42, 62), np.uint8)
+    state[[0, -1], :] = state[:, [0, -1]] = 1
+    write_occupancy_map(tmp_path / "room.yaml", OccupancyMap(state, 0.1))
+    (tmp_path / "jobs.csv").write_text(JOBS)
+    options = ["--map", tmp_path / "room.yaml", "--memory", tmp_path / "life.db"]
+    said = ask("live", *options, "--goals", "jobs.csv")
+    assert (said.status, said.err) == (0, "")
+    assert "task 0: 09:00 dock 0.55,0.55: lore" in said.out
+    assert "task 2: 11:00 lab 5.05,3.05: lore" in said.out
+    return options
+
+
+def test_a_person_reads_the_way(ask, lived):
+    said = ask("way", *lived, "--from", "dock", "--to", "lab")
+    assert (said.status, said.err) == (0, "")
+    first, *poses = said.out.splitlines()
+    assert first.startswith("5.15 m from dock to lab over ")
+    assert poses == ["0.550 0.550 +0.507", "5.050 3.050 +0.507"]  # atan2(2.5, 4.5)
+
+
+def test_the_way_as_json_and_csv(ask, lived):
+    said = ask("way", *lived, "--from", "0.55,0.55", "--to", "lab", "--json", "--csv", "way.csv", "--spacing", 0.1)
+    assert (said.status, said.err) == (0, "")
+    way = said.document
+    assert way["header"]["frame_id"] == "map"
+    assert way["from"] == {"name": None, "point": [0.55, 0.55]}
+    assert way["to"] == {"name": "lab", "point": [5.05, 3.05]}
+    assert way["length"] == pytest.approx(np.hypot(4.5, 2.5))
+    positions = [pose["pose"]["position"] for pose in way["poses"]]
+    with Path("way.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    found = [(float(row["x"]), float(row["y"])) for row in rows]
+    assert np.allclose(found, [(at["x"], at["y"]) for at in positions], atol=1e-4)
+    assert len(rows) == 53  # 5.148 m in steps of at most 0.1 m
+
+
+@pytest.mark.parametrize(
+    ("question", "words"),
+    [
+        (("--from", "dock", "--to", "cellar"), "memory knows dock, lab; give X,Y in metres"),
+        (("--from", "dock", "--to", "0.05,1"), "the nearest free place is"),
+        (("--from", "1,2,3", "--to", "lab"), "from must be X,Y"),
+        (("--from", "dock", "--to", "lab", "--robot-radius", "0.3"), "knows no moves of this building"),
+        (("--from", "dock", "--to", "lab", "--csv", "no/where.csv"), "csv: cannot write no/where.csv"),
+        (("--to", "lab"), "--from"),
+    ],
+)
+def test_a_mistake_is_one_line(ask, lived, question, words):
+    assert words in ask("way", *lived, *question).refusal
