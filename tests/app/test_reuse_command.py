@@ -1,5 +1,6 @@
 """`lifelore reuse …`: what is printed, and one line for every mistake, with nothing lost."""
 
+import re
 import shutil
 import subprocess
 import sys
@@ -78,6 +79,49 @@ def test_in_words(reuse, log):
     assert "given to the control group" in reuse("add", "round").out
     assert reuse("forget", "ann").out == "2 contributions of ann forgotten\n"
     assert "no outcome yet" in reuse("report").out
+
+
+def test_a_log_of_another_program_in_words(reuse, tmp_path):
+    rows = [f"h{user};{brand};{int(brand == 'xy'[user % 2])},0" for user in range(8) for brand in "xyxy"]
+    text = "Household;brand;took\n" + "\n".join([*rows, "h1;;1,0", "h2;x;NA", "h3;Süß;0,5"]) + "\n"
+    (tmp_path / "log.csv").write_bytes(text.encode("latin-1"))
+    form = ["--columns", "user=household,policy=brand,outcome=took", "--decimal-comma", "--encoding", "latin-1"]
+    form += ["--missing", "NA"]
+    assert "log.csv line 34: policy must be" in reuse("fit", tmp_path / "log.csv", *form).refusal
+    said = reuse("fit", tmp_path / "log.csv", *form, "--missing-policy", "leave-out", "--types", "2").out
+    assert said.startswith("study default: 33 outcomes of 8 users, 3 policies, 2 types found")
+    assert "  1 lines without an outcome yet left out\n" in said
+    assert "  1 lines without a policy left out\n" in said
+
+
+def test_warm_in_words_and_a_first_choice_that_knows_the_past(reuse, log, tmp_path):
+    reuse("fit", log, "--control", "0")
+    (tmp_path / "later.csv").write_text("user,policy,outcome\n" + "ann,dark,1\nann,big,0\n" * 9)
+    assert "no study 'none'" in reuse("warm", log, "--name", "none").refusal
+    first = reuse("warm", tmp_path / "later.csv").out
+    assert first == "study default: 18 outcomes of 1 users added to their past\n"
+    again = reuse("warm", tmp_path / "later.csv", "--json").document
+    assert (again["rows"], again["known"]) == (0, 18)
+    assert "  18 lines were read before and are not counted again\n" in reuse("warm", tmp_path / "later.csv").out
+    made = reuse("choose", "--user", "ann", "--json").document
+    assert (made["policy"], made["number"]) == ("dark", 0)
+    assert max(made["belief"].values()) > 0.99
+    assert reuse("forget", "ann").out == "2 contributions of ann forgotten\n".replace("2", "1")
+
+
+def test_the_report_has_a_row_for_each_policy(reuse, log):
+    reuse("fit", log, "--control", "0.5")
+    for user in range(14):
+        made = reuse("choose", "--user", f"n{user}", "--json").document
+        reuse("update", "--decision", made["decision"], "--outcome", int(made["policy"] == "big"))
+    said = reuse("report", "--incumbent", "dark").out
+    for policy in ("big", "dark"):
+        assert re.search(rf"^    {policy} +[01](\.\d+)?.*, \d+ users$", said, flags=re.M)
+    assert "uplift over the best single policy, " in said
+    assert "uplift over the incumbent, dark: " in said
+    assert "0 decisions" not in reuse("report", "--split", "both").out
+    assert "split must be one of user, time, both, got 'week'" in reuse("report", "--split", "week").refusal
+    assert "incumbent must be a policy of the study" in reuse("report", "--incumbent", "none").refusal
 
 
 def test_a_new_fit_says_what_it_sets_anew(reuse, log):
@@ -160,7 +204,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),
         (["add", "big"], "'big' is there already (active)"),
-        (["forget", "nobody"], "nothing is kept of user 'nobody'"),
+        (["forget", "nobody"], "nothing is stored of user 'nobody'"),
         (["dance"], "No such command"),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else "",

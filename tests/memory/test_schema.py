@@ -1,10 +1,32 @@
 """Numbered steps: each with its note or not at all, and a newer memory is refused."""
 
+import numpy as np
 import pytest
 from sqlalchemy import text
 
 from lifelore.core.errors import StoreError
+from lifelore.core.protocols import Record
 from lifelore.memory import open_memory, schema
+
+NOW = sorted(schema.MIGRATIONS)
+
+
+@pytest.fixture
+def first_schema(monkeypatch):
+    """Lifelore as it was before forgotten records and states: its tables, and how it writes."""
+    from lifelore.memory import cache, ledger
+
+    def make(where, fill):
+        with monkeypatch.context() as patch:
+            patch.setattr(schema, "LATEST", 1)
+            stamps = "SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions"
+            patch.setattr(ledger, "_LARGEST_STAMP", text(stamps))
+            patch.setattr(cache, "_SET_STATE", text("SELECT :lore, :token, :state"))
+            with open_memory(where) as memory:
+                fill(memory)
+                assert steps(memory) == [1]
+
+    return make
 
 
 @pytest.fixture
@@ -15,6 +37,7 @@ def next_schema(monkeypatch):
         number = schema.LATEST + 1
         monkeypatch.setattr(schema, "MIGRATIONS", schema.MIGRATIONS | {number: ("a test", statements)})
         monkeypatch.setattr(schema, "LATEST", number)
+        monkeypatch.setattr(schema, "READABLE", number)
         return number
 
     return with_step
@@ -28,14 +51,36 @@ def steps(memory) -> list[int]:
 def test_an_older_memory_takes_the_missing_steps(where, next_schema):
     with open_memory(where) as memory:
         memory.contribute("a", [], process="p", seq=0, task={})
-        assert steps(memory) == [1, 2]
+        assert steps(memory) == NOW
     number = next_schema("ALTER TABLE lifelore_contributions ADD COLUMN note {text}")
     with open_memory(where) as memory:
-        assert steps(memory) == [1, 2, number]
+        assert steps(memory) == [*NOW, number]
         assert (memory.tasks("a"), memory.show()["schema"]) == (1, number)
         assert memory.contribute("a", [], process="p", seq=1, task={})
     with open_memory(where) as memory:
-        assert steps(memory) == [1, 2, number]
+        assert steps(memory) == [*NOW, number]
+
+
+def fill(memory):
+    weights = Record("prior", "b7", 1, "add", np.array([4, 2]), np.array([10, 30]))
+    assert memory.contribute("a", [weights], process="p", seq=0, task={})
+
+
+def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
+    first_schema(where, fill)
+    with open_memory(where) as memory:
+        assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
+        assert memory.recall_state("prior", "b7", 1) == (0, None, {})
+        assert memory.check() == []
+
+
+def test_a_source_of_the_first_schema_is_merged_as_it_is(file, tmp_path, first_schema):
+    first_schema(file, fill)
+    before = file.read_bytes()
+    with open_memory(tmp_path / "new.db") as memory:
+        assert memory.merge_from(file)["added"] == 1
+        assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
+    assert file.read_bytes() == before
 
 
 def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch):
@@ -43,13 +88,16 @@ def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch
         memory.contribute("a", [], process="p", seq=0, task={})
     with monkeypatch.context() as patch:
         patch.setattr(schema, "LATEST", schema.LATEST + 1)
-        bad = {schema.LATEST: ("bad", "CREATE TABLE half (x {int}); NONSENSE")}
-        patch.setattr(schema, "MIGRATIONS", schema.MIGRATIONS | bad)
+        patch.setattr(
+            schema,
+            "MIGRATIONS",
+            schema.MIGRATIONS | {schema.LATEST: ("bad", "CREATE TABLE half (x {int}); NONSENSE")},
+        )
         with pytest.raises(StoreError) as refused:
             open_memory(where)
     assert "\n" not in str(refused.value)
     with open_memory(where) as memory:
-        assert (steps(memory), memory.tasks("a")) == ([1, 2], 1)
+        assert (steps(memory), memory.tasks("a")) == (NOW, 1)
         with memory._store.reading() as conn, pytest.raises(Exception, match="half"):
             conn.execute(text("SELECT * FROM half"))
 

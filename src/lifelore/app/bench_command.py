@@ -9,8 +9,8 @@ def bench(
     name: Annotated[
         str,
         typer.Argument(
-            help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
-            "Benefit: courier, recognition, worlds, contexts, relations, pictures, deep."
+            help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
+            "long_user. Benefit: courier, recognition, worlds, contexts, relations, pictures, deep."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 if TYPE_CHECKING:
+    from lifelore.agent.reuse.log_format import LogFormat
     from lifelore.agent.reuse.study import Study
     from lifelore.memory import Memory
 
@@ -23,11 +24,39 @@ Unused = Annotated[int, Option("--seed", help="Without effect: this verb draws n
 AsJson = Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")]
 
 
+Logs = Annotated[
+    list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome[,type,context].")
+]
+Columns = Annotated[
+    list[str] | None,
+    Option(metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand."),
+]
+Separator = Annotated[
+    str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
+]
+DecimalComma = Annotated[bool, Option("--decimal-comma", help="Outcomes have a comma before their decimals.")]
+Encoding = Annotated[str, Option(help="Encoding of the logs, such as latin-1.")]
+Missing = Annotated[
+    list[str] | None,
+    Option(metavar="WORD", help="Word that means a missing value, beside the empty field; may be repeated."),
+]
+MissingOutcome = Annotated[
+    str,
+    Option(
+        metavar="leave-out|refuse|NUMBER", help="Leave lines without an outcome out, refuse them, or use NUMBER."
+    ),
+]
+MissingPolicy = Annotated[
+    str,
+    Option(
+        metavar="refuse|leave-out|NAME", help="Refuse lines without a policy, leave them out, or use policy NAME."
+    ),
+]
+
+
 @reuse.command()
 def fit(
-    logs: Annotated[
-        list[str], typer.Argument(metavar="LOG.csv…", help="Logs with columns user,policy,outcome[,type,context].")
-    ],
+    logs: Logs,
     name: Name = "default",
     model: Annotated[
         str, Option(help="Model of the outcomes: auto, gaussian, student-t or categorical.")
@@ -45,6 +74,13 @@ def fit(
     change: Annotated[
         float, Option(help="Probability that the type of a user changes between two choices.")
     ] = 0.0,
+    columns: Columns = None,
+    separator: Separator = None,
+    decimal_comma: DecimalComma = False,
+    encoding: Encoding = "utf-8",
+    missing: Missing = None,
+    missing_outcome: MissingOutcome = "leave-out",
+    missing_policy: MissingPolicy = "refuse",
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -59,9 +95,38 @@ def fit(
     from lifelore.memory import open_memory
 
     settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, seed)
+    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
     with open_memory(where, durable=True) as memory:
-        document = fitted(logs, memory, settings)
+        document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
+
+
+@reuse.command()
+def warm(
+    logs: Logs,
+    columns: Columns = None,
+    separator: Separator = None,
+    decimal_comma: DecimalComma = False,
+    encoding: Encoding = "utf-8",
+    missing: Missing = None,
+    missing_outcome: MissingOutcome = "leave-out",
+    missing_policy: MissingPolicy = "refuse",
+    name: Name = "default",
+    where: Where = None,
+    seed: Unused = 0,
+    as_json: AsJson = False,
+) -> None:
+    """Store the past of users who came after the fit.
+
+    The library stays as it is. Use it so that users of another system do not start as strangers. The same log again changes nothing.
+    """
+    from lifelore.agent.reuse.warm import warm as warmed
+    from lifelore.app.console import print_json
+
+    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    with _opened(name, where) as (memory, study):
+        document = warmed(logs, memory, study, form)
+    print_json(document) if as_json else _print_warm(document)
 
 
 @reuse.command()
@@ -118,20 +183,29 @@ def update(
 def report(
     out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and report.png.")] = None,
     log: Annotated[str | None, Option(metavar="FILE", help="CSV file for all decisions.")] = None,
+    incumbent: Annotated[
+        str | None, Option(metavar="POLICY", help="Policy in place until now; default: that of the fit, if any.")
+    ] = None,
+    split: Annotated[
+        str | None,
+        Option(
+            metavar="user|time|both", help="Count only users that the fit did not know, later decisions, or both."
+        ),
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
     as_json: AsJson = False,
 ) -> None:
-    """Report uplift and regret with 95 % intervals.
+    """Report the uplift with 95 % intervals.
 
-    Both compare with the control group.
+    It compares with the control group, with the best single policy and with the incumbent.
     """
     from lifelore.agent.reuse.report import report as reported
     from lifelore.app.console import print_json
 
     with _opened(name, where) as (memory, study):
-        document = reported(memory, study, out, log)
+        document = reported(memory, study, out, log, incumbent=incumbent, split=split)
     if as_json:
         print_json(document)
         return
@@ -200,6 +274,23 @@ def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
         yield memory, open_study(memory, name)
 
 
+def _log_format(
+    columns: list[str] | None,
+    separator: str | None,
+    decimal_comma: bool,
+    encoding: str,
+    missing: list[str] | None,
+    missing_outcome: str,
+    missing_policy: str,
+) -> "LogFormat":
+    from lifelore.agent.reuse.log_format import LogFormat, parse_columns
+
+    names = parse_columns(columns or [])
+    return LogFormat(
+        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy
+    )
+
+
 def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
     from lifelore.app.console import print_json
 
@@ -216,13 +307,12 @@ def _print_fit(document: dict[str, Any]) -> None:
     )
     for kind in document["types"]:
         print(f"  {kind['name']}: {kind['users']} users, best served by {kind['best']}")
-    for note, count in (
-        ("of users without a named type used: their type follows from the outcomes", document["guessed"]),
-        ("without an outcome yet left out", document["pending"]),
-        ("of unknown type left out", document["left_out"]),
-    ):
-        if count:
-            print(f"  {count} lines {note}")
+    _print_counts(
+        document,
+        ("of users without a named type used: their type follows from the outcomes", "guessed"),
+        *LEFT_OUT,
+        ("of unknown type left out", "left_out"),
+    )
     if document["borrowed"]:
         print(
             f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
@@ -232,6 +322,35 @@ def _print_fit(document: dict[str, Any]) -> None:
         print(f"  {name} is {document[name]}, was {before} until now{keep}")
 
 
+def _print_warm(document: dict[str, Any]) -> None:
+    print(
+        f"study {document['study']}: {document['rows']} outcomes of {document['users']} users added to their past"
+    )
+    _print_counts(
+        document,
+        ("were read before and are not counted again", "known"),
+        ("are decisions in memory and are not counted again", "decisions"),
+        *LEFT_OUT,
+        ("have a policy that the study does not know; they give no evidence", "unknown_policies"),
+    )
+    if document["unknown_types"]:
+        print(f"  types that the study does not know are ignored: {', '.join(document['unknown_types'])}")
+
+
+LEFT_OUT = (
+    ("without an outcome yet left out", "pending"),
+    ("without a policy left out", "without_policy"),
+    ("without an outcome used as --missing-outcome says", "filled_outcomes"),
+    ("without a policy used as --missing-policy says", "filled_policies"),
+)
+
+
+def _print_counts(document: dict[str, Any], *notes: tuple[str, str]) -> None:
+    for note, name in notes:
+        if document[name]:
+            print(f"  {document[name]} lines {note}")
+
+
 def _count(items: list[Any], singular: str, plural: str) -> str:
     return f"{len(items)} {singular if len(items) == 1 else plural}"
 
@@ -239,19 +358,29 @@ def _count(items: list[Any], singular: str, plural: str) -> str:
 def _print_report(document: dict[str, Any]) -> None:
     pending = f"{document['pending']} without an outcome yet"
     print(f"study {document['study']}: {document['decisions']} decisions, {pending}")
+    single, incumbent = document["best_single"], document["incumbent"]
     for label, estimate in (
         ("chosen by belief", document["personal"]),
         ("control group", document["control"]),
         ("uplift", document["uplift"]),
+        (f"uplift over the best single policy, {single['name']}", single["uplift"]),
+        *([(f"uplift over the incumbent, {incumbent['name']}", incumbent["uplift"])] if incumbent else []),
         ("regret by the library, chosen by belief", document["regret"]["personal"]),
         ("regret by the library, control group", document["regret"]["control"]),
     ):
         print(f"  {label}: {_estimate(estimate)}")
+    rows = [row for row in document["policies"] if row["outcome"]]
+    if rows:
+        print("  each policy in the control group:")
+    width = max((len(row["name"]) for row in rows), default=0)
+    for row in sorted(rows, key=lambda row: -row["outcome"]["value"]):
+        retired = "" if row["state"] == "active" else f" ({row['state']})"
+        print(f"    {row['name']:{width}}  {_estimate(row['outcome'])}{retired}")
 
 
 def _estimate(estimate: dict[str, Any] | None) -> str:
     if estimate is None:
-        return "no outcome yet"
+        return "not measured, no outcome yet"
     users = " and ".join(map(str, estimate["n"])) if isinstance(estimate["n"], list) else estimate["n"]
     interval = f" ({estimate['ci95'][0]:.4g} to {estimate['ci95'][1]:.4g})" if estimate["ci95"] else ""
     return f"{estimate['value']:.4g}{interval}, {users} users"

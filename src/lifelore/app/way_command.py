@@ -38,7 +38,7 @@ def way(
         bool, Option("--json", help="One JSON document on stdout, with the keys of nav_msgs/Path.")
     ] = False,
 ) -> None:
-    """Answer from memory how to drive from one place to another, as a path that is clear of obstacles.
+    """Find a path from memory that is clear of obstacles.
 
     Use it after `live`. The way leads over remembered moves only, and the path keeps the robot's radius from all
     that the map does not show as free.

@@ -1,9 +1,10 @@
 """The cache of merged records that `Memory.recall` reads, updated by additive upserts."""
 
 import json
-from collections.abc import Iterable
+import secrets
+from collections.abc import Iterable, Mapping
 from itertools import chain
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from sqlalchemy import Connection, text
@@ -13,6 +14,7 @@ from lifelore.memory import ledger
 from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
 
 _ROWS_AT_ONCE = 10_000
+EVERY_SLOT = -(2**63), 2**63 - 1
 
 # "The contribution of the new row is later than that of the row in place."
 _LATER = """EXISTS (
@@ -38,13 +40,49 @@ _UPSERT = {
     ),
 }
 _MENTION = text("INSERT INTO lifelore_mentions (contribution, lore) VALUES (:contribution, :lore)")
+_STATE = text(
+    "SELECT token, state, about FROM lifelore_lore WHERE kind = :kind AND key = :key AND version = :version"
+)
+_SET_STATE = text("UPDATE lifelore_lore SET token = :token, state = :state WHERE number = :lore")
 _FIND = text(
     "SELECT number, merge, about FROM lifelore_lore WHERE kind = :kind AND key = :key AND version = :version"
 )
 
 
-def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
-    """Merge folded contributions into the cache; the ledger must hold them already."""
+class KeyState(NamedTuple):
+    """A state that a learner computed from the cells of a key, stored beside them.
+
+    Every change of the key deletes the stored state, unless the change brings the state that follows it.
+
+    name : (kind, key, version)
+    token : of the cells that the state was computed from, see `StoredState`; None: the key did not exist
+    content : bytes, which memory does not interpret
+    """
+
+    name: LoreKey
+    token: int | None
+    content: bytes
+
+
+class StoredState(NamedTuple):
+    """The state of a key as it is stored.
+
+    token : another number after each change of the key's cells, whoever changes them
+    content : bytes, or None where the last change brought no state
+    about : the newest description of the key
+    """
+
+    token: int
+    content: bytes | None
+    about: Mapping[str, Any]
+
+
+def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
+    """Merge folded contributions into the cache; the ledger must hold them already.
+
+    `state` is stored if nobody else has changed its key since it was computed.
+    """
+    before = None if state is None else read_state(conn, state.name)
     for name, part in sorted(folded.items()):
         named = _named(name)
         about = json.dumps(part.about, sort_keys=True)
@@ -53,6 +91,16 @@ def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
         require_one_merge(name, {merge, part.merge})
         conn.execute(_MENTION, [{"contribution": number, "lore": lore} for number in part.mentions])
         _write_cells(conn, lore, part)
+        follows = state is not None and state.name == name and state.token == (before.token if before else None)
+        content = state.content if follows and state is not None else None
+        # Random, because a key that is deleted and written again must not get an earlier token again.
+        conn.execute(_SET_STATE, {"lore": lore, "token": secrets.randbits(62), "state": content})
+
+
+def read_state(conn: Connection, name: LoreKey) -> StoredState | None:
+    """The state of a key; None when no contribution has the key."""
+    found = conn.execute(_STATE, _named(name)).one_or_none()
+    return None if found is None else StoredState(found.token, found.state, json.loads(found.about))
 
 
 def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
@@ -73,14 +121,20 @@ def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
         conn.exec_driver_sql(str(upsert), batch)
 
 
-def read(conn: Connection, name: LoreKey) -> Record | None:
-    """One key's merged record, slots ascending; None when no contribution has the key."""
+def read(conn: Connection, name: LoreKey, within: tuple[int, int] = EVERY_SLOT) -> Record | None:
+    """One key's merged record, slots ascending; None when no contribution has the key.
+
+    within : first and last slot to read
+    """
     found = conn.execute(_FIND, _named(name)).one_or_none()
     if found is None:
         return None
     cells = conn.execute(
-        text("SELECT slot, value FROM lifelore_cells WHERE lore = :lore ORDER BY slot"),
-        {"lore": found.number},
+        text(
+            "SELECT slot, value FROM lifelore_cells WHERE lore = :lore AND slot BETWEEN :first AND :last"
+            " ORDER BY slot"
+        ),
+        {"lore": found.number, "first": within[0], "last": within[1]},
     )
     table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
     slots, values = np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])

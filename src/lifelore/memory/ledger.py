@@ -9,6 +9,7 @@ from typing import TypeVar
 from sqlalchemy import Connection, Row, bindparam, text
 
 from lifelore.core.errors import StoreError
+from lifelore.memory import schema
 from lifelore.memory.contribution import Contribution, Identity, LoreKey, Order
 from lifelore.memory.folding import Stored
 from lifelore.memory.record_rules import LARGEST
@@ -139,6 +140,8 @@ def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
 
 def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
     """The keys of forgotten records, and the last stamp of the contributions that lose them."""
+    if schema.version(conn) < schema.FORGOTTEN_RECORDS:
+        return {}
     rows = conn.execute(text("SELECT kind, key, version, stamp FROM lifelore_forgotten_records"))
     return {(row[0], row[1], int(row[2])): int(row[3]) for row in rows}
 

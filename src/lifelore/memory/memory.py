@@ -11,6 +11,7 @@ from sqlalchemy import URL, Connection, text
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import audit, cache, ledger, merging, overview
+from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
 from lifelore.memory.contribution import new_contribution
 from lifelore.memory.export import export
 from lifelore.memory.folding import fold
@@ -101,7 +102,14 @@ class Memory:
         return self._store.location
 
     def contribute(
-        self, robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]
+        self,
+        robot: str,
+        records: Sequence[Record],
+        *,
+        process: str,
+        seq: int,
+        task: Mapping[str, Any],
+        state: KeyState | None = None,
     ) -> bool:
         """Store the records of a robot about one finished task, all or none.
 
@@ -115,6 +123,9 @@ class Memory:
             Number of the task in the run, from 0.
         task : mapping of str to JSON values
             Description of the task for readers.
+        state : KeyState, optional
+            The state of one of the records' keys after this contribution, see `recall_state`. It is stored unless
+            another process has changed the key since the state was computed.
 
         Returns
         -------
@@ -132,13 +143,29 @@ class Memory:
         with self._store.writing() as conn:
             if ledger.is_known(conn, offered.identity):
                 return False
-            cache.write(conn, fold([ledger.insert(conn, offered.stamped(ledger.next_stamp(conn)))]))
+            stored = ledger.insert(conn, offered.stamped(ledger.next_stamp(conn)))
+            cache.write(conn, fold([stored]), state)
         return True
 
-    def recall(self, kind: str, key: str, version: int) -> Record | None:
-        """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none."""
+    def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
+        """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
+
+        Parameters
+        ----------
+        slots : (int, int), optional
+            First and last slot to read; a few slots of a large record cost no more than a small record.
+        """
         with self._store.reading() as conn:
-            return cache.read(conn, (kind, key, version))
+            return cache.read(conn, (kind, key, version), slots)
+
+    def recall_state(self, kind: str, key: str, version: int) -> StoredState | None:
+        """The state that a learner stored with its last contribution to this key; None if there is no key.
+
+        A state saves the time to compute it again from the record. Merging, forgetting, rebuilding, and any
+        contribution without a state delete it.
+        """
+        with self._store.reading() as conn:
+            return cache.read_state(conn, (kind, key, version))
 
     def keys(self, kind: str) -> list[tuple[str, int, dict[str, Any]]]:
         """(key, version, about) of all records of a kind, sorted."""

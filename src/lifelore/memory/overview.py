@@ -6,7 +6,7 @@ from typing import Any
 
 from sqlalchemy import Connection, text
 
-from lifelore.memory import schema
+from lifelore.memory import ledger, schema
 
 FEW = 8
 """Maximum number of entries of a group that are listed separately; more are joined to one entry."""
@@ -24,14 +24,13 @@ _LORE = text(
 def overview(conn: Connection, location: str) -> dict[str, Any]:
     """Location, schema, robots with their tasks, keys with their size, number of tombstones."""
     tombstones = conn.execute(text("SELECT COUNT(*) FROM lifelore_tombstones")).scalar_one()
-    records = conn.execute(text("SELECT COUNT(*) FROM lifelore_forgotten_records")).scalar_one()
     return {
         "location": location,
         "schema": schema.version(conn),
         "robots": robots(conn),
         "lore": _lore(conn),
         "forgotten": int(tombstones),
-        "forgotten_records": int(records),
+        "forgotten_records": len(ledger.forgotten_records(conn)),
     }
 
 

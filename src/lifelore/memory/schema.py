@@ -46,8 +46,21 @@ CREATE TABLE lifelore_forgotten_records (
     PRIMARY KEY (kind, key, version))
 """
 
-MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST), 2: ("forgotten records", _SECOND)}
+_STATES = """
+ALTER TABLE lifelore_lore ADD COLUMN token {int} NOT NULL DEFAULT 0;
+ALTER TABLE lifelore_lore ADD COLUMN state {blob}
+"""
+
+MIGRATIONS = {
+    1: ("contributions, tombstones and cache", _FIRST),
+    2: ("forgotten records", _SECOND),
+    3: ("states that learners compute from a key's cells", _STATES),
+}
 LATEST = max(MIGRATIONS)
+FORGOTTEN_RECORDS = 2
+"""The first schema that knows forgotten records."""
+READABLE = 1
+"""The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 
 # SQLite turns an overflowing sum into a float; the CHECK makes this an error, as it is in PostgreSQL.
 # PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.

@@ -87,9 +87,9 @@ class Store:
         return found
 
     def require_current(self) -> None:
-        """Raise StoreError unless all migrations are done; the source of a merge is never migrated."""
+        """Raise StoreError unless contributions can be read; the source of a merge is never migrated."""
         found = self.require_memory()
-        if found < schema.LATEST:
+        if found < schema.READABLE:
             raise StoreError(
                 f"memory {self.location} is of an older Lifelore (schema {found}); open it once by itself"
             )

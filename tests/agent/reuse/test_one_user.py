@@ -10,10 +10,11 @@ import numpy as np
 import pytest
 
 from lifelore.agent.reuse.fit import FitSettings, fit
-from lifelore.agent.reuse.history import histories, open_history, replayed, user_key
+from lifelore.agent.reuse.history import histories, user_key
 from lifelore.agent.reuse.log import read_log
 from lifelore.agent.reuse.one_user import add, choose, forget, retire, update
 from lifelore.agent.reuse.study import Study, open_study
+from lifelore.agent.reuse.user_belief import open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -38,7 +39,7 @@ def memory(tmp_path):
 
 
 def belief_of(memory, study, user):
-    return replayed(study, open_history(memory, study, user_key(study.name, user))).log_belief
+    return open_belief(memory, study, user_key(study.name, user)).state.head.log_belief
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
@@ -233,7 +234,7 @@ def test_a_forgotten_user_is_a_new_one_and_old_decisions_stay_gone(memory):
     assert forget(memory, study, "ann") == 2
     assert [history.user for history in histories(memory, study)] == ["bo"]
     assert b"ann" not in b"".join(str(entry).encode() for entry in memory.show()["robots"])
-    with pytest.raises(NotFoundError, match="nothing is kept of user 'ann'"):
+    with pytest.raises(NotFoundError, match="nothing is stored of user 'ann'"):
         forget(memory, study, "ann")
     with pytest.raises(NotFoundError, match="never made here, or forgotten"):
         update(memory, study, old, 8.0)
@@ -293,7 +294,7 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         for one in history.decisions:
             if one.outcome is not None:
                 agent.update(one.policy, one.outcome)
-        assert np.array_equal(replayed(study, history).log_belief, agent.log_belief)
+        assert np.array_equal(belief_of(memory, study, "ann"), agent.log_belief)
         assert memory.check() == []
         assert choose(memory, study, "ann")["number"] == len(history.decisions)
 

@@ -8,10 +8,11 @@ import pytest
 from scipy import stats
 
 from lifelore.agent.reuse import report as reuse_report
+from lifelore.agent.reuse.fit import FitSettings, fit
 from lifelore.agent.reuse.one_user import choose, update
 from lifelore.agent.reuse.report import COLUMNS, report
-from lifelore.agent.reuse.study import Study
-from lifelore.core.errors import StoreError
+from lifelore.agent.reuse.study import Study, open_study
+from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.figures.reuse_report import draw_reuse_report
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import open_memory
@@ -155,3 +156,72 @@ def test_a_user_who_changed_groups_counts_in_each_by_its_own_decisions(memory, s
         update(memory, now, choose(memory, now, "ann")["decision"], outcome)
     document = report(memory, study)
     assert (document["personal"]["value"], document["control"]["value"]) == (4.0, 6.0)
+
+
+def test_the_best_single_policy_and_the_incumbent_are_measured_on_the_control_group(memory, study):
+    said = lived(memory, study, 30)
+    document = report(memory, study, incumbent="y")
+    personal = [np.mean([o for _, o in rows]) for (_, held), rows in said.items() if not held]
+    for key, policy in (("best_single", "x"), ("incumbent", "y")):
+        own = [[o for p, o in rows if p == policy] for (_, held), rows in said.items() if held]
+        means = [np.mean(outcomes) for outcomes in own if outcomes]
+        found = document[key]
+        assert found["name"] == policy
+        assert found["outcome"]["value"] == pytest.approx(np.mean(means))
+        assert found["outcome"]["n"] == len(means)
+        assert found["uplift"]["value"] == pytest.approx(np.mean(personal) - np.mean(means))
+        welch = stats.ttest_ind(personal, means, equal_var=False).confidence_interval()
+        assert found["uplift"]["ci95"] == pytest.approx([welch.low, welch.high])
+    assert report(memory, study)["incumbent"] is None
+    with pytest.raises(NotFoundError, match="incumbent must be a policy of the study, got 'none'"):
+        report(memory, study, incumbent="none")
+
+
+def test_the_best_single_policy_is_that_of_the_fit_and_not_of_the_control_group(memory, study):
+    """Of the control group, `y` is best; the users of the fit say `x` (5 against 4)."""
+    for user in range(12):
+        made = choose(memory, study, f"u{user}")
+        update(memory, study, made["decision"], 9.0 if made["policy"] == "y" else 0.0)
+    assert report(memory, study)["best_single"]["name"] == "x"
+    retired = replace(study, states={"x": "retired", "y": "active"})
+    assert report(memory, retired)["best_single"]["name"] == "y"
+
+
+def test_a_control_group_with_an_incumbent_does_not_measure_the_best_single_policy(memory, study):
+    held = replace(study, incumbent="y")
+    lived(memory, held)
+    document = report(memory, held)
+    assert (document["best_single"]["outcome"], document["best_single"]["uplift"]) == (None, None)
+    assert document["incumbent"]["uplift"]["value"] == pytest.approx(document["uplift"]["value"])
+
+
+def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):
+    clock = [1000.0]
+    monkeypatch.setattr("time.time", lambda: clock[0])
+    lines = [f"u{user},{policy},{user + (policy == 'x')}" for user in range(6) for policy in "xy"]
+    (tmp_path / "log.csv").write_text("\n".join(["user,policy,outcome", *lines]) + "\n")
+
+    def one_more(user, outcome):
+        clock[0] += 10
+        now = open_study(memory)
+        update(memory, now, choose(memory, now, user)["decision"], outcome)
+
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    one_more("u1", 1.0)
+    one_more("ann", 2.0)
+    clock[0] += 10
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    one_more("u1", 3.0)
+    one_more("ann", 6.0)
+    study = open_study(memory)
+    found = {split: report(memory, study, split=split) for split in (None, "user", "time", "both")}
+    assert {split: document["personal"]["value"] for split, document in found.items()} == {
+        None: 3.0, "user": 4.0, "time": 4.5, "both": 6.0,
+    }  # fmt: skip
+    assert {split: document["decisions"] for split, document in found.items()} == {
+        None: 4, "user": 2, "time": 2, "both": 1,
+    }  # fmt: skip
+    with pytest.raises(InputError, match="split must be one of user, time, both, got 'none'"):
+        report(memory, study, split="none")
+    with pytest.raises(InputError, match="knows when it was fitted; fit it anew"):
+        report(memory, replace(study, fitted={}), split="time")

@@ -55,6 +55,19 @@ def test_the_criterion_of_one_type_by_hand():
     assert found.criteria == (pytest.approx(-2 * likelihood + 6 * np.log(60)),)
 
 
+@pytest.mark.parametrize("family", ["gaussian", "categorical"])
+def test_of_many_users_a_sample_gives_the_start_and_all_are_fitted(family, monkeypatch):
+    rows, _ = drawn(n_users=240, each=20, family=family)
+    whole = user_types(rows, np.random.default_rng(1), family=family)
+    monkeypatch.setattr("lifelore.interaction.library.user_types.SAMPLED_USERS", 90)
+    found = user_types(rows, np.random.default_rng(1), family=family)
+    assert found.n_types == whole.n_types == 3
+    agree = np.array([[np.mean(found.labels[whole.labels == t] == f) for f in range(3)] for t in range(3)])
+    assert (agree.max(axis=1) > 0.97).all()
+    assert np.sort(found.weights) == pytest.approx(np.sort(whole.weights), abs=0.01)
+    assert found.probs.sum(axis=1) == pytest.approx(1)
+
+
 @pytest.mark.parametrize("family", [GaussianFamily, CategoricalFamily])
 def test_the_product_is_the_log_likelihood_of_every_outcome(family):
     """The naive twin goes through the outcomes one by one."""

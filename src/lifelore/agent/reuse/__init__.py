@@ -1,5 +1,6 @@
 """The verbs of `lifelore reuse`: a log becomes a policy library, then choices for one user at a time.
 
-Read in this order: `log`, `fit`, `types_of_users`, `library_from_log`, `study`, `one_user` (choose, update,
-retire, add, forget), `history`, `report`.
+Read in this order: `log` (`log_format`, `log_lines`, `log_columns`), `fit`, `types_of_users`, `library_from_log`,
+`study`, `past`, `warm`, `one_user` (choose, update, retire, add, forget), `history`, `user_belief`, `user_state`,
+`report`.
 """

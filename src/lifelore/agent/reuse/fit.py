@@ -1,5 +1,6 @@
 """The verb `reuse fit`: a log becomes a policy library, its types named in the log or found from outcomes."""
 
+import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -11,8 +12,10 @@ from numpy.typing import NDArray
 
 from lifelore.agent.reuse.library_from_log import TypedRows, library_of
 from lifelore.agent.reuse.log import ReuseLog, read_log
+from lifelore.agent.reuse.log_format import LogFormat
 from lifelore.agent.reuse.study import ACTIVE, KIND, PILOT, RETIRED, VERSION, Study, check_study_name
 from lifelore.agent.reuse.types_of_users import typed_rows
+from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -61,7 +64,12 @@ class FitSettings:
             raise InputError(f"types must be at least 1, got {self.types}")
 
 
-def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | None = None) -> dict[str, Any]:
+def fit(
+    paths: Sequence[str | Path],
+    memory: Memory,
+    settings: FitSettings | None = None,
+    form: LogFormat | None = None,
+) -> dict[str, Any]:
     """Learn a study from logs and keep it in memory in place of an earlier one of its name.
 
     Users' decisions in memory stay; beliefs follow the new library. Policies retired stay so, and those that the
@@ -70,18 +78,21 @@ def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | Non
     Parameters
     ----------
     paths : sequence of paths
-        See `reuse_log`.
+        See `log`.
+    form : LogFormat, optional
+        How the logs are written.
 
     Returns
     -------
     dict
-        Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log does
-        not name: their outcomes showed it, or did not), ``pending``; ``users``; ``model``; ``types_found``,
-        ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy); ``policies``
-        (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs without an outcome,
-        which got the policy's outcomes on all types); ``contexts``; ``control``, ``incumbent``, ``rule``,
-        ``explore``, ``change``;
-        ``changed``: settings that are not what they were in an earlier fit, by name what they were.
+        Plain data: ``study``; ``rows`` learnt from, ``guessed`` and ``left_out`` (of users whose type the log
+        does not name: their outcomes showed it, or did not); ``pending`` (lines left out without an outcome),
+        ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
+        ``types_found``, ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy);
+        ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
+        without an outcome, which got the policy's outcomes on all types); ``contexts``; ``control``,
+        ``incumbent``, ``rule``, ``explore``, ``change``; ``changed``: settings that are not what they were in an
+        earlier fit, by name what they were.
 
     Raises
     ------
@@ -89,13 +100,14 @@ def fit(paths: Sequence[str | Path], memory: Memory, settings: FitSettings | Non
         A log or setting breaks its rule; memory is as it was.
     """
     settings = settings or FitSettings()
-    log = read_log(paths)
+    log = read_log(paths, form)
     generator = stream(settings.seed, "reuse types", settings.name)
     typed = typed_rows(log, settings.model, settings.types, generator)
     library, counts = library_of(log, typed, settings.model)
     earlier = _earlier(memory, settings.name)
     study = _study(log, library, typed, settings, dict(earlier.get("states", {})))
     study.keep(memory)
+    keep_fitted_past(memory, study, log)
     return _document(study, log, typed, counts) | {"changed": _changed(study, earlier)}
 
 
@@ -108,7 +120,8 @@ def _study(
     states = known | {policy: PILOT if state == PILOT else RETIRED for policy, state in gone.items()}
     if ACTIVE not in states.values():
         raise InputError("the logs must hold a policy that is not retired, got none")
-    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)), "found": typed.found}
+    fitted = {"rows": len(typed.rows), "users": len(typed.users(log)[0]), "found": typed.found}
+    fitted["time"] = int(time.time())
     return Study(
         settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, fitted,
@@ -117,11 +130,10 @@ def _study(
 
 def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
     """Prior over types in each context, from its users and a few of everybody's."""
-    of_user = log.of_users(log.contexts)
     counts: dict[str, NDArray[np.float64]] = {}
-    for user, type_ in typed.users(log):
-        if user in of_user:
-            counts.setdefault(of_user[user], CONTEXT_USERS * prior)[type_] += 1
+    for user, type_ in zip(*typed.users(log), strict=True):
+        if log.context_of_user[user] >= 0:
+            counts.setdefault(log.context.names[log.context_of_user[user]], CONTEXT_USERS * prior)[type_] += 1
     return {context: count / count.sum() for context, count in sorted(counts.items())}
 
 
@@ -140,15 +152,18 @@ def _changed(study: Study, earlier: Mapping[str, Any]) -> dict[str, Any]:
 def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.float64]) -> dict[str, Any]:
     library = study.library
     mean = library.performance.mean
-    members = Counter(type_ for _, type_ in typed.users(log))
+    members = Counter(typed.users(log)[1].tolist())
     active = [library.index_of_policy(policy) for policy in study.active]
     return {
         "study": study.name,
         "rows": len(typed.rows),
         "pending": log.pending,
+        "filled_outcomes": log.filled_outcomes,
+        "filled_policies": log.filled_policies,
+        "without_policy": log.without_policy,
         "guessed": typed.guessed,
         "left_out": len(log) - len(typed.rows),
-        "users": len(set(log.users)),
+        "users": len(log.user.names),
         "model": library.performance.kind,  # type: ignore[attr-defined]
         "types_found": typed.found,
         "criteria": list(typed.criteria),
@@ -162,7 +177,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
             for number, name in enumerate(library.types)
         ],
         "policies": [
-            {"name": policy, "state": state, "mean": _overall(study, policy)}
+            {"name": policy, "state": state, "mean": study.expected(policy)}
             for policy, state in sorted(study.states.items())
         ],
         "means": mean.tolist(),
@@ -175,11 +190,3 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "explore": study.explore,
         "change": study.change,
     }
-
-
-def _overall(study: Study, policy: str) -> float | None:
-    """Expected outcome of a policy for a user of whom nothing is known."""
-    if policy not in study.library.policies:
-        return None
-    column = study.library.performance.mean[:, study.library.index_of_policy(policy)]
-    return float(study.library.prior @ column)

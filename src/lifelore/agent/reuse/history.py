@@ -1,8 +1,7 @@
-"""What happened with one user: decisions and outcomes, as memory keeps them, and the belief that follows.
+"""Decisions for one user and their outcomes, as memory stores them.
 
-Memory keeps the evidence, not the belief. A belief is worked out from the decisions in their order whenever it is
-asked for, so it is the same bit for bit however late and in which order outcomes came, whether or not a process
-died in between, and it follows a library that was fitted anew.
+Each decision and each outcome is a contribution of its own: a history only grows. `user_belief` has the belief
+that follows from it.
 """
 
 import hashlib
@@ -11,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.agent.reuse.study import Study
+from lifelore.agent.reuse.study import Study, policy_number
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_user", 1
+LAST_SLOT = 2**62
 FIELDS = 8
 """Slots a decision: those of `_POLICY` and after; the last one is free."""
 _POLICY, _PROBABILITY, _CONTROL, _CHOSEN, _ATTEMPT, _OUTCOME, _ENDED = range(7)
@@ -94,11 +93,6 @@ def user_key(study: str, user: str) -> str:
     return hashlib.sha256(f"{study}\x1f{user}".encode()).hexdigest()[:16]
 
 
-def policy_number(policy: str) -> int:
-    """A number that stands for a policy's name in records, the same in every memory."""
-    return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
-
-
 def parse_identifier(identifier: str) -> tuple[str, int, int]:
     """Key, number and attempt of a decision's identifier; InputError where it is none."""
     found = re.fullmatch(r"([0-9a-f]{16})-(\d{1,9})(?:\.(\d{1,9}))?", identifier)
@@ -112,12 +106,22 @@ def open_history(memory: Memory, study: Study, key: str, user: str = "") -> Hist
     record = memory.recall(KIND, f"{study.name}/{key}", VERSION)
     if record is None or not record.slots.size:
         return History(study.name, key, user, None, ())
-    names = {policy_number(policy): policy for policy in study.states}
+    about = record.about
+    return History(study.name, key, about["user"], about.get("context"), _decisions(study, record))
+
+
+def read_decisions(memory: Memory, study: Study, key: str, first: int = 0) -> tuple[Decision, ...]:
+    """The decisions for a user from number `first` on; the time depends on their number alone."""
+    slots = FIELDS * first, LAST_SLOT
+    record = memory.recall(KIND, f"{study.name}/{key}", VERSION, slots=slots)
+    return () if record is None else _decisions(study, record)
+
+
+def _decisions(study: Study, record: Record) -> tuple[Decision, ...]:
     cells = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
     numbers = sorted({slot // FIELDS for slot in cells})
-    decisions = (_decision(number, cells, names) for number in numbers if FIELDS * number + _POLICY in cells)
-    about = record.about
-    return History(study.name, key, about["user"], about.get("context"), tuple(decisions))
+    names = study.policy_names
+    return tuple(_decision(number, cells, names) for number in numbers if FIELDS * number + _POLICY in cells)
 
 
 def histories(memory: Memory, study: Study) -> list[History]:
@@ -125,21 +129,6 @@ def histories(memory: Memory, study: Study) -> list[History]:
     start = f"{study.name}/"
     keys = [key.removeprefix(start) for key, version, _ in memory.keys(KIND) if key.startswith(start)]
     return sorted((open_history(memory, study, key) for key in keys), key=lambda one: one.user)
-
-
-def replayed(study: Study, history: History) -> BayesianPolicyReuse:
-    """The agent for a user before the next decision: all decisions so far, taken in again in their order.
-
-    A decision without an outcome, or with a policy that the library does not know, gives no evidence. The user's
-    type may change after it all the same.
-    """
-    agent = BayesianPolicyReuse(study.library, study.selection, study.prior_of(history.context), study.dynamics)
-    for decision in history.decisions:
-        if decision.outcome is not None and decision.policy in study.library.policies:
-            agent.update(decision.policy, decision.outcome)
-        else:
-            agent.skip()
-    return agent
 
 
 def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Decision:

@@ -31,20 +31,18 @@ class TypedRows(NamedTuple):
     found: bool = False
     criteria: tuple[float, ...] = ()
 
-    def users(self, log: ReuseLog) -> set[tuple[str, int]]:
-        """Each user with their type; one whose type changes is there twice."""
-        return set(zip((log.users[row] for row in self.rows), self.types.tolist(), strict=True))
+    def users(self, log: ReuseLog) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+        """Users of the rows, as places in ``log.user.names``, and the type of each."""
+        users, first = np.unique(log.user.codes[self.rows], return_index=True)
+        return users, self.types[first]
 
 
 def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibrary, NDArray[np.float64]]:
     """The library, and the number of outcomes of each pair, (n_types, n_policies)."""
-    chosen = [log.policies[row] for row in typed.rows]
-    policies, of_policy = np.unique(chosen, return_inverse=True)
+    policies, of_policy = np.unique(log.policy.codes[typed.rows], return_inverse=True)
     rows = OutcomeRows(typed.types, of_policy, log.outcomes[typed.rows], (len(typed.names), len(policies)))
-    prior = np.ones(len(typed.names))
-    for _, type_ in typed.users(log):
-        prior[type_] += 1
-    names = policies.tolist()
+    prior = np.ones(len(typed.names)) + np.bincount(typed.users(log)[1], minlength=len(typed.names))
+    names = [log.policy.names[code] for code in policies]
     library = PolicyLibrary.from_rows(
         _lent(rows), typed.names, names, model_of(log, model), prior=prior / prior.sum()
     )

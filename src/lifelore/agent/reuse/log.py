@@ -1,31 +1,65 @@
 """Logs of choices and their outcomes: CSV with a header and one choice a line.
 
-    user      who it was for; any text
-    policy    what was chosen: a configuration, a variant, a behaviour
-    outcome   how well it went, a number, larger is better; empty: not yet known, the line is passed over
-    type      optional: what kind of user it is, if known; may be empty on some lines
-    context   optional: what is known of a user before the first choice (device, country, shop)
+    user      who it was for; any text policy    what was chosen: a configuration, a variant, a behaviour outcome
+    how well it went, a number, larger is better; empty: not yet known, the line is left out and counted type
+    optional: what kind of user it is, if known; may be empty on some lines, and is the same on all others
+    context   optional: what is known of a user before the first choice (device, country, shop) decision
+    optional: the identifier that `reuse choose` printed, as in the log that `reuse report` writes
 
 Commas, semicolons or tabs lie between columns, as the header has them; capitals in column names do not matter.
-Other columns are passed over. Several logs are read as one.
+Other columns are ignored. Several logs are read as one. `LogFormat` reads logs that are written otherwise.
 """
 
-import csv
-import math
-from collections.abc import Iterator, Sequence
+import hashlib
+from collections.abc import Sequence
 from dataclasses import dataclass
-from itertools import chain
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.reuse.log_columns import COUNTED, Lines, check_word, read_outcome
+from lifelore.agent.reuse.log_format import LogFormat
+from lifelore.agent.reuse.log_lines import read_lines
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 
-NEEDED = ("user", "policy", "outcome")
-OPTIONAL = ("type", "context")
-SEPARATORS = (",", ";", "\t")
-LONGEST = 200
+__all__ = ["Column", "ReadFile", "ReuseLog", "check_word", "read_log", "read_outcome"]
+
+MANY_POLICIES = 20
+"""Number of policies up to which a log may have few lines of each; beyond, it looks like the wrong column."""
+
+
+@dataclass(frozen=True, eq=False)
+class Column:
+    """A column of words: each different word once, and its place for each row.
+
+    names : sorted
+    codes : (n,) int64, places in `names`
+    """
+
+    names: tuple[str, ...]
+    codes: NDArray[np.int64]
+
+    @property
+    def words(self) -> list[str]:
+        """The word of each row."""
+        return [self.names[code] for code in self.codes.tolist()]
+
+
+@dataclass(frozen=True)
+class ReadFile:
+    """A log that was read.
+
+    path : str
+    size, digest : bytes, and their SHA-256
+    last_line : number of the last line with a choice
+    """
+
+    path: str
+    size: int
+    digest: str
+    last_line: int
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,35 +68,71 @@ class ReuseLog:
 
     Parameters
     ----------
-    users, policies, types, contexts : (n,) list of str
-        Types and contexts are "" where the log does not say.
+    user, policy, type, context, decision : Column
+        The last three are "" where the log says nothing.
     outcomes : (n,) float64
         Finite.
+    file, line : (n,) int64
+        Number of each row's file in `files`, and of its line there.
+    files : tuple of ReadFile
     pending : int
-        Lines passed over because their outcome is not known.
+        Lines left out because their outcome is missing.
+    filled_outcomes, filled_policies : int
+        Lines whose missing outcome or policy got what the format says.
+    without_policy : int
+        Lines left out because their policy is missing.
     """
 
-    users: list[str]
-    policies: list[str]
-    types: list[str]
-    contexts: list[str]
+    user: Column
+    policy: Column
+    type: Column
+    context: Column
+    decision: Column
     outcomes: NDArray[np.float64]
+    file: NDArray[np.int64]
+    line: NDArray[np.int64]
+    files: tuple[ReadFile, ...]
     pending: int
+    filled_outcomes: int = 0
+    filled_policies: int = 0
+    without_policy: int = 0
 
     def __len__(self) -> int:
-        return len(self.users)
+        return len(self.outcomes)
+
+    @property
+    def users(self) -> list[str]:
+        """The user of each row."""
+        return self.user.words
+
+    @property
+    def policies(self) -> list[str]:
+        """The policy of each row."""
+        return self.policy.words
 
     @property
     def says_types(self) -> bool:
-        """Whether any line names a type."""
-        return any(self.types)
+        """Whether any row names a type."""
+        return any(self.type.names)
 
-    def of_users(self, names: Sequence[str]) -> dict[str, str]:
-        """The last word of a column on each user, where it says one; `names` is ``types`` or ``contexts``."""
-        return {user: name for user, name in zip(self.users, names, strict=True) if name}
+    @cached_property
+    def type_of_user(self) -> NDArray[np.int64]:
+        """Place of each user's type in `type.names`, −1 where no row names it, (n_users,)."""
+        return self._last_of_user(self.type)
+
+    @cached_property
+    def context_of_user(self) -> NDArray[np.int64]:
+        """Place of each user's last context in `context.names`, −1 where no row names it, (n_users,)."""
+        return self._last_of_user(self.context)
+
+    def _last_of_user(self, column: Column) -> NDArray[np.int64]:
+        found = np.full(len(self.user.names), -1)
+        said = np.array([bool(name) for name in column.names])[column.codes]
+        found[self.user.codes[said]] = column.codes[said]
+        return found
 
 
-def read_log(paths: Sequence[str | Path]) -> ReuseLog:
+def read_log(paths: Sequence[str | Path], form: LogFormat | None = None) -> ReuseLog:
     """Read logs as one.
 
     Raises
@@ -70,104 +140,94 @@ def read_log(paths: Sequence[str | Path]) -> ReuseLog:
     NotFoundError
         There is no such file.
     InputError
-        A column is missing, a line breaks its rule (the message says which), no outcome is known, or a log is
-        given twice.
+        A column is missing, a line breaks its rule (the message says which), a user has two types, the policies
+        are nearly as many as the lines, no outcome is known, or a log is given twice.
     StoreError
         The disk refuses.
     """
+    form = form or LogFormat()
     places = [Path(path).resolve() for path in paths]
     for number, path in enumerate(paths):
         if places[number] in places[:number]:
             raise InputError(f"log '{path}' is given twice; its lines would count twice, leave one out")
-    rows = [row for path in paths for row in _rows(Path(path))]
-    known = [row for row in rows if row[2] is not None]
-    if not known:
+    lines = [_lines(Path(path), form) for path in paths]
+    for number, one in enumerate(lines):
+        for other in range(number):
+            if lines[other].digest == one.digest:
+                raise InputError(
+                    f"logs '{paths[other]}' and '{paths[number]}' are equal; lines would count twice, "
+                    "leave one out"
+                )
+    log = _joined(lines, [str(place) for place in places])
+    if not len(log):
         raise InputError(f"{', '.join(map(str, paths))} must hold at least one line with an outcome, got none")
-    users, policies, outcomes, types, contexts = (list(column) for column in zip(*known, strict=True))
-    return ReuseLog(users, policies, types, contexts, np.array(outcomes, np.float64), len(rows) - len(known))
+    _check_types(lines, paths)
+    _check_policies(log, paths)
+    return log
 
 
-_Row = tuple[str, str, float | None, str, str]
-
-
-def _rows(path: Path) -> Iterator[_Row]:
+def _lines(path: Path, form: LogFormat) -> Lines:
     if not path.is_file():
         what = "is no file" if path.exists() else "does not exist"
         raise NotFoundError(f"log '{path}' {what}; give a CSV file")
     try:
-        # Some programs begin their UTF-8 with a mark.
-        with path.open(encoding="utf-8-sig", newline="") as file:
-            yield from _read(file, str(path))
-    except UnicodeDecodeError:
-        raise InputError(f"{path} must be CSV in UTF-8, got bytes that are not") from None
+        content = path.read_bytes()
     except OSError as error:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
+    lines = read_lines(content, str(path), form)
+    return lines.of_file(len(content), hashlib.sha256(content).hexdigest())
 
 
-def _read(lines: Iterator[str], name: str) -> Iterator[_Row]:
-    first = next(lines, "")
-    reader = csv.reader(chain([first], lines), strict=True, delimiter=_separator(first))
-    try:
-        header = [column.strip().lower() for column in next(reader, [])]
-        places = _places(header, name)
-        for fields in reader:
-            if any(field.strip() for field in fields):
-                yield _row(fields, header, places, f"{name} line {reader.line_num}")
-    except csv.Error as error:
-        raise InputError(f"{name} line {reader.line_num}: not CSV ({error})") from None
+def _joined(lines: Sequence[Lines], paths: Sequence[str]) -> ReuseLog:
+    user, policy, type_, context, decision = (
+        _column([part.names[place] for part in lines], [part.codes[place] for part in lines]) for place in range(5)
+    )
+    counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
+    return ReuseLog(
+        user=user, policy=policy, type=type_, context=context, decision=decision,
+        outcomes=np.concatenate([part.outcomes for part in lines]),
+        file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
+        line=np.concatenate([part.line for part in lines]),
+        files=tuple(ReadFile(path, part.size, part.digest, part.last_line)
+                    for path, part in zip(paths, lines, strict=True)),
+        **counts,
+    )  # fmt: skip
 
 
-def _separator(header: str) -> str:
-    """What the columns needed are separated by, a comma where none fits."""
-    for separator in SEPARATORS:
-        if {word.strip().strip('"').strip().lower() for word in header.split(separator)}.issuperset(NEEDED):
-            return separator
-    return SEPARATORS[0]
+def _column(names: Sequence[tuple[str, ...]], codes: Sequence[NDArray[np.int64]]) -> Column:
+    """One column of several files', its names sorted."""
+    used = [(own, np.unique(code, return_inverse=True)) for own, code in zip(names, codes, strict=True)]
+    every: list[str] = sorted({own[code] for own, (seen, _) in used for code in seen.tolist()})
+    place = {name: number for number, name in enumerate(every)}
+    moved = [np.array([place[own[code]] for code in seen.tolist()], np.int64)[rows] for own, (seen, rows) in used]
+    return Column(tuple(every), np.concatenate(moved))
 
 
-def _places(header: list[str], name: str) -> dict[str, int]:
-    if not any(header):
-        raise InputError(f"{name} must begin with a header that names {', '.join(NEEDED)}, it is empty")
-    for column in (*NEEDED, *OPTIONAL):
-        if header.count(column) > 1:
-            raise InputError(f"{name} must have one column '{column}', its header names {header.count(column)}")
-    missing = [column for column in NEEDED if column not in header]
-    if missing:
+def _check_types(lines: Sequence[Lines], paths: Sequence[str | Path]) -> None:
+    """Refuse a user with two types, and name the lines."""
+    first: dict[str, tuple[str, str]] = {}
+    for part, path in zip(lines, paths, strict=True):
+        users, types = part.names[0], part.names[2]
+        said = np.flatnonzero(np.array([bool(name) for name in types], bool)[part.codes[2]])
+        if not said.size:
+            continue
+        pair = part.codes[0][said] * len(types) + part.codes[2][said]
+        _, at = np.unique(pair, return_index=True)
+        for row in np.sort(said[at]).tolist():
+            user, type_ = users[part.codes[0][row]], types[part.codes[2][row]]
+            where = f"{path} line {part.line[row]}"
+            earlier = first.setdefault(user, (type_, where))
+            if earlier[0] != type_:
+                raise InputError(
+                    f"{where}: a user must have one type, got '{type_}' for '{user}', who is '{earlier[0]}' in "
+                    f"{earlier[1]}; leave the type empty, or make two users of them"
+                )
+
+
+def _check_policies(log: ReuseLog, paths: Sequence[str | Path]) -> None:
+    n_policies, n_lines = len(np.unique(log.policy.codes)), len(log)
+    if n_policies > MANY_POLICIES and 2 * n_policies > n_lines:
         raise InputError(
-            f"{name} must have the columns {', '.join(NEEDED)}, separated by commas; it has no "
-            f"{' and no '.join(missing)}, its header is '{','.join(header)[:80]}'"
+            f"{', '.join(map(str, paths))}: policy must name a configuration that recurs; {n_policies:,} policies "
+            f"in {n_lines:,} lines looks like the wrong column, give the right one with --columns policy=NAME"
         )
-    return {column: header.index(column) for column in (*NEEDED, *OPTIONAL) if column in header}
-
-
-def _row(fields: list[str], header: list[str], places: dict[str, int], where: str) -> _Row:
-    if len(fields) != len(header):
-        raise InputError(f"{where}: must have {len(header)} fields like the header, got {len(fields)}")
-    record = {column: fields[place].strip() for column, place in places.items()}
-    for column in ("user", "policy"):
-        check_word(f"{where}: {column}", record[column])
-    for column in OPTIONAL:
-        if record.get(column):
-            check_word(f"{where}: {column}", record[column])
-    hint = "; leave it empty if it is not known"
-    outcome = read_outcome(record["outcome"], f"{where}: ", hint) if record["outcome"] else None
-    return record["user"], record["policy"], outcome, record.get("type", ""), record.get("context", "")
-
-
-def check_word(what: str, word: str) -> str:
-    """`word` itself, if it is 1 to 200 printable characters."""
-    if not 0 < len(word) <= LONGEST or not word.isprintable():
-        raise InputError(f"{what} must be 1 to {LONGEST} printable characters, got {word[:60]!r}")
-    return word
-
-
-def read_outcome(text: str, where: str = "", hint: str = "") -> float:
-    """A finite number; InputError for anything else."""
-    try:
-        outcome = float(text)
-    except ValueError:
-        outcome = math.nan
-    if not math.isfinite(outcome):
-        hint = "; write decimals with a point" if "," in text else hint
-        raise InputError(f"{where}outcome must be a finite number, got {text[:60]!r}{hint}")
-    return outcome

@@ -1,7 +1,8 @@
-"""The verbs `reuse choose`, `update`, `retire`, `add` and `forget`: one user at a time, kept as it happens.
+"""The verbs `reuse choose`, `update`, `retire`, `add` and `forget`: one user at a time, stored as it happens.
 
-Each is one transaction of memory: after a crash at any moment a decision or an outcome is there as a whole or
-not at all. Every function takes the study as `open_study` gave it, so that a loop opens it once.
+Each is one transaction of memory, belief included: after a crash at any moment a decision or an outcome is there
+as a whole or not at all. The time of a decision does not grow with the number of decisions before it. Every
+function takes the study as `open_study` gave it, so that a loop opens it once.
 """
 
 import time
@@ -11,21 +12,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.history import (
-    Decision,
-    History,
-    open_history,
-    parse_identifier,
-    replayed,
-    robot_of,
-    user_key,
-)
+from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
 from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
+from lifelore.agent.reuse.user_belief import UserBelief, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
-from lifelore.memory import Memory
+from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.memory import KeyState, Memory
 
 ATTEMPTS = 1000
 """Times that a decision is offered to memory: others may choose for the same user at the same moment."""
@@ -69,41 +65,40 @@ def choose(
         check_word("context", context)
     key, attempt = user_key(study.name, user), 0
     for _ in range(ATTEMPTS):
-        known = open_history(memory, study, key, user)
-        history = History(known.study, key, user, context or known.context, known.decisions)
-        decision, answer = _decided(study, history, attempt, seed)
-        offered = [history.record_of(decision)]
-        process = _process(decision)
+        known = open_belief(memory, study, key, user, context)
+        decision, answer = _decided(study, known, attempt, seed)
+        offered = [known.history.record_of(decision)]
         task = {"study": study.name, "policy": decision.policy}
-        if memory.contribute(history.robot, offered, process=process, seq=0, task=task):
+        after = known.state.after(study, [decision], known.state.head)
+        state = KeyState(known.name, known.token, after.to_bytes())
+        process = _process(decision)
+        if memory.contribute(known.history.robot, offered, process=process, seq=0, task=task, state=state):
             return answer
         # Another process took this number, or a forgotten decision had it.
-        again = len(open_history(memory, study, key).decisions) == len(known.decisions)
-        attempt = attempt + 1 if again else 0
+        attempt = attempt + 1 if open_belief(memory, study, key).token == known.token else 0
     raise StoreError(f"memory {memory.location}: too many choices for one user at once; try again")
 
 
-def _decided(study: Study, history: History, attempt: int, seed: int) -> tuple[Decision, dict[str, Any]]:
-    agent = replayed(study, history)
-    belief = agent.belief
-    control = study.holds_out(history.user)
+def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[Decision, dict[str, Any]]:
+    head, user = known.state.head, known.history.user
+    belief = study.algorithm.belief(head.log_belief)
+    control = study.holds_out(user)
     odds = _control_odds(study) if control else _odds(study, belief)
-    number = history.decisions[-1].number + 1 if history.decisions else 0
-    drawn = stream(seed, "reuse choice", study.name, history.user, number).choice(len(odds.probs), p=odds.probs)
+    drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
-    decision = Decision(number, policy, probability, control, int(time.time()), attempt)
+    decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
     expected = expected_utility(belief, study.choice_of.performance.mean)
     answer = {
-        "user": history.user,
+        "user": user,
         "policy": policy,
-        "decision": history.identifier(decision),
-        "number": number,
+        "decision": known.history.identifier(decision),
+        "number": head.number,
         "probability": probability,
         "control": control,
-        "context": history.context if history.context in study.contexts else None,
+        "context": known.context if known.context in study.contexts else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
-        "surprise": agent.surprise,
+        "surprise": head.surprise,
     }
     return decision, answer
 
@@ -138,41 +133,40 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         The outcome is no finite number, none of the values a categorical library knows, or another one was taken.
     """
     key, number, attempt = parse_identifier(decision)
-    history = open_history(memory, study, key)
-    found = _find(history, number, attempt, decision)
-    _check_outcome(study, found, outcome)
-    record = history.outcome_record(found, outcome, int(time.time()))
-    task = {"study": study.name, "outcome": outcome}
-    taken = found.outcome is None and memory.contribute(
-        history.robot, [record], process=_process(found), seq=1, task=task
-    )
-    history = open_history(memory, study, key)
-    kept = _find(history, number, attempt, decision)
-    if kept.outcome != outcome:
-        raise InputError(
-            f"decision {decision} ended with {kept.outcome:g} already, got {outcome:g}; nothing changed"
-        )
-    belief = replayed(study, history).belief
+    known = open_belief(memory, study, key)
+    found = known.find(memory, study, number, attempt)
+    if found is None:
+        raise NotFoundError(f"no decision {decision} in study '{study.name}': never made here, or forgotten")
+    _check_outcome(study, found.decision, outcome)
+    after, taken = found.state_after(study, known.state, outcome), False
+    if found.decision.outcome is None:
+        record = known.history.outcome_record(found.decision, outcome, int(time.time()))
+        taken = memory.contribute(
+            known.history.robot, [record], process=_process(found.decision), seq=1,
+            task={"study": study.name, "outcome": outcome},
+            state=KeyState(known.name, known.token, after.to_bytes()),
+        )  # fmt: skip
+    if not taken:
+        # The outcome was there before, or another process was faster.
+        known = open_belief(memory, study, key)
+        again, after = known.find(memory, study, number, attempt), known.state
+        if again is None or again.decision.outcome != outcome:
+            there = f"ended with {again.decision.outcome:g} already" if again else "was forgotten"
+            raise InputError(f"decision {decision} {there}, got {outcome:g}; nothing changed")
+    belief = study.algorithm.belief(after.head.log_belief)
     return {
         "decision": decision,
-        "user": history.user,
-        "policy": kept.policy,
+        "user": known.history.user,
+        "policy": found.decision.policy,
         "outcome": outcome,
         "taken": taken,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
     }
 
 
-def _find(history: History, number: int, attempt: int, identifier: str) -> Decision:
-    for decision in history.decisions:
-        if (decision.number, decision.attempt) == (number, attempt):
-            return decision
-    raise NotFoundError(f"no decision {identifier} in study '{history.study}': never made here, or forgotten")
-
-
 def _check_outcome(study: Study, decision: Decision, outcome: float) -> None:
-    if not np.isfinite(outcome):
-        raise InputError(f"outcome must be a finite number, got {outcome}")
+    if not abs(outcome) <= LARGEST:
+        raise InputError(f"outcome must be a finite number of at most {LARGEST:g} in size, got {outcome}")
     if decision.policy not in study.library.policies or study.library.performance.kind != "categorical":  # type: ignore[attr-defined]
         return
     column = study.library.index_of_policy(decision.policy)
@@ -232,9 +226,9 @@ def _kept(memory: Memory, study: Study) -> Study:
 
 
 def forget(memory: Memory, study: Study, user: str) -> int:
-    """Forget a user's decisions, outcomes and belief for good; the number of contributions removed.
+    """Forget a user's past, decisions, outcomes and belief for good; the number of contributions removed.
 
-    The library still contains the outcomes of the log: remove the user's lines from it and fit again.
+    The library still follows from the user's lines in the log: remove them and fit again.
 
     Raises
     ------
@@ -242,8 +236,8 @@ def forget(memory: Memory, study: Study, user: str) -> int:
         Nothing is known of the user.
     """
     key = user_key(study.name, user)
-    if not open_history(memory, study, key).decisions:
-        raise NotFoundError(
-            f"nothing is kept of user '{user}' in study '{study.name}'; lines of the log are in the log alone"
-        )
-    return memory.forget(robot_of(study.name, key))
+    decided = bool(open_history(memory, study, key).decisions)
+    in_past = forget_past(memory, study.name, key)
+    if not (decided or in_past):
+        raise NotFoundError(f"nothing is stored of user '{user}' in study '{study.name}'")
+    return memory.forget(robot_of(study.name, key)) if decided else 0

@@ -10,22 +10,27 @@ import io
 import json
 import warnings
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from lifelore.agent.reuse.history import Decision, History, histories, replayed
+from lifelore.agent.reuse.history import Decision, History, histories
+from lifelore.agent.reuse.past import Past, PastUser, read_past
 from lifelore.agent.reuse.study import Study
+from lifelore.agent.reuse.user_belief import last_belief
 from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import StoreError
+from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.metrics import mean_estimate
+from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.memory import Memory
 
 COLUMNS = (
     "user", "policy", "outcome", "context", "time", "probability", "group", "decision", "number", "outcome_time",
 )  # fmt: skip
 """Of the log of decisions, which `reuse fit` reads again."""
+SPLITS = ("user", "time", "both")
 LONGEST_CURVE = 60
 MANY = 1000
 """Users up to which means are resampled; of more the normal interval says the same, and memory stays small."""
@@ -34,9 +39,19 @@ LEAST_USERS = 3
 
 
 def report(
-    memory: Memory, study: Study, out: str | Path | None = None, log: str | Path | None = None
+    memory: Memory,
+    study: Study,
+    out: str | Path | None = None,
+    log: str | Path | None = None,
+    *,
+    incumbent: str | None = None,
+    split: str | None = None,
 ) -> dict[str, Any]:
-    """Compare those chosen for by belief with those held out.
+    """Compare those chosen for by belief with the control group, with the best single policy, and the incumbent.
+
+    The best single policy is chosen by the users of the fit. Its outcome, and that of the incumbent, is measured
+    on the control group, so neither is chosen and measured on the same outcomes. `split` makes sure of it where
+    users of the fit come back.
 
     Parameters
     ----------
@@ -44,24 +59,37 @@ def report(
         Gets ``report.json`` and ``report.png``.
     log : file, optional
         Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty.
+    incumbent : str, optional
+        The policy in place until now; default: the study's incumbent, if it has one.
+    split : {"user", "time", "both"}, optional
+        Count only users whom the fit did not know, decisions after the fit, or both; default: all. The log has
+        all.
 
     Returns
     -------
     dict
-        ``study``; ``decisions``, ``pending``; ``personal`` and ``control``: users and mean outcome (None without a
-        user) each as {"value", "median", "ci95", "n"}; ``uplift``: {"value", "ci95", "n"}, personal less control;
-        ``policies``: in the control group each policy's mean outcome over users, fair where it draws at random;
-        ``regret``: what the policy of the largest expectation under the user's last belief would have brought
-        more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome at each
-        decision.
+        ``study``; ``decisions``, ``pending``; ``personal`` and ``control``: users and mean outcome (None without
+        a user) each as {"value", "median", "ci95", "n"}; ``uplift``: {"value", "ci95", "n"}, personal less
+        control; ``best_single`` and ``incumbent``: ``name``, ``outcome`` in the control group and ``uplift``,
+        personal less it (None where the control group never got it); ``incumbent`` is None without one;
+        ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
+        at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
+        brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
+        at each decision.
 
     Raises
     ------
+    InputError, NotFoundError
+        There is no such split or policy, or the study does not know when it was fitted.
     StoreError
         The disk refuses.
     """
+    incumbent = incumbent or study.incumbent
+    if incumbent is not None and incumbent not in study.states:
+        raise NotFoundError(f"incumbent must be a policy of the study, got '{incumbent}'")
     known = [history for history in histories(memory, study) if history.decisions]
-    document = _document(study, known)
+    past = read_past(memory, study.name)
+    document = _document(study, _split(study, known, past, split), past, incumbent) | {"split": split}
     if log is not None:
         _write(Path(log), _log_text(study, known))
     if out is not None:
@@ -69,7 +97,25 @@ def report(
     return document
 
 
-def _document(study: Study, known: list[History]) -> dict[str, Any]:
+def _split(study: Study, known: list[History], past: Past, split: str | None) -> list[History]:
+    """The histories that count: those of users, and with the decisions, that the fit has not seen."""
+    if split not in (None, *SPLITS):
+        raise InputError(f"split must be one of {', '.join(SPLITS)}, got '{split}'")
+    if split in ("user", "both"):
+        fitted = past.users_of("fit")
+        known = [history for history in known if history.key not in fitted]
+    if split in ("time", "both"):
+        fitted_at = study.fitted.get("time")
+        if fitted_at is None:
+            raise InputError("split by time needs a study that knows when it was fitted; fit it anew")
+        later = (
+            (history, tuple(one for one in history.decisions if one.chosen >= fitted_at)) for history in known
+        )
+        known = [replace(history, decisions=decisions) for history, decisions in later if decisions]
+    return known
+
+
+def _document(study: Study, known: list[History], past: Past, incumbent: str | None) -> dict[str, Any]:
     decisions = [decision for history in known for decision in history.decisions]
     groups = {
         name: [history for history in known if _ended(history, control)]
@@ -86,9 +132,11 @@ def _document(study: Study, known: list[History]) -> dict[str, Any]:
         "control": _estimate(means["control"]),
         "control_gets": study.incumbent or "each policy alike",
         "uplift": _difference(means["personal"], means["control"]),
+        "best_single": _beside(study.best_single, means["personal"], groups["control"]),
+        "incumbent": None if incumbent is None else _beside(incumbent, means["personal"], groups["control"]),
         "policies": _policies(study, groups["control"]),
         "regret": {
-            name: _estimate([_regret(study, history, name == "control") for history in group])
+            name: _estimate([_regret(study, history, past, name == "control") for history in group])
             for name, group in groups.items()
         },
         "by_decision": _by_decision(groups),
@@ -127,18 +175,30 @@ def _difference(first: Sequence[float], second: Sequence[float]) -> dict[str, An
     return {"value": float(np.mean(first) - np.mean(second)), "ci95": ci95, "n": [len(first), len(second)]}
 
 
+def _beside(policy: str, personal: Sequence[float], control: list[History]) -> dict[str, Any]:
+    """A single policy's outcome in the control group, and what those chosen for by belief have more."""
+    means = _means_of(policy, control)
+    return {"name": policy, "outcome": _estimate(means), "uplift": _difference(personal, means)}
+
+
+def _means_of(policy: str, control: list[History]) -> list[float]:
+    """Mean outcome of a policy for each user of the control group who got it."""
+    met = ([one for one in _ended(history, True) if one.policy == policy] for history in control)
+    return [_mean(decisions) for decisions in met if decisions]
+
+
 def _policies(study: Study, control: list[History]) -> list[dict[str, Any]]:
-    rows = []
-    for policy in sorted(study.states):
-        met = [[one for one in _ended(history, True) if one.policy == policy] for history in control]
-        means = [_mean(decisions) for decisions in met if decisions]
-        rows.append({"name": policy, "state": study.states[policy], "outcome": _estimate(means)})
-    return rows
+    return [
+        {"name": policy, "state": study.states[policy], "outcome": _estimate(_means_of(policy, control))}
+        for policy in sorted(study.states)
+    ]
 
 
-def _regret(study: Study, history: History, control: bool) -> float:
+def _regret(study: Study, history: History, every_past: Past, control: bool) -> float:
     """Mean over decisions of what the best policy under the last belief is expected to bring more."""
-    expected = dict(zip(study.library.policies, replayed(study, history).expected_utility(), strict=True))
+    past = every_past.users.get(history.key, PastUser())
+    expected_utilities = expected_utility(last_belief(study, history, past), study.library.performance.mean)
+    expected = dict(zip(study.library.policies, expected_utilities, strict=True))
     best = max(expected[policy] for policy in study.active)
     lost = [best - expected[one.policy] for one in _ended(history, control) if one.policy in expected]
     return float(np.mean(lost)) if lost else 0.0

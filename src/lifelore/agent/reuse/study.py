@@ -5,6 +5,7 @@ signal table of the policies in use travels behind it, so that a choice does not
 fit counts. Nothing of any single user is in here.
 """
 
+import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -20,6 +21,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule, rule_named
 from lifelore.memory import Memory
 
@@ -116,6 +118,33 @@ class Study:
         """How types change."""
         return TypeDynamics.hazard(self.change, self.library.prior) if self.change else TypeDynamics.static()
 
+    @cached_property
+    def algorithm(self) -> ReuseAlgorithm:
+        """Algorithm 7 with this library and these dynamics, for single beliefs."""
+        return ReuseAlgorithm(self.library, self.dynamics)
+
+    @cached_property
+    def fingerprint(self) -> str:
+        """Hash of the library and the dynamics: of all that turns the evidence of a user into a belief."""
+        return hashlib.sha256(self.library.to_bytes() + repr(self.change).encode()).hexdigest()[:32]
+
+    @cached_property
+    def policy_names(self) -> dict[int, str]:
+        """Each policy's name by the number that stands for it in records."""
+        return {policy_number(policy): policy for policy in self.states}
+
+    def expected(self, policy: str) -> float | None:
+        """Expected outcome of a policy for a user of whom nothing is known; None where the library lacks it."""
+        if policy not in self.library.policies:
+            return None
+        return float(self.library.prior @ self.library.performance.mean[:, self.library.index_of_policy(policy)])
+
+    @property
+    def best_single(self) -> str:
+        """The policy in use that is expected to serve all users best, by the users of the fit alone."""
+        expected = self.library.prior @ self.library.performance.mean
+        return max(self.active, key=lambda policy: expected[self.library.index_of_policy(policy)])
+
     def prior_of(self, context: str | None) -> NDArray[np.float64]:
         """Prior over types, (n_types,): that of a known context, else everybody's."""
         return self.contexts.get(context or "", self.library.prior)
@@ -166,6 +195,11 @@ class Study:
         seq = memory.tasks(self.robot)
         while not memory.contribute(self.robot, [self.to_record()], process="study", seq=seq, task=_task(self)):
             seq += 1
+
+
+def policy_number(policy: str) -> int:
+    """A number that stands for a policy's name in records, the same in every memory."""
+    return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
 
 
 def open_study(memory: Memory, name: str = "default") -> Study:

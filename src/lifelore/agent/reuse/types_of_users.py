@@ -31,29 +31,26 @@ def typed_rows(log: ReuseLog, model: str, n_types: int | None, generator: np.ran
 
 def _named(log: ReuseLog) -> TypedRows:
     """Rows that name a type, and those of users whose type other rows name."""
-    of_user = log.of_users(log.types)
-    named_types = [name or of_user.get(user, "") for user, name in zip(log.users, log.types, strict=True)]
-    names = sorted(set(named_types) - {""})
-    place = {name: number for number, name in enumerate(names)}
-    rows = np.array([row for row, name in enumerate(named_types) if name], np.int64)
-    return TypedRows(rows, np.array([place[named_types[row]] for row in rows], np.int64), tuple(names))
+    types = log.type_of_user[log.user.codes]
+    rows = np.flatnonzero(types >= 0)
+    codes, own = np.unique(types[rows], return_inverse=True)
+    return TypedRows(rows, own, tuple(log.type.names[code] for code in codes))
 
 
 def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     """Also the rows of users of whom nobody says the type, and whose outcomes leave little doubt of it."""
-    known = set(named.rows.tolist())
-    waiting: dict[str, list[int]] = {}
-    for row, user in enumerate(log.users):
-        if row not in known:
-            waiting.setdefault(user, []).append(row)
+    waiting: dict[int, list[int]] = {}
+    for row in np.flatnonzero(log.type_of_user[log.user.codes] < 0).tolist():
+        waiting.setdefault(int(log.user.codes[row]), []).append(row)
     rows, types = named.rows.tolist(), named.types.tolist()
     if waiting:
         library, _ = library_of(log, named, model)
         for own in waiting.values():
             agent = BayesianPolicyReuse(library)
             for row in own:
-                if log.policies[row] in library.policies:
-                    agent.update(log.policies[row], float(log.outcomes[row]))
+                policy = log.policy.names[log.policy.codes[row]]
+                if policy in library.policies:
+                    agent.update(policy, float(log.outcomes[row]))
             belief = agent.belief
             if belief.max() >= CERTAIN:
                 rows += own
@@ -65,10 +62,10 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
 
 def _found(log: ReuseLog, model: str, n_types: int | None, generator: np.random.Generator) -> TypedRows:
     """Types found among users by their outcomes."""
-    users, of_user = np.unique(log.users, return_inverse=True)
+    users, of_user = np.unique(log.user.codes, return_inverse=True)
     if n_types is not None and n_types > len(users):
         raise InputError(f"types must be at most {len(users)}, the users of the log, got {n_types}")
-    policies, of_policy = np.unique(log.policies, return_inverse=True)
+    policies, of_policy = np.unique(log.policy.codes, return_inverse=True)
     rows = UserRows(of_user, of_policy, log.outcomes, (len(users), len(policies)))
     family = "categorical" if model_of(log, model) == "categorical" else "gaussian"
     found = user_types(rows, generator, family=family, n_types=n_types)

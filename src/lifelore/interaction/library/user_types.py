@@ -13,7 +13,7 @@ Thesis: §4.3.3 assumes a given clustering; §4.7.2 names clustering as a way to
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,8 @@ STARTS = 6
 """Number of starts for each number of types, half of them k-means++; more cost time and may fit better."""
 STEPS, ENOUGH = 300, 1e-7
 """Largest number of steps of a start, and the relative gain in log likelihood below which it ends."""
+SAMPLED_USERS = 5_000
+"""Of more users, a random sample of so many gives the number of types and the start for all; more cost time."""
 PATIENCE = 2
 """Number of sizes tried beyond the best so far."""
 
@@ -43,7 +45,8 @@ class UserTypes:
     weights : (n_types,) float64
         Share of users, descending.
     criteria : tuple of float
-        The Bayesian criterion (smaller is better) for each number of types from 1, or for the requested number.
+        The Bayesian criterion (smaller is better) for each number of types from 1, or for the requested number. Of
+        more than `SAMPLED_USERS` users, that of the sample.
     """
 
     probs: Array
@@ -93,6 +96,8 @@ def user_types(
     n_users = rows.shape[0]
     if n_types is not None and not 1 <= n_types <= n_users:
         raise InputError(f"n_types must lie between 1 and the {n_users} users, got {n_types}")
+    if n_users > SAMPLED_USERS:
+        return _extended(made, rows, generator, family=family, n_types=n_types, most=most)
     tried: list[_Fit] = []
     for size in range(1, min(most, n_users) + 1) if n_types is None else [n_types]:
         tried.append(_best_start(made, rows, size, generator))
@@ -100,6 +105,23 @@ def user_types(
             break
     best = min(tried, key=lambda fit: fit.criterion)
     return _named(best, tuple(fit.criterion for fit in tried))
+
+
+def _extended(made: OutcomeFamily, rows: UserRows, generator: np.random.Generator, **settings: Any) -> UserTypes:
+    """The types of a sample of users, then fitted to all users from there."""
+    sample = np.sort(generator.choice(rows.shape[0], SAMPLED_USERS, replace=False))
+    chosen = np.isin(rows.users, sample)
+    # A policy that the sample never met has no place in it.
+    policies, of_policy = np.unique(rows.policies[chosen], return_inverse=True)
+    shape = len(sample), len(policies)
+    part = UserRows(np.searchsorted(sample, rows.users[chosen]), of_policy, rows.values[chosen], shape)
+    found = user_types(part, generator, **settings)
+    shares = np.zeros((rows.shape[0], found.n_types))
+    shares[sample] = found.probs
+    likelihood = made.stats @ made.fit(shares).T + np.log(found.weights)
+    each = np.asarray(logsumexp(likelihood, axis=1, keepdims=True))
+    probs, weights, _ = _maximised(made, np.exp(likelihood - each))
+    return _named(_Fit(probs, weights, min(found.criteria)), found.criteria)
 
 
 class _Fit(NamedTuple):

@@ -1,1 +1,1 @@
-"""Benchmark of policy reuse, beside loops, MABWiser and BoTorch."""
+"""Benchmarks of policy reuse, beside loops, MABWiser and BoTorch, and of a user with a long history."""

@@ -1,0 +1,82 @@
+"""How the CSV of a log is written: columns, separator, decimals, encoding, and what a missing value means."""
+
+import codecs
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from lifelore.core.errors import InputError, NotFoundError
+
+NEEDED = ("user", "policy", "outcome")
+OPTIONAL = ("type", "context", "decision")
+SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
+LEAVE_OUT, REFUSE = "leave-out", "refuse"
+
+
+@dataclass(frozen=True)
+class LogFormat:
+    """How to read a log.
+
+    Parameters
+    ----------
+    columns : dict of str to str
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`); others have our names. Capitals do not
+        matter.
+    separator : {"comma", "semicolon", "tab"}, optional
+        Between columns; default: the one that makes the needed columns of the header.
+    decimal_comma : bool
+        Whether outcomes have a comma before their decimals; a point is then an error.
+    encoding : str
+        Of the text, such as ``latin-1``.
+    missing : tuple of str
+        Words that mean that a value is missing, beside the empty field.
+    missing_outcome : str
+        ``leave-out`` the line, for it is not known yet; ``refuse`` the log; or the number that a missing outcome
+        means, such as ``0``.
+    missing_policy : str
+        ``refuse`` the log; ``leave-out`` the line; or the name of the policy that a missing policy means.
+    """
+
+    columns: Mapping[str, str] = field(default_factory=dict)
+    separator: str | None = None
+    decimal_comma: bool = False
+    encoding: str = "utf-8"
+    missing: tuple[str, ...] = ()
+    missing_outcome: str = LEAVE_OUT
+    missing_policy: str = REFUSE
+
+    def __post_init__(self) -> None:
+        for ours in self.columns:
+            if ours not in (*NEEDED, *OPTIONAL):
+                raise InputError(f"columns must name {', '.join((*NEEDED, *OPTIONAL))}, got '{ours}'")
+        if self.separator is not None and self.separator not in SEPARATORS:
+            raise NotFoundError(f"separator must be one of {', '.join(SEPARATORS)}, got '{self.separator}'")
+        try:
+            codecs.lookup(self.encoding)
+        except LookupError:
+            raise NotFoundError(f"encoding must be one that Python knows, got '{self.encoding}'") from None
+
+    def column(self, ours: str) -> str:
+        """The log's name of a column, in small letters."""
+        return self.columns.get(ours, ours).strip().lower()
+
+    def to_dict(self) -> dict[str, Any]:
+        """Plain data."""
+        return vars(self) | {"columns": dict(self.columns), "missing": list(self.missing)}
+
+
+def parse_columns(words: Sequence[str]) -> dict[str, str]:
+    """Names of columns from words such as ``user=household,policy=brand``.
+
+    Raises
+    ------
+    InputError
+        A part is not ``OURS=THEIRS``, or a column is named twice.
+    """
+    columns: dict[str, str] = {}
+    for part in (part for word in words for part in word.split(",")):
+        ours, found, theirs = (piece.strip() for piece in part.partition("="))
+        if not (ours and found and theirs) or ours in columns:
+            raise InputError(f"columns must be OURS=THEIRS, each once, such as user=household, got {part!r}")
+        columns[ours] = theirs
+    return columns

@@ -1,0 +1,132 @@
+"""The belief about one user, as memory stores it or as a replay of the evidence computes it.
+
+Memory stores the evidence (`history`) and beside it the belief that follows (`user_state`). The stored belief
+holds for one library, one prior, one past (`past`) and one set of cells. Where any of them is another, the
+belief is computed again from the evidence, with the same bits: after a new fit, after a merge of memories, and
+for histories of an earlier Lifelore.
+"""
+
+import hashlib
+import json
+from dataclasses import dataclass, replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, read_decisions
+from lifelore.agent.reuse.past import PastUser, read_index, read_past_user
+from lifelore.agent.reuse.study import Study
+from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes, learn
+from lifelore.memory import Memory
+
+NAMED_TYPE = 0.99
+"""Belief in the type that a log names for a user; at 1, no outcome could correct a wrong name."""
+
+
+@dataclass(frozen=True, eq=False)
+class UserBelief:
+    """What is known of a user before the next decision.
+
+    history : without its decisions
+    context : whose prior counts, or None
+    token : of the cells in memory that the belief follows; None where there are none
+    state : the belief
+    """
+
+    history: History
+    context: str | None
+    token: int | None
+    state: UserState
+
+    @property
+    def name(self) -> tuple[str, str, int]:
+        """Kind, key and version of the user's record."""
+        return KIND, f"{self.history.study}/{self.history.key}", VERSION
+
+    def find(self, memory: Memory, study: Study, number: int, attempt: int) -> "Found | None":
+        """A decision as memory has it; None where there is none."""
+        start = self.state.before(number)
+        decisions = read_decisions(memory, study, self.history.key, number if start is None else start.number)
+        found = [one for one in decisions if (one.number, one.attempt) == (number, attempt)]
+        return Found(found[0], start, decisions) if found else None
+
+
+class Found(NamedTuple):
+    """A decision, and all that its outcome may change.
+
+    decision : Decision
+    start : the last checkpoint before it; None where its outcome is known and no belief depends on it any more
+    decisions : all decisions from `start` on
+    """
+
+    decision: Decision
+    start: Checkpoint | None
+    decisions: tuple[Decision, ...]
+
+    def state_after(self, study: Study, state: UserState, outcome: float) -> UserState:
+        """The state with this outcome of the decision, if it has none yet."""
+        if self.decision.outcome is not None or self.start is None:
+            return state
+        ended = [replace(one, outcome=outcome) if one is self.decision else one for one in self.decisions]
+        return state.after(study, ended, self.start)
+
+
+def open_belief(memory: Memory, study: Study, key: str, user: str = "", context: str | None = None) -> UserBelief:
+    """The belief about a user.
+
+    Parameters
+    ----------
+    user : str
+        Name of the user; that in memory counts where memory knows the user.
+    context : str, optional
+        Context of the user; by default the one in memory.
+    """
+    stored = memory.recall_state(KIND, f"{study.name}/{key}", VERSION)
+    about = stored.about if stored else {"user": user}
+    context = context or about.get("context")
+    history = History(study.name, key, about["user"], context, ())
+    state = from_bytes(stored.content) if stored else None
+    index = read_index(memory, study.name)
+    origin = {"study": study.fingerprint, "past": index.get("token"), "context": context}
+    if state is None or state.origin != origin:
+        past = read_past_user(memory, study.name, index, key)
+        context = context or past.context
+        basis = basis_of(study, context, past)
+        if state is None or state.basis != basis:
+            state = replayed(study, context, past, read_decisions(memory, study, key) if stored else ())
+        state = replace(state, origin=origin, context=context)
+    return UserBelief(history, state.context, stored.token if stored else None, state)
+
+
+def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
+    """The state after the past and all decisions, from the prior on."""
+    log_belief, surprise = study.algorithm.start(prior_of(study, context, past)), 0.0
+    for policy, outcome in past.outcomes:
+        surprise += learn(study, log_belief, policy, outcome)
+    start = Checkpoint(0, log_belief, surprise)
+    state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
+    return state.after(study, decisions, start)
+
+
+def last_belief(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
+    """The belief after all decisions of a history, (n_types,)."""
+    state = replayed(study, history.context or past.context, past, history.decisions)
+    return study.algorithm.belief(state.head.log_belief)
+
+
+def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:
+    """Prior over types before the past, (n_types,): the context's, with `NAMED_TYPE` on a type a log names."""
+    prior = study.prior_of(context)
+    if past.type not in study.library.types:
+        return prior
+    named = np.zeros(len(prior))
+    named[study.library.types.index(past.type)] = NAMED_TYPE
+    return named + (1 - NAMED_TYPE) * prior
+
+
+def basis_of(study: Study, context: str | None, past: PastUser) -> str:
+    """Hash of all that a belief follows from, beside the decisions."""
+    prior = prior_of(study, context, past)
+    text = study.fingerprint + json.dumps(past.outcomes)
+    return hashlib.sha256(text.encode() + prior.tobytes()).hexdigest()[:32]
