@@ -1,7 +1,10 @@
 """The agents and the advice of lives in big worlds."""
 
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings
+from lifelore.agent.live import life_size
+from lifelore.agent.live.life import live
+from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
 from lifelore.agent.live.life_size import BIG, FIRST, LATER, estimated_seconds, size_of_life
+from lifelore.domains.worlds import WorldSettings
 
 
 def test_the_estimate_by_hand():
@@ -35,3 +38,14 @@ def test_a_long_life_says_how_long():
     assert "fewer agents" in notice
     quiet = LifeSettings(tasks=1000, learning=LearningSettings("q"))
     assert size_of_life(quiet, 90_000)[1] is None
+
+
+def test_a_life_in_a_big_world_has_no_comparison_and_notifies_first(tmp_path, monkeypatch):
+    monkeypatch.setattr(life_size, "BIG", 100)
+    lines = []
+    where = MemorySettings(str(tmp_path / "life.db"))
+    report = live(LifeSettings(WorldSettings("lattice"), memory=where, tasks=1), notify=lines.append).report
+    assert len(lines) == 1
+    assert "above 100 places scratch lives beside lore only with --compare" in lines[0]
+    assert list(report["tasks"][0]["agents"]) == ["lore"]
+    assert list(report["summary"]) == ["agents"]

@@ -41,7 +41,7 @@ FAR, TURNED = 1.0, np.radians(5.0)
 """Metres at the middle of the map, or radians, from which on two poses are different."""
 LEAST_OVERLAP = 0.5
 """Least share of the smaller map's walls that must lie where the other map knows the ground."""
-_MOST_POINTS = 4000
+_MOST_POINTS, _MOST_COARSE = 4000, 30_000  # wall points in the fine and in the coarse search
 _REACH = 2.0  # metres: distances to walls are cut off here
 
 
@@ -189,6 +189,7 @@ def _coarse(a: _Walls, b: _Walls) -> NDArray[np.float64]:
     """The best places that differ, (n, 3), by correlation of coarse pictures at every angle."""
     around = b.points - b.middle
     radius = np.hypot(*around.T).max()
+    around = around[:: -(-len(around) // _MOST_COARSE)]
     pixel = max(COARSE_PIXEL, max(np.ptp(a.points, axis=0).max(), 2 * radius) / COARSE_SIDE)
     radius += pixel
     low = a.points.min(axis=0) - 2 * pixel
