@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse. "
-            "Benefit: courier, relations, pictures, deep, worlds, contexts."
+            "Benefit: courier, relations, pictures, deep, deep_layouts, worlds, contexts."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

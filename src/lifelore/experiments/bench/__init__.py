@@ -25,6 +25,7 @@ BENCHES = (
     "capacity",
     "worlds",
     "contexts",
+    "deep_layouts",
 )
 """``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
 
