@@ -1,5 +1,9 @@
 """`bench worlds`, small: the worlds differ by task, the baseline learns, and the comparison is right by hand."""
 
+import json
+import re
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -127,3 +131,22 @@ def test_differences_are_paired_over_the_second_half():
     assert (difference["mean"]["value"], difference["mean"]["ci95"]) == (1.0, None)
     # Five zeros and five twos: the middle half holds as many of each, up to one.
     assert difference["interquartile_mean"]["value"] == pytest.approx(1.0)
+
+
+def test_the_page_shows_the_committed_numbers():
+    root = Path(__file__).parents[2]
+    page = (root / "docs" / "start" / "learning.md").read_text(encoding="utf-8")
+    committed = json.loads((root / "results" / "bench_worlds.json").read_text(encoding="utf-8"))["worlds"]
+    assert list(committed) == list(WORLDS)
+    for name, world in committed.items():
+        measure = world["measures"]["mean_return"]
+        numbers = [measure["agents"][who]["mean"]["value"] for who in AGENTS]
+        for who in AGENTS[1:]:
+            for estimate in measure["lore_minus"][who].values():
+                numbers += [estimate["value"], *estimate["ci95"]]
+        (line,) = [line for line in page.splitlines() if line.startswith(f"| {name} |")]
+        told = re.findall(r"[−+]?\d+\.\d+", line.split("|", 2)[2])
+        assert len(told) == len(numbers)
+        for text, number in zip(told, numbers, strict=True):
+            digits = len(text.split(".")[1])
+            assert float(text.replace("−", "-")) == pytest.approx(number, abs=0.51 * 10**-digits)

@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
-            "long_user. Benefit: courier, recognition, worlds, contexts, relations, pictures, deep."
+            "long_user. Benefit: courier, recognition, worlds, contexts, relations, pictures, deep, deep_layouts."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

@@ -32,7 +32,7 @@ def recalled_prior(memory: Memory | None, key: str | None, n_actions: int, alpha
 def prior_from_memory(
     location: str | Path, *, key: str | None = None, n_actions: int | None = None, alpha0: float = 0.1
 ) -> ActionPrior:
-    """The action prior that lives of `live_in` left in a memory, for other learners such as `PriorDQN`.
+    """The action prior that lives of `live_in` left in a memory, for other learners such as ``PriorDQN``.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def _listed(stored: list[tuple[str, int]]) -> str:
 
 
 class BatchContexts:
-    """Context codes of batches of observations, the same codes as in a life: ``contexts`` for `PriorDQN`.
+    """Context codes of batches of observations, the same codes as in a life: ``contexts`` for ``PriorDQN``.
 
     Parameters
     ----------

@@ -30,6 +30,7 @@ BENCHES = {
     "recognition": "lives",
     "worlds": "lives",
     "contexts": "action",
+    "deep_layouts": "action",
     "long_user": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
