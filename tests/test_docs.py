@@ -14,8 +14,6 @@ import pytest
 from lifelore import make_world
 from lifelore.action.priors.prior_file import load_prior
 from lifelore.core.planning.planning import best_actions, optimal_q
-from lifelore.domains.tabletop.scene_folder import save_cloud
-from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
@@ -82,15 +80,6 @@ def test_vectors_become_contexts(tmp_path):
     code, key = run([sys.executable, "-W", "error", "-c", LEARNT], tmp_path).split(" ", 1)
     assert 0 <= int(code) < 32
     assert key.startswith("learnt contexts ")
-
-
-@pytest.mark.slow
-def test_a_cloud_becomes_relations_in_the_users_own_words(tmp_path):
-    (code,) = re.findall(r"```python\n(.*?)```", (DOCS / "start" / "robots.md").read_text("utf-8"), flags=re.S)
-    save_cloud(tmp_path / "scene.pcd", sample_scene(3, 0, TabletopSettings(n_objects=(2, 2))))
-    said = run([sys.executable, "-W", "error", "-c", code], tmp_path)
-    assert "Relation(a=2, b=1, relation='on'" in said
-    assert "relation='in_front_of'" in said
 
 
 @pytest.mark.slow

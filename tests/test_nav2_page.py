@@ -1,9 +1,10 @@
-"""The pages for robots: their commands run as printed, and nav2's parameters fit each other and the exports."""
+"""The page on nav2: its commands run as printed, and its parameters fit each other and the exports."""
 
 import csv
 import json
 import re
 import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -13,11 +14,10 @@ import pytest
 import yaml
 
 from lifelore.agent.live.report import FILES, MASK_FILES
-from lifelore.domains.buildings.occupancy_map import OccupancyMap, read_occupancy_map, write_occupancy_map
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 
 DOCS = Path(__file__).parents[1] / "docs"
 NAV2 = (DOCS / "nav2.md").read_text(encoding="utf-8")
-ROBOTS = (DOCS / "start" / "robots.md").read_text(encoding="utf-8")
 (PARAMETERS,) = (yaml.safe_load(block) for block in re.findall(r"```yaml\n(.*?)```", NAV2, flags=re.S))
 
 
@@ -63,24 +63,16 @@ def said(line: str, folder: Path) -> str:
 
 
 @pytest.mark.slow
-def test_the_commands_of_own_goals_run_as_printed(tmp_path):
-    state = np.zeros((60, 90), np.uint8)
-    state[[0, -1], :] = state[:, [0, -1]] = 1
-    write_occupancy_map(tmp_path / "my_building.yaml", OccupancyMap(state, 0.1))
-    (jobs,) = re.findall(r"```text\n(time,name,x,y\n.*?)```", ROBOTS, flags=re.S)
-    (tmp_path / "jobs.csv").write_text(jobs, encoding="utf-8")
-    section = ROBOTS.split("### Your own goals")[1]
-    (block,) = re.findall(r"```sh\n(.*?)```", section.split("###")[0], flags=re.S)
-    for line in block.splitlines():
-        printed = said(line, tmp_path)
-        if "--goals" in line:
-            assert "task 2: 11:15 dock 2.05,1.55: lore" in printed
+def test_the_commands_run_as_printed(tmp_path):
+    shutil.copytree(DOCS.parent / "examples", tmp_path / "examples")
+    live, to_dock, to_point = [line for line in NAV2.splitlines() if line.startswith("lifelore ")]
+    assert "11:15 dock 4.975,12.525: lore" in said(live, tmp_path)
+    assert set(np.unique(read_occupancy_map(tmp_path / "exports" / "keepout.yaml").state)) <= {0, 1}
+    said(to_point, tmp_path)
     with (tmp_path / "way.csv").open(newline="", encoding="utf-8") as file:
         ends = [(float(row["x"]), float(row["y"])) for row in csv.DictReader(file)]
-    assert (ends[0], ends[-1]) == ((2.05, 1.55), (7.25, 4.15))
-    assert set(np.unique(read_occupancy_map(tmp_path / "pictures" / "keepout.yaml").state)) <= {0, 1}
-    (to_lab, _) = [line for line in NAV2.splitlines() if line.startswith("lifelore way")]
-    message = json.loads(said(to_lab, tmp_path))
+    assert ends[-1] == (4.975, 12.525)
+    message = json.loads(said(to_dock, tmp_path))
     assert {"header", "poses", "from", "to", "length", "places", "contradicted"} == set(message)
     for key in ("from", "to", "length", "places", "contradicted"):
         assert f"`{key}`" in NAV2

@@ -118,8 +118,8 @@ def warm(
 ) -> None:
     """Store the past of users who came after the fit.
 
-    The library stays as it is. Use it so that users of another system do not start as strangers. The same log again
-    changes nothing.
+    The library stays as it is. Use it so that users of another system do not start as strangers. The same log
+    again changes nothing.
     """
     from lifelore.agent.reuse.warm import warm as warmed
     from lifelore.app.console import print_json
