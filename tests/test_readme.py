@@ -1,7 +1,10 @@
 """The README's Python runs as it stands, only shorter; its make targets, links and pictures exist."""
 
 import json
+import os
 import re
+import shlex
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -10,7 +13,7 @@ import pytest
 
 ROOT = Path(__file__).parents[1]
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-LAKE, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
+ROOMS, USER = re.findall(r"```python\n(.*?)```", README, flags=re.S)
 
 
 def run(code: str, folder: Path) -> str:
@@ -23,16 +26,33 @@ def run(code: str, folder: Path) -> str:
 
 @pytest.mark.slow
 def test_an_own_gymnasium_world(tmp_path):
-    shorter = LAKE.replace("tasks=30, episodes=500", "tasks=3, episodes=20")
-    assert shorter != LAKE
+    pytest.importorskip("minigrid")
+    shorter = ROOMS.replace("tasks=6, episodes=100", "tasks=3, episodes=20")
+    assert shorter != ROOMS
     jumpstart = json.loads(run(shorter, tmp_path).replace("'", '"').replace("None", "null"))
     assert jumpstart["n"] == 1
-    assert (tmp_path / "lake.db").is_file()
+    assert (tmp_path / "rooms.db").is_file()
 
 
 @pytest.mark.slow
 def test_a_new_user(tmp_path):
     assert run(USER, tmp_path) == "C [0. 0. 1.]\n"
+
+
+@pytest.mark.slow
+def test_its_commands_run_as_printed(tmp_path):
+    shutil.copytree(ROOT / "examples", tmp_path / "examples")
+    commands = re.findall(r"^lifelore .*", README, flags=re.M)
+    assert len(commands) == 3
+    for command in commands:
+        words = shlex.split(command, comments=True)[1:]
+        done = subprocess.run(
+            [sys.executable, "-m", "lifelore.app.command_line", *words],
+            cwd=tmp_path, env=os.environ | {"XDG_DATA_HOME": str(tmp_path)}, capture_output=True, text=True,
+            check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+    assert (tmp_path / "scene.png").is_file()
 
 
 def test_its_make_targets_exist():
