@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 import yaml
 
-from lifelore.agent.live.report import FILES, MASK_FILES
+from lifelore.agent.live.output.report import FILES, MASK_FILES
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from lifelore.core.protocols import World as World
     from lifelore.core.relations import PairLabel as PairLabel
     from lifelore.domains.worlds import make_world as make_world
-    from lifelore.figures.prior_table import plot_prior as plot_prior
+    from lifelore.figures.lives.prior_table import plot_prior as plot_prior
     from lifelore.interaction.adaptation.beat import Beat as Beat
     from lifelore.interaction.library.policy_library import PolicyLibrary as PolicyLibrary
     from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse as BayesianPolicyReuse
@@ -78,7 +78,7 @@ _HOME = {
     "open_memory": "lifelore.memory",
     "perceive": "lifelore.agent.perceive.perceive",
     "perceived_scene": "lifelore.perception.perceived_scene",
-    "plot_prior": "lifelore.figures.prior_table",
+    "plot_prior": "lifelore.figures.lives.prior_table",
     "prior_from_memory": "lifelore.agent.external_world.stored_prior",
     "read_cloud": "lifelore.perception.clouds.cloud_file",
     "to_scene": "lifelore.perception.segmentation.table_frame",

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.live.destinations import Destination
-from lifelore.agent.live.job_list import Job
+from lifelore.agent.live.goals.destinations import Destination
+from lifelore.agent.live.goals.job_list import Job
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
 from lifelore.agent.live.transitions import model_table, to_record

@@ -5,8 +5,8 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures import scene_picture
 from lifelore.figures.gallery import draw_gallery, gallery_above
+from lifelore.figures.scenes import scene_picture
 from lifelore.figures.style import house_style, save_figure
 
 POINTS = np.random.default_rng(0).uniform(0, 0.1, (60, 3))

@@ -1,6 +1,6 @@
 """Colours of relations, objects and methods are fixed, and different."""
 
-from lifelore.figures.object_palette import method_palette, mixed, object_palette, relation_palette
+from lifelore.figures.scenes.object_palette import method_palette, mixed, object_palette, relation_palette
 from lifelore.perception.peers import PEERS
 
 

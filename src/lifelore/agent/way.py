@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.live.destinations import Destination, NamedPlaces
-from lifelore.agent.live.recognition import recognised_place
-from lifelore.agent.live.remembered_moves import RememberedMoves
+from lifelore.agent.live.buildings.recognition import recognised_place
+from lifelore.agent.live.buildings.remembered_moves import RememberedMoves
+from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.buildings.clear_path import clear_path
 from lifelore.domains.buildings.floor import Floor, floor_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 if TYPE_CHECKING:
-    from lifelore.agent.live.job_list import Job
+    from lifelore.agent.live.goals.job_list import Job
     from lifelore.agent.live.life_settings import Place
 
 Option = typer.Option
@@ -117,11 +117,11 @@ def live(
     """
     from contextlib import nullcontext
 
-    from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
-    from lifelore.agent.live.long_table import LongTable
-    from lifelore.agent.live.report import check_folder, write_portfolio
+    from lifelore.agent.live.output.l2_log import LifeLog
+    from lifelore.agent.live.output.long_table import LongTable
+    from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
     from lifelore.domains.worlds import WorldSettings
@@ -209,7 +209,7 @@ def _place(argument: str, text: str | None, domain: str) -> "Place | None":
     """A point in metres or a name in buildings, else a cell (row, column)."""
     if text is None:
         return None
-    from lifelore.agent.live.destinations import destination_from_text
+    from lifelore.agent.live.goals.destinations import destination_from_text
     from lifelore.core.errors import InputError
 
     if domain == "building":
@@ -223,7 +223,7 @@ def _place(argument: str, text: str | None, domain: str) -> "Place | None":
 
 
 def _jobs(path: str, tasks: int | None) -> "tuple[Job, ...]":
-    from lifelore.agent.live.job_list import read_jobs
+    from lifelore.agent.live.goals.job_list import read_jobs
     from lifelore.core.errors import InputError
 
     if tasks is not None:

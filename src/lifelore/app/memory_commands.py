@@ -85,7 +85,7 @@ def forget(
 
     No later import restores them.
     """
-    from lifelore.agent.live.building_memory import forget_building
+    from lifelore.agent.live.buildings.building_memory import forget_building
     from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
@@ -101,7 +101,7 @@ def forget(
 
 
 def _buildings(opened: "Memory") -> list[dict]:
-    from lifelore.agent.live.building_memory import buildings_in
+    from lifelore.agent.live.buildings.building_memory import buildings_in
 
     return buildings_in(opened)
 

@@ -43,7 +43,7 @@ def way(
     Use it after `live`. The way leads over remembered moves only, and the path keeps the robot's radius from all
     that the map does not show as free.
     """
-    from lifelore.agent.live.destinations import destination_from_text
+    from lifelore.agent.live.goals.destinations import destination_from_text
     from lifelore.agent.way import way as find_way
     from lifelore.agent.way import write_poses
     from lifelore.app.console import print_json

@@ -1,1 +1,1 @@
-"""Plain data in, matplotlib out."""
+"""Plain data in, matplotlib out: primitives such as `curves`, and the pictures of `lives` and `scenes`."""

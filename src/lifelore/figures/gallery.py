@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.figures.scene_picture import LAYERS, draw_scene_on
+from lifelore.figures.scenes.scene_picture import LAYERS, draw_scene_on
 from lifelore.figures.style import house_style, new_figure
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from lifelore.core.errors import InputError
-from lifelore.figures.object_palette import mixed
+from lifelore.figures.scenes.object_palette import mixed
 from lifelore.figures.style import GREY, INK, LIGHT
 
 if TYPE_CHECKING:

@@ -16,7 +16,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.external_world.context_code import MOST_ACTIONS, ContextCodes
 from lifelore.agent.external_world.stored_prior import recalled_prior
 from lifelore.agent.external_world.task import ExternalLearner, ExternalTask, GuidanceSettings
-from lifelore.agent.live.long_table import LongTable
+from lifelore.agent.live.output.long_table import LongTable
 from lifelore.agent.live.summary import plain, third
 from lifelore.agent.live.task_result import Stopped
 from lifelore.core.errors import InputError
@@ -86,7 +86,7 @@ def live_in(
         As in `PriorSettings`.
     csv : str or Path, optional
         File for the measures of each task and the return of each episode in long format, see
-        `lifelore.agent.live.long_table`.
+        `lifelore.agent.live.output.long_table`.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each task.
     stop : threading.Event, optional

@@ -19,9 +19,9 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.policy_counts import actions_to_count
 from lifelore.agent.learn_from.run_log import Run
 from lifelore.agent.learn_from.tried_moves import TriedMoves, tried_moves
+from lifelore.agent.live.buildings.recognition import Place, recognised_place
 from lifelore.agent.live.life_settings import MemorySettings, PriorSettings
 from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.agent.live.recognition import Place, recognised_place
 from lifelore.core.errors import InputError
 from lifelore.core.planning.planning import optimal_q
 from lifelore.core.protocols import Progress

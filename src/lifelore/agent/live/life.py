@@ -15,16 +15,16 @@ import numpy as np
 from lifelore.action.priors.back_off import posterior_mean
 from lifelore.action.priors.exploration import prior_rows, try_costs
 from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
-from lifelore.agent.live.carried_model import carried_model
-from lifelore.agent.live.destinations import NamedPlaces
+from lifelore.agent.live.buildings.carried_model import carried_model
+from lifelore.agent.live.buildings.map_watch import MapWatch
+from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
+from lifelore.agent.live.goals.destinations import NamedPlaces
+from lifelore.agent.live.goals.own_places import OwnGoal, own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.agent.live.map_watch import MapWatch
 from lifelore.agent.live.model_task import live_model_task
-from lifelore.agent.live.own_places import OwnGoal, own_places
 from lifelore.agent.live.q_task import live_q_task
-from lifelore.agent.live.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream

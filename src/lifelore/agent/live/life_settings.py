@@ -5,7 +5,7 @@ from math import ceil, isfinite
 
 from lifelore.action.priors.action_prior import FORMS
 from lifelore.action.priors.exploration import TIES
-from lifelore.agent.live.job_list import Job
+from lifelore.agent.live.goals.job_list import Job
 from lifelore.core.errors import InputError
 from lifelore.domains.worlds import WorldSettings
 

@@ -118,7 +118,7 @@ def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> Non
 
         _write_text(files.dot, to_dot(scene))
     if files.plot is not None:
-        from lifelore.figures.scene_picture import draw_scene
+        from lifelore.figures.scenes.scene_picture import draw_scene
         from lifelore.figures.style import save_figure
 
         save_figure(draw_scene(scene.cloud, document), files.plot)

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.figures.scene_document import TABLE_NAME, Bond, read_document
-from lifelore.figures.scene_picture import draw_scene_on
+from lifelore.figures.scenes.scene_document import TABLE_NAME, Bond, read_document
+from lifelore.figures.scenes.scene_picture import draw_scene_on
 from lifelore.figures.style import GREY, LIGHT, house_style, new_figure, save_figure
 
 PATH = Path("docs/pictures/scene_layers.png")

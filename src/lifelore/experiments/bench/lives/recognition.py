@@ -9,9 +9,9 @@ import tempfile
 import time
 from pathlib import Path
 
+from lifelore.agent.live.buildings.recognition import LEAST_MARGIN, LEAST_MATCH
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
-from lifelore.agent.live.recognition import LEAST_MARGIN, LEAST_MATCH
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map

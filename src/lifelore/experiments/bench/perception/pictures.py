@@ -61,7 +61,7 @@ def _labelled(truth: Sequence[PairLabel]) -> int:
 
 def draw_and_judge(scene: RealScene, out: Path) -> dict:
     """Perceive a scene, write its picture, and say what it shows."""
-    from lifelore.figures.scene_picture import draw_scene
+    from lifelore.figures.scenes.scene_picture import draw_scene
     from lifelore.figures.style import save_figure
 
     perceived = perceived_scene(scene.cloud, shipped_model()).without_unrelated_contacts

@@ -6,8 +6,8 @@ import numpy as np
 
 from lifelore.core.relations import ADJACENT, ON
 from lifelore.experiments.chapter2.c2_03_displacements_by_relation.measure import EDGE
-from lifelore.figures.object_palette import RELATION_MARKERS, mixed, relation_palette
 from lifelore.figures.scatter import draw_scatter
+from lifelore.figures.scenes.object_palette import RELATION_MARKERS, mixed, relation_palette
 from lifelore.figures.style import GREY, INK, PAPER, house_style, new_figure
 
 CLOSE = 25

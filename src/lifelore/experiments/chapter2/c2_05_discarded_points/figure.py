@@ -5,7 +5,7 @@ from collections.abc import Mapping, Sequence
 from lifelore.experiments.chapter2.c2_05_discarded_points.measure import KINDS, LITERAL, OURS, THESIS
 from lifelore.experiments.chapter2.c2_05_discarded_points.run import BORDER, DISCARDED, MASKS, NOISE, WHOLE
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.object_palette import method_palette
+from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import GREY, LIGHT, house_style, new_figure
 
 SHOWN = {OURS: "lifelore", THESIS: "thesis", LITERAL: "thesis, every word"}

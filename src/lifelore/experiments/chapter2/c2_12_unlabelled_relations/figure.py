@@ -7,8 +7,8 @@ import numpy as np
 from lifelore.experiments.chapter2.c2_12_unlabelled_relations.measure import REAL, underscored
 from lifelore.experiments.chapter2.c2_12_unlabelled_relations.relation_clusters import METHODS, X_MEANS
 from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
-from lifelore.figures.object_palette import RELATION_MARKERS, object_palette, relation_palette
 from lifelore.figures.scatter import draw_scatter
+from lifelore.figures.scenes.object_palette import RELATION_MARKERS, object_palette, relation_palette
 from lifelore.figures.style import house_style, new_figure
 
 

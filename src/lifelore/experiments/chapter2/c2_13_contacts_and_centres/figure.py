@@ -8,7 +8,7 @@ from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
 from lifelore.experiments.chapter2.scoring.method_panels import draw_method_panels
 from lifelore.experiments.chapter2.scoring.pair_validation import THRESHOLD
 from lifelore.figures.gallery import gallery_above
-from lifelore.figures.object_palette import mixed
+from lifelore.figures.scenes.object_palette import mixed
 from lifelore.figures.stacked_bars import draw_stacked_bars
 from lifelore.figures.style import BLUE, INK, ORANGE, PAPER, house_style
 

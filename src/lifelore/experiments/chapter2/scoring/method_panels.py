@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.object_palette import method_palette
+from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import LIGHT
 
 

@@ -5,7 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.experiments.chapter3.c3_01_useful_actions.run import PRINTED, PRINTED_OF
-from lifelore.figures.prior_arrows import draw_prior
+from lifelore.figures.lives.prior_arrows import draw_prior
 from lifelore.figures.style import BLUE, GREY, SKY, VERMILION, Axes, Figure, house_style, new_figure
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from lifelore.domains.factory.factory import PROCURE, Factory
 from lifelore.domains.factory.picture import ASSEMBLE_COLOUR, EXPRESS_COLOUR, PROCURE_COLOUR
-from lifelore.figures.prior_arrows import draw_prior
+from lifelore.figures.lives.prior_arrows import draw_prior
 from lifelore.figures.style import INK, Axes
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from lifelore.experiments.chapter2.scenes.scene_example import examples_of
 from lifelore.experiments.chapter5.c5_02_functional_roles.measure import METHODS
 from lifelore.figures.gallery import gallery_above
-from lifelore.figures.object_palette import method_palette
+from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import INK, LIGHT, house_style
 
 

@@ -1,0 +1,220 @@
+"""Recognises the building that a map shows, and makes the world on the building's own grid."""
+
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from lifelore.agent.live.buildings.building_record import (
+    KIND,
+    MAP_KIND,
+    VERSION,
+    Building,
+    map_digest,
+    map_record,
+    remembered_buildings,
+    remembered_map,
+)
+from lifelore.agent.live.lore import same_place
+from lifelore.agent.live.transitions import BuildingGrid, frame_key
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Record
+from lifelore.domains.buildings.map_alignment import aligned_map
+from lifelore.domains.buildings.occupancy_map import OccupancyMap
+from lifelore.domains.buildings.registration import IDENTITY, Fit, Pose, register, register_near
+from lifelore.domains.grids.grid_world import Frame, GridWorld
+from lifelore.domains.worlds import WorldSettings, world_from_settings
+from lifelore.memory import Memory
+
+LEAST_MATCH, LEAST_NAMED_MATCH = 0.96, 0.75
+"""Least share of walls on walls for a recognition; the second where the user names the building. A floor with the
+same walls and other furniture reaches 0.95, another building 0.6 (generated offices, see docs/courier.md)."""
+LEAST_MARGIN = 0.15
+"""Least lead over the best clearly different pose, and over every other building."""
+SAME_FRAME = 0.05, 0.002
+"""Metres and radians: a pose this near to the identity is the identity."""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A world and the building in which it lies.
+
+    world : the world to live in; positions in metres are those of the given map
+    grid : the grid that its transitions share with other maps of the building
+    report : the key ``building`` of the life's report; None outside buildings
+        (name, recognised, agreement: share of remembered cells whose surroundings are unchanged, walls: share of
+        walls that match, pose: [dx, dy, dyaw] from the map's frame to the building's, reason for a new building)
+    news : records of the building that memory is to store with the first task
+    occupancy : the map from which `world` was made, laid on the building's grid; None without a map
+    """
+
+    world: GridWorld
+    grid: BuildingGrid
+    report: dict | None = None
+    news: list[Record] = field(default_factory=list)
+    occupancy: OccupancyMap | None = None
+
+
+@dataclass(frozen=True)
+class _Recognised:
+    building: Building
+    pose: Pose
+    walls: float
+
+
+def own_place(world: GridWorld, occupancy: OccupancyMap | None = None) -> Place:
+    """A world that lies in no remembered building."""
+    return Place(world, BuildingGrid(frame_key(world)), occupancy=occupancy)
+
+
+def recognised_place(
+    settings: WorldSettings, world: GridWorld, occupancy: OccupancyMap, memory: Memory, name: str | None = None
+) -> Place:
+    """The place of a building's map: in a remembered building if the map is recognised, else in a new one.
+
+    Parameters
+    ----------
+    settings : WorldSettings
+        Of `world`.
+    world : GridWorld
+        As made from `occupancy`. The place's world is another one if the map is laid on a remembered grid.
+    occupancy : OccupancyMap
+    memory : Memory
+    name : str, optional
+        Name of the building. If memory has a building of this name, the map must fit it; else the building is new.
+
+    Raises
+    ------
+    InputError
+        The map does not fit the building of this name, or is remembered under another name.
+    """
+    buildings = remembered_buildings(memory)
+    found, reason = _recognised(occupancy, world, buildings, memory, name)
+    if found is None:
+        building = Building.new(occupancy, name or _free_name(settings, occupancy, buildings))
+        new = _Recognised(building, IDENTITY, 1.0)
+        return replace(_place(world, (0, 0), building, new, occupancy, memory, reason), occupancy=occupancy)
+    laid, corner = aligned_map(occupancy, found.pose, found.building.frame, world.frame.cell)
+    if found.pose != IDENTITY or laid.origin != occupancy.origin or laid.state.shape != occupancy.state.shape:
+        world = world_from_settings(settings, laid)
+    return replace(_place(world, corner, found.building, found, occupancy, memory, None), occupancy=laid)
+
+
+def _place(
+    world: GridWorld,
+    corner: tuple[int, int],
+    building: Building,
+    found: _Recognised,
+    occupancy: OccupancyMap,
+    memory: Memory,
+    reason: str | None,
+) -> Place:
+    frame = Frame(world.frame.cell, building.frame.origin)
+    grid = BuildingGrid(frame_key(world, frame), corner, building.key)
+    earlier = same_place(world, memory, grid)
+    # Memories of earlier versions of Lifelore hold transitions in this frame and no map.
+    recognised = reason is None or earlier is not None
+    report = {
+        "name": building.name,
+        "recognised": recognised,
+        "agreement": round(earlier.agreement, 4) if earlier else None,
+        "walls": round(found.walls, 4) if reason is None else None,
+        "pose": list(found.pose) if recognised else None,
+        "reason": None if recognised else reason,
+    }
+    news = []
+    if memory.recall(MAP_KIND, map_digest(occupancy), VERSION) is None:
+        news = [
+            building.record(occupancy, found.pose, memory.recall(KIND, building.key, VERSION)),
+            map_record(occupancy, building, found.pose, found.walls),
+        ]
+    return Place(world, grid, report, [record for record in news if len(record.slots)])
+
+
+def _free_name(settings: WorldSettings, occupancy: OccupancyMap, buildings: list[Building]) -> str:
+    name = Path(settings.map).stem if settings.map is not None else f"office-{settings.seed}"
+    taken = {building.name for building in buildings}
+    return name if name not in taken else f"{name}-{map_digest(occupancy)[:6]}"
+
+
+def _recognised(
+    occupancy: OccupancyMap, world: GridWorld, buildings: list[Building], memory: Memory, name: str | None
+) -> tuple[_Recognised | None, str | None]:
+    """The building that a map shows, or None with the reason."""
+    by_key = {building.key: building for building in buildings}
+    seen = memory.recall(MAP_KIND, map_digest(occupancy), VERSION)
+    if seen is not None and seen.about["building"] in by_key:
+        building = by_key[seen.about["building"]]
+        if name not in (None, building.name):
+            raise InputError(
+                f"building of this map is remembered as {building.name!r}, got {name!r}; leave it out, or forget "
+                f"that building with: lifelore memory forget --building '{building.name}'"
+            )
+        return _Recognised(building, tuple(seen.about["pose"]), seen.about["walls"]), None
+    named = [building for building in buildings if building.name == name]
+    if name is not None and not named:
+        return None, "no building of this name is remembered"
+    if name is None and (by_frame := _in_frame(occupancy, world, by_key, memory)):
+        return by_frame, None
+    return _registered(occupancy, named or buildings, memory, name)
+
+
+def _in_frame(
+    occupancy: OccupancyMap, world: GridWorld, by_key: dict[str, Building], memory: Memory
+) -> _Recognised | None:
+    """A map on the same grid whose percepts are mostly unchanged."""
+    earlier = same_place(world, memory, BuildingGrid(frame_key(world)))
+    building = by_key.get(earlier.record.about.get("building", "")) if earlier else None
+    if building is None or building.frame.origin != occupancy.origin:
+        return None
+    fit = register_near(_map_of(building, memory), occupancy)
+    return _Recognised(building, IDENTITY, fit.match if fit else 0.0)
+
+
+def _map_of(building: Building, memory: Memory) -> OccupancyMap:
+    record = memory.recall(KIND, building.key, VERSION)
+    if record is None:
+        raise InputError(f"building {building.name!r} has been forgotten by another process; try again")
+    return remembered_map(building, record)
+
+
+def _registered(
+    occupancy: OccupancyMap, buildings: list[Building], memory: Memory, name: str | None
+) -> tuple[_Recognised | None, str | None]:
+    """The building on which the map fits, and no other building or pose nearly as well."""
+    if not buildings:
+        return None, "no building is remembered"
+    maps = {building: _map_of(building, memory) for building in buildings}
+    in_place = ((register_near(known, occupancy), building) for building, known in maps.items())
+    fits = [(fit, of) for fit, of in in_place if fit and _near_identity(fit.pose) and fit.match >= LEAST_MATCH]
+    rivals: dict[Building, Fit | None] = {}
+    if not fits:
+        registered = ((register(known, occupancy), building) for building, known in maps.items())
+        found = [(result, building) for result, building in registered if result]
+        fits = [(result.best, building) for result, building in found]
+        rivals = {building: result.second for result, building in found}
+    if not fits:
+        return _refused(name, "it shares too few walls with the remembered buildings")
+    fits.sort(key=lambda one: -one[0].match)
+    best, building = fits[0]
+    if best.match < (LEAST_MATCH if name is None else LEAST_NAMED_MATCH):
+        return _refused(name, f"the nearest is {building.name}, where {_percent(best.match)} of the walls match")
+    second = rivals.get(building)
+    if second is not None and best.match - second.match < LEAST_MARGIN:
+        return _refused(name, f"two poses fit {building.name} equally")
+    if len(fits) > 1 and best.match - fits[1][0].match < LEAST_MARGIN:
+        return _refused(name, f"{building.name} and {fits[1][1].name} fit equally; choose with --building")
+    pose = IDENTITY if _near_identity(best.pose) else best.pose
+    return _Recognised(building, pose, best.match), None
+
+
+def _near_identity(pose: Pose) -> bool:
+    return max(abs(pose[0]), abs(pose[1])) <= SAME_FRAME[0] and abs(pose[2]) <= SAME_FRAME[1]
+
+
+def _refused(name: str | None, reason: str) -> tuple[None, str]:
+    if name is not None:
+        raise InputError(f"map does not fit building {name!r}: {reason}; give another name")
+    return None, reason
+
+
+def _percent(share: float) -> str:
+    return f"{int(100 * share)} %"

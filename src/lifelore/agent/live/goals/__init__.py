@@ -1,0 +1,1 @@
+"""Goals that the user chooses: `destinations` with names, `job_list` from a file, `own_places` of a life."""

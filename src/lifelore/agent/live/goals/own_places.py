@@ -1,0 +1,128 @@
+"""The start and the goals that the user chose for a life, as states of its world."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from lifelore.agent.live.goals.destinations import Destination, NamedPlaces
+from lifelore.agent.live.goals.job_list import named_points
+from lifelore.agent.live.life_settings import LifeSettings, Place
+from lifelore.core.errors import InputError
+from lifelore.domains.buildings.floor import Floor
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.memory import Memory
+
+
+@dataclass(frozen=True)
+class OwnGoal:
+    """A goal that the user chose.
+
+    state : in the world of the life
+    destination : its point and name; None in worlds without metres
+    time : as in the job list
+    """
+
+    state: int
+    destination: Destination | None = None
+    time: str | None = None
+
+    def to_dict(self) -> dict:
+        """JSON data: ``position`` in metres, ``name`` and ``time``, each where there is one."""
+        end = self.destination
+        data = {"position": end and end.point and list(end.point), "name": end and end.name, "time": self.time}
+        return {key: value for key, value in data.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class OwnPlaces:
+    """Start and goals of a life.
+
+    start : state in which every episode starts; None: any
+    goals : a goal for each task from task `first` of this life on, or one goal for all; empty: goals are drawn
+    """
+
+    start: int | None = None
+    goals: tuple[OwnGoal, ...] = ()
+    first: int = 0
+
+    def goal(self, seq: int) -> OwnGoal | None:
+        """The goal of task number `seq` of this life; None if it is drawn."""
+        if not self.goals:
+            return None
+        return self.goals[0] if len(self.goals) == 1 else self.goals[seq - self.first]
+
+
+def own_places(
+    settings: LifeSettings,
+    world: GridWorld,
+    floor: Callable[[], Floor],
+    names: NamedPlaces,
+    memory: Memory,
+    first: int = 0,
+) -> OwnPlaces:
+    """The places that the settings name, from task number `first` of the life on.
+
+    Raises
+    ------
+    InputError
+        A place is not free, or start and goal are the same place; the message names the argument, and the line of
+        a job list.
+    NotFoundError
+        Memory does not know a name.
+    """
+    if settings.world.domain != "building":
+        start = None if settings.start is None else grid_state("start", settings.start, world)
+        goals = () if settings.goal is None else (OwnGoal(grid_state("goal", settings.goal, world)),)
+        return _checked(OwnPlaces(start, goals), ["goal"])
+    asked = [("goal", _destination(settings.goal), None)] if settings.goal is not None else []
+    asked += [(f"goals line {job.line}", job.destination, job.time) for job in settings.goals[first:]]
+    if not asked and settings.start is None:
+        return OwnPlaces()
+    named = named_points(settings.goals)
+
+    def found(argument: str, end: Destination) -> Destination:
+        if end.point is None and end.name in named:
+            return Destination(named[end.name], end.name)
+        return names.located(argument, end, memory)
+
+    def state(argument: str, end: Destination) -> int:
+        return floor().state_at(argument, end.located_point)
+
+    start = None if settings.start is None else state("start", found("start", _destination(settings.start)))
+    ends = [(argument, found(argument, end), time) for argument, end, time in asked]
+    goals = tuple(OwnGoal(state(argument, end), end, time) for argument, end, time in ends)
+    return _checked(OwnPlaces(start, goals, first), [argument for argument, _, _ in asked])
+
+
+def grid_state(argument: str, place: Place, world: GridWorld) -> int:
+    """The state in the cell (row, column) of a world without metres.
+
+    Raises
+    ------
+    InputError
+        The cell is not free; the message names the nearest free cell.
+    """
+    if isinstance(place, str):
+        raise InputError(f"{argument} must be ROW,COL in domain '{world.name}', got '{place}'")
+    row, column = place
+    rows, columns = world.shape
+    whole = int(row) == row and int(column) == column
+    if whole and 0 <= row < rows and 0 <= column < columns and world.state_of[int(row), int(column)] >= 0:
+        return int(world.state_of[int(row), int(column)])
+    near = world.cells[((world.cells - (float(row), float(column))) ** 2).sum(axis=1).argmin()]
+    raise InputError(
+        f"{argument} must be a free cell ROW,COL of this world ({rows} rows, {columns} columns), "
+        f"got {row},{column}; the nearest free cell is {near[0]},{near[1]}"
+    )
+
+
+def _destination(place: Place) -> Destination:
+    return Destination(name=place) if isinstance(place, str) else Destination((float(place[0]), float(place[1])))
+
+
+def _checked(places: OwnPlaces, arguments: list[str]) -> OwnPlaces:
+    for argument, goal in zip(arguments, places.goals, strict=False):
+        if goal.state == places.start:
+            raise InputError(
+                f"{argument} must lie in another cell than start, got the same cell; move one of them"
+            )
+    return places

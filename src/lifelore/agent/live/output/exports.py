@@ -1,0 +1,79 @@
+"""Writes the files for other programs, in metres: greedy paths as CSV, the prior as a ROS map."""
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.live.output.greedy_paths import GreedyPaths
+from lifelore.core.metrics import entropy
+from lifelore.domains.buildings.floor import Floor
+from lifelore.domains.buildings.occupancy_map import write_occupancy_map
+from lifelore.domains.grids.grid_world import GridWorld
+
+NO_PRIOR = 255
+"""Grey value of cells that are no floor or have no counts; `map_server` reads it as unknown."""
+_MEANING = (
+    "# How decided the action prior is in each cell: 0 % all moves are equally likely, 100 % one is certain.\n"
+    "# 255: no floor, or no experience. One pixel is one cell; read with mode raw.\n"
+)
+
+
+def write_paths(path: Path, world: GridWorld, tasks: Sequence[GreedyPaths], floor: Floor | None = None) -> None:
+    """Write greedy paths as CSV: task, path (from 0 in each task), step, x and y in metres in the map's frame.
+
+    With the `floor` of a building, a path is a line of straight segments that is clear of obstacles by the robot's
+    radius, and a step is a corner of it. Without a floor, a step is the centre of a cell.
+    """
+    with path.open("w", newline="", encoding="utf-8") as file:
+        writer = csv.writer(file)
+        writer.writerow(["task", "path", "step", "x", "y"])
+        for task in tasks:
+            for number, states in enumerate(task.paths):
+                points = world.positions(states) if floor is None else _clear(floor, states, task.goal_point)
+                for step, (x, y) in enumerate(points):
+                    writer.writerow([task.task, number, step, f"{x:.4f}", f"{y:.4f}"])
+
+
+def _clear(floor: Floor, states: NDArray[np.int32], goal: tuple[float, float] | None) -> NDArray[np.float64]:
+    """The clear path through the places of a greedy path; it ends at the goal's point if the user gave one."""
+    from lifelore.domains.buildings.clear_path import clear_path
+
+    start, end = floor.metres(floor.anchors[states[[0, -1]]])
+    path = clear_path(floor, np.column_stack([states[:-1], states[1:]]), start, end if goal is None else goal)
+    assert path is not None, "a greedy path follows the moves of its floor"
+    return path
+
+
+def decided_percent(world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_]) -> NDArray[np.uint8]:
+    """How decided the prior of each cell is, in percent: 100 · (1 - entropy / log |A|); (rows, columns) uint8."""
+    nats = entropy(probs)
+    percent = np.rint(100 * np.clip(1 - nats / np.log(probs.shape[1]), 0, 1))
+    grey = np.full(world.shape, NO_PRIOR, np.uint8)
+    grey[tuple(world.cells.T)] = np.where(counted, percent, NO_PRIOR)
+    return grey
+
+
+def write_prior_map(path: Path, world: GridWorld, probs: NDArray[np.float64], counted: NDArray[np.bool_]) -> None:
+    """Write the prior as a `map_server` map with one pixel a cell, and the origin and yaw of the world.
+
+    Parameters
+    ----------
+    path : Path
+        The YAML file; the image has the same name with the ending ``.pgm``.
+    world : GridWorld
+    probs : (n_states, n_actions) float
+        Rows sum to 1.
+    counted : (n_states,) bool
+        States whose context has counts.
+
+    Raises
+    ------
+    StoreError
+        The files cannot be written.
+    """
+    grey = decided_percent(world, probs, counted)
+    write_occupancy_map(path, grey, world.frame.cell, world.frame.origin, mode="raw")
+    path.write_text(_MEANING + path.read_text(encoding="utf-8"), encoding="utf-8")

@@ -1,0 +1,252 @@
+"""Writes the folder of `lifelore live --out`: the report, pictures, and files for other programs."""
+
+import json
+import os
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from lifelore.agent.live.baselines import AGENTS
+from lifelore.agent.live.life import TASKS_WITH_POLICY, Life
+from lifelore.agent.live.output.exports import write_paths, write_prior_map
+from lifelore.agent.live.output.greedy_paths import GreedyPaths, greedy_paths_of
+from lifelore.agent.live.output.nav2_masks import known_places, write_directions, write_masks
+from lifelore.agent.live.summary import third
+from lifelore.agent.live.task_result import THRESHOLD, TaskResult
+from lifelore.core.errors import InputError, StoreError
+from lifelore.figures.lives.life_curves import draw_life
+from lifelore.figures.lives.prior_map import draw_prior_map
+from lifelore.figures.lives.task_curves import draw_task_curves
+from lifelore.figures.lives.world_map import draw_world_map
+from lifelore.figures.style import save_figure
+
+PRIOR_FILES = ("prior.png", "prior.pgm", "prior.yaml", "directions.csv")
+MASK_FILES = ("costs.pgm", "costs.yaml", "keepout.pgm", "keepout.yaml")
+FILES = ("summary.json", "life.png", "learning_curves.png", "world.png", "paths.csv", *PRIOR_FILES, *MASK_FILES)
+"""Files of the folder; the files of the prior are there only if the agent has a prior, the masks only in buildings
+whose moves the agent has learnt."""
+
+
+def check_folder(path: str) -> None:
+    """Make the folder and test that it can be written to, before a long run.
+
+    Raises
+    ------
+    InputError
+        `path` is empty, a file or below a file; or a folder has the name of a file to write.
+    StoreError
+        The folder cannot be written: the disk is full or read-only, or permission is missing.
+    """
+    folder = _folder(path)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder) as probe:
+            probe.write(b"\0")
+    except (FileExistsError, NotADirectoryError):
+        raise InputError(
+            f"out must name a folder, got {path}, which is or lies below a file; name another folder"
+        ) from None
+    except OSError as error:
+        raise StoreError(f"cannot write into {path}: {error.strerror}; choose another folder with --out") from None
+    for name in FILES:
+        if (folder / name).is_dir():
+            raise InputError(f"out must have no folder named {name}, but {path} has it; choose another folder")
+
+
+def write_portfolio(life: Life, out: str) -> list[str]:
+    """Write report, pictures and exports of a life into the folder `out`, which is made if it is missing.
+
+    Every file is written completely or not at all. Files of an earlier life are replaced, or removed if this life
+    has no such file. A life without a finished task has only its report.
+
+    Parameters
+    ----------
+    life : Life
+    out : str
+
+    Returns
+    -------
+    list of str
+        Paths of the files written, in the order of `FILES`.
+
+    Raises
+    ------
+    InputError, StoreError
+        The folder cannot be written, see `check_folder`.
+    """
+    check_folder(out)
+    folder = _folder(out)
+    try:
+        with tempfile.TemporaryDirectory(dir=folder, prefix=".part-") as part:
+            _write_all(life, Path(part))
+            written = [name for name in FILES if (Path(part) / name).exists()]
+            for name in FILES:
+                if name in written:
+                    os.replace(Path(part) / name, folder / name)
+                else:
+                    (folder / name).unlink(missing_ok=True)
+    except StoreError:
+        raise
+    except OSError as error:
+        raise StoreError(f"cannot write into {out}: {error.strerror}; choose another folder with --out") from None
+    return [str(folder / name) for name in written]
+
+
+def _folder(path: str) -> Path:
+    if not path.strip() or "\0" in path:
+        raise InputError(f"out must name a folder, got {path!r}")
+    return Path(path)
+
+
+def _write_all(life: Life, folder: Path) -> None:
+    text = json.dumps(life.report, indent=2, allow_nan=False)
+    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    if not life.results:
+        return
+    paths = _last_paths(life)
+    save_figure(_life_figure(life), folder / "life.png")
+    save_figure(_task_figure(life), folder / "learning_curves.png")
+    save_figure(_world_figure(life, paths), folder / "world.png")
+    write_paths(folder / "paths.csv", life.world, paths, life.floor)
+    if _has_prior(life):
+        _write_prior(life, folder)
+    model = life.lore.model
+    if life.floor is not None and life.given is not None and known_places(model).any():
+        probs = life.lore.prior.probs(life.lore.scope.contexts) if _has_prior(life) else None
+        write_masks(folder, life.world, model, probs, life.floor, life.given)
+
+
+def _agents(life: Life) -> list[str]:
+    """Names of the agents; memory stores the knowledge of the first."""
+    return list(life.results[0])
+
+
+def _place(life: Life) -> str:
+    report = life.report
+    if report["map"]:
+        return Path(report["map"]).stem
+    return f"office {report['seed']}" if report["domain"] == "building" else report["domain"]
+
+
+def _metres(life: Life) -> float | None:
+    """Side of a cell in metres, in buildings; else None."""
+    return life.world.frame.cell if life.report["domain"] == "building" else None
+
+
+def _count(n: int, noun: str) -> str:
+    return f"{n:,} {noun}" if n == 1 else f"{n:,} {noun}s"
+
+
+# ---- pictures --------------------------------------------------------------------------------------
+
+
+def _life_figure(life: Life):
+    tasks = life.report["tasks"]
+    agents = {
+        name: {
+            measure: [task["agents"][name][measure] for task in tasks]
+            for measure in ("steps_to_80", "collisions", "reached")
+        }
+        for name in _agents(life)
+    }
+    return draw_life([task["index"] for task in tasks], agents, title=_headline(life))
+
+
+def _headline(life: Life) -> str:
+    """The life in one line, with its ratios to scratch if it has any."""
+    title = f"{_count(len(life.results), 'task')} in {_place(life)}"
+    name = _agents(life)[0]
+    ratios_to_scratch = life.report["summary"].get(f"{name}_vs_scratch")
+    if not ratios_to_scratch:
+        return title
+    ratios = {
+        "steps": ratios_to_scratch["steps_to_80_ratio"]["value"],
+        "collisions": ratios_to_scratch["collisions_ratio"]["value"],
+    }
+    parts = [f"{measure} × {_factor(value)}" for measure, value in ratios.items() if value is not None]
+    period = "last third" if len(life.results) > 2 else "last task"
+    return f"{title} — {name} compared with scratch, {period}: {', '.join(parts)}" if parts else title
+
+
+def _factor(value: float) -> str:
+    """Two decimals; one significant digit for values that two decimals would show as zero."""
+    return f"{value:.2f}" if value >= 0.005 or value == 0 else f"{value:.1g}"
+
+
+def _task_figure(life: Life):
+    parts = {"Last third of the life": third(life.results, "last")}
+    if len(life.results) > 1:
+        parts = {"First third of the life": third(life.results, "first"), **parts}
+    else:
+        parts = {"The only task": life.results}
+    panels = {f"{words} ({_count(len(part), 'task')})": _traces(life, part) for words, part in parts.items()}
+    title = f"Learning within a task, in {_place(life)}: mean, and band of the middle 50 % of the tasks"
+    return draw_task_curves(panels, threshold=THRESHOLD, title=title)
+
+
+def _traces(life: Life, results: list[dict[str, TaskResult]]) -> dict:
+    return {name: [r[name].trace for r in results] for name in _agents(life)}
+
+
+def _last_paths(life: Life) -> list[GreedyPaths]:
+    """Greedy paths of the first agent in the last tasks on the present map."""
+    world, name = life.world, _agents(life)[0]
+    first = max(life.first_here, len(life.results) - TASKS_WITH_POLICY)
+    last = zip(life.report["tasks"][first:], life.results[first:], strict=True)
+    paths = []
+    for task, result in last:
+        goal = int(world.state_of[tuple(task["goal"])])
+        found = greedy_paths_of(world, result[name].policy, task["index"], goal, life.start)
+        point = task.get("position")
+        paths.append(replace(found, goal_point=point and tuple(point), name=task.get("name")))
+    return paths
+
+
+def _world_figure(life: Life, last: Sequence[GreedyPaths]):
+    world = life.world
+    shown = [
+        {
+            "label": f"task {_named(task)}, reached from {_percent(task.arriving)} of starts",
+            "goal": world.cells[task.goal],
+            "paths": [world.cells[path] for path in task.paths],
+        }
+        for task in last
+    ]
+    tasks = life.report["tasks"]
+    earlier = [task["goal"] for task in tasks[life.first_here : len(tasks) - len(last)]]
+    title = f"{_place(life)}: paths of {_agents(life)[0]} in its last {_count(len(last), 'task')}"
+    return draw_world_map(
+        world.shape, world.cells, world.neighbour, shown, goals=earlier, cell=_metres(life), title=title
+    )
+
+
+def _named(task: GreedyPaths) -> str:
+    return f"{task.task} ({task.name})" if task.name else str(task.task)
+
+
+def _percent(share: float) -> str:
+    """Percent, rounded down, so that 100 % means all."""
+    return f"{int(100 * share)} %"
+
+
+# ---- the prior -------------------------------------------------------------------------------------
+
+
+def _has_prior(life: Life) -> bool:
+    lore, has_condition = life.lore, life.report["settings"]["prior"] != "none"
+    uses = AGENTS[_agents(life)[0]].uses_prior
+    return has_condition and uses and not lore.prior.unseen(lore.scope.contexts).all()
+
+
+def _write_prior(life: Life, folder: Path) -> None:
+    lore, world = life.lore, life.world
+    probs, counted = lore.prior.probs(lore.scope.contexts), ~lore.prior.unseen(lore.scope.contexts)
+    given = "the surroundings of a cell" if lore.scope.kind == "observation" else "the cell"
+    title = f"{_place(life)}: the action prior given {given}"
+    figure = draw_prior_map(
+        world.shape, world.cells, world.neighbour, probs, counted, cell=_metres(life), title=title
+    )
+    save_figure(figure, folder / "prior.png")
+    write_prior_map(folder / "prior.yaml", world, probs, counted)
+    write_directions(folder / "directions.csv", world, probs, counted, life.floor)

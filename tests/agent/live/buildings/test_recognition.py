@@ -1,0 +1,190 @@
+"""Lives on maps that were saved again: the building is recognised, and nothing else is."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
+from lifelore.agent.live.buildings.building_record import (
+    Building,
+    map_digest,
+    remembered_buildings,
+    remembered_map,
+)
+from lifelore.agent.live.life import Life, live
+from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Record
+from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap, write_occupancy_map
+from lifelore.domains.buildings.office import office_map
+from lifelore.domains.buildings.registration import IDENTITY
+from lifelore.domains.worlds import WorldSettings
+from lifelore.experiments.bench.lives.resaved_maps import cropped, noisy, padded, shifted, turned
+from lifelore.memory import open_memory
+
+OFFICE = office_map(1, 14.0, 12.0)
+
+
+def life_on(folder: Path, occupancy: OccupancyMap, name: str = "home", tasks: int = 1, **memory) -> Life:
+    path = folder / f"{name}.yaml"
+    write_occupancy_map(path, occupancy)
+    where = MemorySettings(str(folder / "life.db"), **memory)
+    return live(LifeSettings(WorldSettings(map=path), memory=where, tasks=tasks, compare=False))
+
+
+def steps(life: Life) -> list[int]:
+    return [task["agents"]["lore"]["steps_to_80"] for task in life.report["tasks"]]
+
+
+@pytest.fixture(scope="module")
+def lived(tmp_path_factory) -> bytes:
+    """A memory after some tasks at home."""
+    folder = tmp_path_factory.mktemp("home")
+    first = life_on(folder, OFFICE, tasks=6)
+    assert first.report["building"] == {
+        "name": "home", "recognised": False, "agreement": None, "walls": None, "pose": None,
+        "reason": "no building is remembered",
+    }  # fmt: skip
+    return (folder / "life.db").read_bytes()
+
+
+@pytest.fixture
+def home(lived, tmp_path) -> Path:
+    (tmp_path / "life.db").write_bytes(lived)
+    return tmp_path
+
+
+def test_the_same_map_goes_on_as_before(home):
+    again = life_on(home, OFFICE, tasks=2)
+    building = again.report["building"]
+    assert (building["name"], building["recognised"], building["pose"]) == ("home", True, [0, 0, 0])
+    assert (building["agreement"], building["walls"]) == (1.0, 1.0)
+
+
+def test_a_padded_or_shifted_map_is_as_good_as_the_same(home, lived):
+    expected = steps(life_on(home, OFFICE, tasks=3))
+    for edit in (padded, shifted):
+        (home / "life.db").write_bytes(lived)
+        again = life_on(home, edit(OFFICE), "again", tasks=3)
+        assert again.report["building"]["recognised"]
+        assert again.report["building"]["agreement"] == 1.0
+        assert steps(again) == expected
+
+
+def test_paths_are_in_the_new_maps_metres(home):
+    before = life_on(home, OFFICE).world
+    after = life_on(home, shifted(OFFICE, 3.0, -2.0), "again").world
+    states = np.arange(before.n_states)
+    assert after.positions(states) == pytest.approx(before.positions(states) + np.array([3.0, -2.0]), abs=0.01)
+
+
+def test_a_turned_noisy_map_carries_its_transitions_over_and_is_known_the_next_time(home):
+    new = noisy(turned(OFFICE, 3.0))
+    first = life_on(home, new, "again").report["building"]
+    assert first["recognised"]
+    assert first["agreement"] > 0.6
+    assert np.degrees(first["pose"][2]) == pytest.approx(-3, abs=0.1)
+    again = life_on(home, new, "again").report["building"]
+    assert again["pose"] == first["pose"]  # from memory, to the bit
+    assert again["agreement"] > 0.9  # what the first life visited
+    with open_memory(home / "life.db") as memory:
+        assert buildings_in(memory) == [{"name": "home", "key": map_digest(OFFICE), "maps": 2, "grids": 2}]
+
+
+def test_of_two_buildings_the_right_one_is_recognised(home):
+    annex = life_on(home, office_map(2, 14.0, 12.0), "annex").report["building"]
+    assert (annex["name"], annex["recognised"]) == ("annex", False)
+    assert "the nearest is home" in annex["reason"] or "too few walls" in annex["reason"]
+    again = life_on(home, turned(cropped(OFFICE, 0.8), 5.0), "again").report["building"]
+    assert (again["name"], again["recognised"]) == ("home", True)
+    other = life_on(home, padded(office_map(2, 14.0, 12.0)), "annex2").report["building"]
+    assert (other["name"], other["recognised"]) == ("annex", True)
+
+
+def test_a_symmetric_building_is_refused_as_ambiguous(tmp_path):
+    state = np.full((80, 120), OCCUPIED, np.uint8)
+    state[2:-2, 2:-2] = FREE
+    hall = OccupancyMap(state, 0.1)
+    life_on(tmp_path, hall)
+    again = life_on(tmp_path, shifted(hall), "again").report["building"]
+    assert not again["recognised"]
+    assert again["reason"] == "two poses fit home equally"
+    # In the same frame, the frame tells the pose.
+    assert life_on(tmp_path, padded(hall), "padded").report["building"]["name"] == "home"
+
+
+def test_a_name_decides(home):
+    with pytest.raises(InputError, match="remembered as 'home'"):
+        life_on(home, OFFICE, building="west wing")
+    with pytest.raises(InputError, match="does not fit building 'home'"):
+        life_on(home, office_map(2, 14.0, 12.0), "annex", building="home")
+    twin = life_on(home, padded(OFFICE), "twin", building="first floor").report["building"]
+    assert (twin["name"], twin["recognised"]) == ("first floor", False)
+    # Now two buildings fit the third map, and only a name can tell which it is.
+    third = turned(OFFICE, 4.0)
+    refused = life_on(home, third, "third").report["building"]
+    assert "fit equally; choose with --building" in refused["reason"]
+    named = life_on(home, turned(OFFICE, 5.0), "fourth", building="first floor").report["building"]
+    assert (named["name"], named["recognised"]) == ("first floor", True)
+
+
+def test_a_forgotten_building_is_a_new_one_and_the_prior_stays(home):
+    with open_memory(home / "life.db") as memory:
+        kinds = {entry["kind"] for entry in memory.show()["lore"]}
+        assert kinds == {"action_prior", "building", "building_map", "transitions"}
+        prior = next(iter(memory.keys("action_prior")))
+        before = memory.recall("action_prior", prior[0], prior[1])
+        with pytest.raises(NotFoundError, match="known buildings: home"):
+            forget_building(memory, "annex")
+        assert forget_building(memory, "home")["records"] == 3
+        after = memory.recall("action_prior", prior[0], prior[1])
+        assert isinstance(before, Record)
+        assert isinstance(after, Record)
+        assert np.array_equal(before.values, after.values)
+        assert buildings_in(memory) == []
+        assert memory.check() == []
+    assert not life_on(home, OFFICE).report["building"]["recognised"]
+
+
+def test_a_memory_without_buildings_goes_on_as_before(home):
+    """Memories of earlier versions hold transitions and no map."""
+    expected = steps(life_on(home, OFFICE, tasks=2))
+    old = home / "old.db"
+    with open_memory(home / "life.db") as memory, open_memory(old) as earlier:
+        for kind in ("action_prior", "transitions"):
+            for seq, (key, version, about) in enumerate(memory.keys(kind)):
+                record = memory.recall(kind, key, version)
+                assert record is not None
+                plain = {name: value for name, value in about.items() if name not in ("corner", "building")}
+                earlier.contribute("robot", [replace(record, about=plain)], process=kind, seq=seq, task={})
+    with open_memory(home / "life.db") as memory:
+        assert memory.tasks("robot") == 8
+    for _ in range(2):  # the second life finds the record of the building that the first one stored
+        again = live(
+            LifeSettings(
+                WorldSettings(map=home / "home.yaml"), memory=MemorySettings(str(old)), compare=False, tasks=1
+            )
+        )
+        assert again.report["building"]["recognised"]
+        assert again.report["building"]["agreement"] == 1.0
+        assert steps(again)[0] < 3 * max(expected)
+
+
+def test_a_building_and_its_map_survive_memory(tmp_path):
+    life_on(tmp_path, OFFICE)
+    with open_memory(tmp_path / "life.db") as memory:
+        (building,) = remembered_buildings(memory)
+        record = memory.recall("building", building.key, 1)
+        assert record is not None
+        stored = remembered_map(building, record)
+    assert building == Building.new(OFFICE, "home")
+    # Stored rows begin at the lower left corner and run on to a whole number of runs.
+    rows, columns = OFFICE.state.shape
+    low, left = (round(stored.origin[axis] / stored.resolution) for axis in (1, 0))
+    seen = np.full((rows + 40, columns + 40), UNKNOWN, np.uint8)
+    seen[low : low + stored.state.shape[0], left : left + stored.state.shape[1]] = stored.state[::-1]
+    assert np.array_equal(seen[:rows, :columns], OFFICE.state[::-1])
+    # The same map again has no news.
+    assert len(building.record(OFFICE, IDENTITY, record).slots) == 0

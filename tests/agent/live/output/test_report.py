@@ -1,0 +1,157 @@
+"""A portfolio holds all it promises, every file whole, and reads back."""
+
+import csv
+import json
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.agent.live.baselines import AGENTS
+from lifelore.agent.live.life import Life, live
+from lifelore.agent.live.output.report import FILES, MASK_FILES, PRIOR_FILES, check_folder, write_portfolio
+from lifelore.core.errors import InputError, StoreError
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map
+from lifelore.figures.style import colour_of
+
+from ..flat_settings import flat_settings
+
+PNG = b"\x89PNG\r\n\x1a\n"
+GRID_FILES = [name for name in FILES if name not in MASK_FILES]
+"""Files of a life in a world without a map."""
+_QUICK = {"tasks": 3, "jobs": 1}
+
+
+@pytest.fixture(scope="module")
+def life(tmp_path_factory) -> Life:
+    return live(flat_settings(**_QUICK, memory=str(tmp_path_factory.mktemp("life") / "memory.db")))
+
+
+@pytest.fixture(scope="module")
+def folder(life, tmp_path_factory) -> Path:
+    """The portfolio of `life`, to be read only."""
+    out = tmp_path_factory.mktemp("portfolio") / "deep" / "out"
+    assert write_portfolio(life, str(out)) == [str(out / name) for name in GRID_FILES]
+    return out
+
+
+def _life(tmp_path: Path, **settings) -> Life:
+    return live(flat_settings(**_QUICK | settings, memory=str(tmp_path / "memory.db")))
+
+
+def _no_constant(name: str):
+    raise AssertionError(f"{name} is not JSON")
+
+
+@pytest.mark.slow
+def test_everything_is_written_and_nothing_else_is_left(folder):
+    assert sorted(path.name for path in folder.iterdir()) == sorted(GRID_FILES)
+    for name in GRID_FILES:
+        content = (folder / name).read_bytes()
+        if name.endswith(".png"):
+            assert content.startswith(PNG)
+            assert 5_000 < len(content) <= 300_000
+
+
+@pytest.mark.slow
+def test_summary_is_the_report_as_strict_json(life, folder):
+    text = (folder / "summary.json").read_text(encoding="utf-8")
+    assert json.loads(text, parse_constant=_no_constant) == json.loads(json.dumps(life.report))
+
+
+@pytest.mark.slow
+def test_paths_walk_from_cell_to_cell_and_end_at_their_goal(life, folder):
+    with (folder / "paths.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    paths: dict[tuple[int, int], list] = {}
+    for row in rows:
+        path = paths.setdefault((int(row["task"]), int(row["path"])), [])
+        assert int(row["step"]) == len(path)
+        path.append((float(row["x"]), float(row["y"])))
+    goals = {task["index"]: task["goal"] for task in life.report["tasks"]}
+    assert {task for task, _ in paths} == set(goals)
+    for (task, _), path in paths.items():
+        goal = life.world.positions(np.array([life.world.state_of[tuple(goals[task])]]))[0]
+        assert path[-1] == pytest.approx(tuple(goal), abs=1e-3)
+        assert np.abs(np.diff(path, axis=0)).sum(axis=1) == pytest.approx(life.world.frame.cell, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_the_prior_reads_back_as_a_map(life, folder):
+    assert read_occupancy_map(folder / "prior.yaml").state.shape == life.world.shape
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("settings", [{"prior": "none"}, {"agent": "scratch"}])
+def test_without_a_prior_its_files_are_not_there_nor_left_over(tmp_path, settings):
+    out = tmp_path / "out"
+    out.mkdir()
+    for name in PRIOR_FILES:
+        (out / name).write_text("of an earlier life")
+    written = write_portfolio(_life(tmp_path, tasks=2, **settings), str(out))
+    assert not any((out / name).exists() for name in PRIOR_FILES)
+    assert written == [str(out / name) for name in GRID_FILES if name not in PRIOR_FILES]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "settings",
+    [
+        {"tasks": 1, "start": (1, 1)},
+        {"learner": "q", "episodes": 30, "tasks": 2},
+        {"domain": "noise", "prior": "state", "tasks": 2},
+        {"episodes": 1, "max_steps": 5},
+    ],
+    ids=["one task from one start", "q", "noise by state", "capped"],
+)
+def test_other_lives(tmp_path, settings):
+    written = write_portfolio(_life(tmp_path, **settings), str(tmp_path / "out"))
+    assert {Path(path).name for path in written} >= set(GRID_FILES) - set(PRIOR_FILES)
+
+
+def test_a_life_without_a_task_leaves_its_report(life, tmp_path):
+    empty = replace(life, report=life.report | {"tasks": [], "summary": {}}, results=[])
+    assert write_portfolio(empty, str(tmp_path)) == [str(tmp_path / "summary.json")]
+
+
+def test_a_report_that_is_not_json_leaves_the_folder_as_it_was(life, tmp_path):
+    (tmp_path / "summary.json").write_text("of an earlier life")
+    broken = replace(life, report=life.report | {"seconds": float("nan")})
+    with pytest.raises(ValueError, match="JSON"):
+        write_portfolio(broken, str(tmp_path))
+    assert [path.name for path in tmp_path.iterdir()] == ["summary.json"]
+    assert (tmp_path / "summary.json").read_text() == "of an earlier life"
+
+
+def test_every_agent_has_its_colour():
+    assert len({colour_of(name) for name in AGENTS}) == len(AGENTS)
+
+
+def test_check_folder_makes_it_and_leaves_it_empty(tmp_path):
+    check_folder(str(tmp_path / "a" / "b"))
+    assert list((tmp_path / "a" / "b").iterdir()) == []
+
+
+def test_check_folder_refuses_a_file_and_what_lies_below_one(tmp_path):
+    (tmp_path / "file").write_text("")
+    for path in (tmp_path / "file", tmp_path / "file" / "below"):
+        with pytest.raises(InputError, match=r"^out must name a folder.*$"):
+            check_folder(str(path))
+
+
+@pytest.mark.parametrize("path", ["", " ", "a\0b"])
+def test_check_folder_refuses_what_names_nothing(path):
+    with pytest.raises(InputError, match=r"^out must name a folder.*$"):
+        check_folder(path)
+
+
+def test_check_folder_refuses_where_nobody_can_write():
+    with pytest.raises(StoreError, match=r"^cannot write into .*choose another folder.*$"):
+        check_folder("/proc/lifelore")
+
+
+def test_check_folder_refuses_a_folder_in_place_of_a_file(tmp_path):
+    (tmp_path / "world.png").mkdir()
+    with pytest.raises(InputError, match=r"world\.png"):
+        check_folder(str(tmp_path))
