@@ -14,7 +14,7 @@ from hypothesis import HealthCheck, settings
 Places = Callable[[str], str]
 SLOW = ("experiments", "app", "figures")
 """Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
-QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/scenes/test_cloud_image.py")
+QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/test_heat_grid.py")
 """Quick files of these folders, a file a room."""
 
 # As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
