@@ -30,6 +30,14 @@ def live(
     learner: Annotated[
         str, Option(help="model (plans on a learnt model of the moves) or q (the thesis's Q-learning).")
     ] = "model",
+    sensor: Annotated[
+        str,
+        Option(
+            help="touch (a move is known once made, the goal once entered) or lidar (building: all places in line "
+            "of sight within --range are seen; the goal is found at sight, then the robot drives there)."
+        ),
+    ] = "touch",
+    range: Annotated[float | None, Option(help="Range of the lidar in metres [5].")] = None,
     prior: Annotated[
         str, Option(help="Action prior conditioned on the observation or the state, or none.")
     ] = "observation",
@@ -104,7 +112,13 @@ def live(
     """
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
-    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
+    from lifelore.agent.live.life_settings import (
+        LearningSettings,
+        LifeSettings,
+        MemorySettings,
+        PriorSettings,
+        SensorSettings,
+    )
     from lifelore.agent.live.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
@@ -127,6 +141,7 @@ def live(
         ),
         prior=PriorSettings(prior, alpha0, weight, form, ties),
         memory=MemorySettings(memory, robot, building),
+        sensor=SensorSettings(sensor, range),
         agent=agent,
         tasks=30 if tasks is None else tasks,
         destinations=destinations,

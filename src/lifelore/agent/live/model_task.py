@@ -4,7 +4,14 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
+from lifelore.agent.live.task_result import (
+    CHECK_EVERY,
+    CHECK_EVERY_BY_SIGHT,
+    THRESHOLD,
+    Stopped,
+    TaskResult,
+    first_arrival,
+)
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import WorldModel, best_known_actions, known_policy
@@ -15,6 +22,7 @@ from lifelore.core.learning.model_learning import (
     check_deterministic,
     explore,
 )
+from lifelore.core.learning.sight_search import FOUND_STEP, SightSearch, explore_by_sight
 from lifelore.core.mdp import Tables
 
 NEAR = 1e-9
@@ -28,13 +36,17 @@ def live_model_task(
     discount: float,
     model: WorldModel,
     perceived: StateInfo,
+    search: SightSearch | None,
     strategy: ExplorationStrategy,
     explorer: ModelLearner,
     episodes: int,
     max_steps: int,
     stop: Event,
 ) -> TaskResult:
-    """Explore until the greedy policy has 80 % of the `optimal` value or the cap is reached; changes `model`."""
+    """Explore until the greedy policy has 80 % of the `optimal` value or the cap is reached; changes `model`.
+
+    With `search` the learner perceives places at a distance, else by touch.
+    """
     check_deterministic(tables)
     curve = new_curve(episodes)
     known = KnownValue(tables, model, explorer, discount)
@@ -42,7 +54,21 @@ def live_model_task(
     while value < THRESHOLD * optimal:
         if stop.is_set():
             raise Stopped
-        steps = explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, CHECK_EVERY)
+        if search is None:
+            steps = explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, CHECK_EVERY)
+        else:
+            steps = explore_by_sight(
+                tables,
+                model,
+                perceived,
+                strategy,
+                explorer,
+                search,
+                curve,
+                max_steps,
+                discount,
+                CHECK_EVERY_BY_SIGHT,
+            )
         if steps == 0:
             break
         total += steps
@@ -54,6 +80,9 @@ def live_model_task(
     episode, begun, running = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP]), explorer.running[0]
     if begun:
         curve.returns[episode], curve.steps[episode] = running, begun
+    arrival = first_arrival(curve, episodes * max_steps)
+    if search is not None and search.found[FOUND_STEP] >= 0:
+        arrival = int(search.found[FOUND_STEP])
     return TaskResult(
         first_return=float(curve.returns[0]),
         collisions=int(curve.collisions.sum()),
@@ -66,4 +95,5 @@ def live_model_task(
         trace=np.array(trace, float).reshape(-1, 2),
         curve=first_episodes(curve, episode + int(begun > 0)),
         complete=episode,
+        steps_to_goal=arrival,
     )
