@@ -8,7 +8,7 @@ import pytest
 from lifelore.app.memory_table import print_memory
 from lifelore.memory import open_memory
 
-OVERVIEW = {"location", "schema", "robots", "lore", "forgotten"}
+OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
 REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}
 
 
@@ -153,7 +153,7 @@ def test_ten_thousand_of_a_sort_are_one_line(capsys):
             for n in range(10_000)]  # fmt: skip
     rosie = {"robot": "rosie", "tasks": 1, "first": "2026", "last": "2026"}
     study = {"kind": "reuse_study", "key": "s", "version": 1, "merge": "newest", "slots": 5, "sum": 0}
-    place = {"location": "m.db", "schema": 1, "forgotten": 0}
+    place = {"location": "m.db", "schema": 2, "forgotten": 0, "forgotten_records": 0, "buildings": []}
     print_memory(place | {"robots": [*robots, rosie], "lore": [study, *lore]})
     said = capsys.readouterr().out
     assert len(said.splitlines()) < 20

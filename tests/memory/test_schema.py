@@ -28,14 +28,14 @@ def steps(memory) -> list[int]:
 def test_an_older_memory_takes_the_missing_steps(where, next_schema):
     with open_memory(where) as memory:
         memory.contribute("a", [], process="p", seq=0, task={})
-        assert steps(memory) == [1]
+        assert steps(memory) == [1, 2]
     number = next_schema("ALTER TABLE lifelore_contributions ADD COLUMN note {text}")
     with open_memory(where) as memory:
-        assert steps(memory) == [1, number]
+        assert steps(memory) == [1, 2, number]
         assert (memory.tasks("a"), memory.show()["schema"]) == (1, number)
         assert memory.contribute("a", [], process="p", seq=1, task={})
     with open_memory(where) as memory:
-        assert steps(memory) == [1, number]
+        assert steps(memory) == [1, 2, number]
 
 
 def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch):
@@ -43,14 +43,13 @@ def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch
         memory.contribute("a", [], process="p", seq=0, task={})
     with monkeypatch.context() as patch:
         patch.setattr(schema, "LATEST", schema.LATEST + 1)
-        patch.setattr(
-            schema, "MIGRATIONS", schema.MIGRATIONS | {2: ("bad", "CREATE TABLE half (x {int}); NONSENSE")}
-        )
+        bad = {schema.LATEST: ("bad", "CREATE TABLE half (x {int}); NONSENSE")}
+        patch.setattr(schema, "MIGRATIONS", schema.MIGRATIONS | bad)
         with pytest.raises(StoreError) as refused:
             open_memory(where)
     assert "\n" not in str(refused.value)
     with open_memory(where) as memory:
-        assert (steps(memory), memory.tasks("a")) == ([1], 1)
+        assert (steps(memory), memory.tasks("a")) == ([1, 2], 1)
         with memory._store.reading() as conn, pytest.raises(Exception, match="half"):
             conn.execute(text("SELECT * FROM half"))
 

@@ -44,6 +44,12 @@ def live(
     agent: Annotated[
         str, Option(help="Agent: lore, model, prior, scratch, undirected, rmax, frontier, or all.")
     ] = "lore",
+    compare: Annotated[
+        bool | None,
+        Option(
+            "--compare/--alone", help="Live scratch beside the agent [up to 100,000 places], or the agent alone."
+        ),
+    ] = None,
     robot: Annotated[
         str, Option(help="Name of the robot in memory; robots that run at the same time need different names.")
     ] = "robot",
@@ -110,6 +116,7 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
+
     from lifelore.agent.live.l2_log import LifeLog
     from lifelore.agent.live.life import live as live_through
     from lifelore.agent.live.life_settings import (
@@ -143,6 +150,7 @@ def live(
         memory=MemorySettings(memory, robot, building),
         sensor=SensorSettings(sensor, range),
         agent=agent,
+        compare=compare,
         tasks=30 if tasks is None else tasks,
         destinations=destinations,
         start=_place("start", start, domain),

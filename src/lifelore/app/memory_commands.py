@@ -1,8 +1,11 @@
 """`lifelore memory …`: show, export, import, merge and forget the content of a memory."""
 
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
+
+if TYPE_CHECKING:
+    from lifelore.memory import Memory
 
 memory = typer.Typer(
     help="Show, export, import, merge or forget the content of a memory, for example to share it in a fleet.",
@@ -15,13 +18,16 @@ AsJson = Annotated[bool, typer.Option("--json", help="One JSON document on stdou
 
 @memory.command()
 def show(where: Where = None, as_json: AsJson = False) -> None:
-    """List the robots that contributed, and the stored records with their sizes."""
+    """List the robots that contributed, the buildings they know, and the stored records with their sizes."""
     from lifelore.app.console import print_json
     from lifelore.app.memory_table import print_memory
     from lifelore.memory import open_memory
 
     with open_memory(where) as opened:
         overview = opened.show()
+        overview["buildings"] = (
+            _buildings(opened) if any(one["kind"] == "building" for one in overview["lore"]) else []
+        )
     print_json(overview) if as_json else print_memory(overview)
 
 
@@ -59,13 +65,35 @@ def merge(
 
 
 @memory.command()
-def forget(robot: Annotated[str, typer.Argument()], where: Where = None, as_json: AsJson = False) -> None:
-    """Delete all contributions of a robot for ever: no later import restores them."""
+def forget(
+    robot: Annotated[str | None, typer.Argument(help="Robot whose contributions are deleted.")] = None,
+    building: Annotated[
+        str | None,
+        typer.Option(metavar="NAME", help="Building whose map and transitions are deleted; the priors stay."),
+    ] = None,
+    where: Where = None,
+    as_json: AsJson = False,
+) -> None:
+    """Delete all contributions of a robot, or a building, for ever: no later import restores them."""
+    from lifelore.agent.live.building_memory import forget_building
+    from lifelore.core.errors import InputError
     from lifelore.memory import open_memory
 
+    if (robot is None) == (building is None):
+        raise InputError("forget needs a robot or --building NAME, and not both; see: lifelore memory show")
     with open_memory(where) as opened:
-        count = opened.forget(robot)
+        if building is not None:
+            done = forget_building(opened, building)
+            _say(done, f"building {building} forgotten: {done['records']} records", as_json)
+            return
+        count = opened.forget(str(robot))
     _say({"forgotten": count, "robot": robot}, f"{count} contributions of {robot} forgotten", as_json)
+
+
+def _buildings(opened: "Memory") -> list[dict]:
+    from lifelore.agent.live.building_memory import buildings_in
+
+    return buildings_in(opened)
 
 
 def _merge(others: list[str], where: str | None, as_json: bool) -> None:

@@ -14,14 +14,21 @@ def print_memory(overview: dict) -> None:
     for entry in grouped_robots(overview["robots"]):
         name = entry["robot"] + _of(entry["of"])
         robots.add_row(name, f"{entry['tasks']:,}", entry["first"][:19], entry["last"][:19])
+    buildings = Table("building", "key", "maps", "grids", title="buildings")
+    for entry in overview["buildings"]:
+        buildings.add_row(entry["name"], entry["key"][:12], str(entry["maps"]), str(entry["grids"]))
     lore = Table("kind", "key", "version", "merges by", "slots", title="records")
     for entry in grouped_lore(overview["lore"]):
         key = entry["key"][:12] if entry["of"] == 1 else entry["key"] + _of(entry["of"])
         lore.add_row(entry["kind"], key, str(entry["version"]), entry["merge"], f"{entry['slots']:,}")
     console.print(robots)
+    if overview["buildings"]:
+        console.print(buildings)
     console.print(lore)
     if overview["forgotten"]:
         console.print(f"{overview['forgotten']} contributions were forgotten and cannot be restored")
+    if overview["forgotten_records"]:
+        console.print(f"{overview['forgotten_records']} records were forgotten and cannot be restored")
 
 
 def _of(number: int) -> str:

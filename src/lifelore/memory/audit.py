@@ -20,6 +20,8 @@ def problems(conn: Connection) -> list[str]:
         for one in oldest_first
         if one.identity in tombstones
     ]
+    forgotten = ledger.forgotten_records(conn)
+    found += list(_forgotten_but_stored(conn, oldest_first, forgotten))
     numbers = [entry.number for entry in oldest_first]
     # With a damaged contribution, a comparison of the cache is meaningless, so damage is reported alone.
     return found + (list(_damaged(conn, numbers)) or list(_cache_problems(conn, numbers)))
@@ -30,6 +32,17 @@ def _file_problems(conn: Connection) -> Iterator[str]:
         for (message,) in conn.exec_driver_sql("PRAGMA integrity_check(10)"):
             if message != "ok":
                 yield "the file: " + " ".join(message.split())
+
+
+def _forgotten_but_stored(
+    conn: Connection, entries: list[ledger.ContributionRow], forgotten: dict[LoreKey, int]
+) -> Iterator[str]:
+    by_number = {entry.number: entry for entry in entries}
+    for name, stamp in sorted(forgotten.items()):
+        for number in sorted(cache.mentions(conn, name)):
+            if number in by_number and by_number[number].stamp <= stamp:
+                label = f"{name[0]}/{name[1]} version {name[2]}"
+                yield f"contribution {by_number[number].identity} has a record of {label}, which was forgotten"
 
 
 def _damaged(conn: Connection, numbers: list[int]) -> Iterator[str]:

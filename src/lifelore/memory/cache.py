@@ -103,6 +103,15 @@ def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
     return {(row[0], row[1], row[2]) for rows in found for row in rows}
 
 
+def mentions(conn: Connection, name: LoreKey) -> set[int]:
+    """Row numbers of the contributions that have a record of this key."""
+    found = conn.execute(_FIND, _named(name)).one_or_none()
+    if found is None:
+        return set()
+    query = text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore")
+    return set(conn.execute(query, {"lore": found.number}).scalars())
+
+
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
     """Delete the cache, of the keys in `only` or of all keys, and compute it again from the contributions."""
     if only is None:

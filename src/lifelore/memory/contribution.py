@@ -13,6 +13,8 @@ from lifelore.memory.record_rules import canonical_json, check_name, check_whole
 
 Identity = tuple[str, str, int]
 Order = tuple[int, str, str, int]
+LoreKey = tuple[str, str, int]
+"""(kind, key, version) of a record."""
 
 
 @dataclass(frozen=True)
@@ -55,6 +57,15 @@ class Contribution:
         """The same contribution with another stamp."""
         moved = replace(self, stamp=stamp)
         return replace(moved, digest=_digest(moved, decompress(self.blob)))
+
+    def without(self, forgotten: Mapping[LoreKey, int]) -> "Contribution":
+        """The contribution without the records whose key was forgotten at its stamp or later."""
+        records = self.records()
+        left = [one for one in records if forgotten.get((one.kind, one.key, one.version), -1) < self.stamp]
+        if len(left) == len(records):
+            return self
+        stripped = replace(self, blob=compress(payload := pack(left)))
+        return replace(stripped, digest=_digest(stripped, payload))
 
     def records(self) -> list[Record]:
         """The records; StoreError if the contribution has changed since it was stored."""

@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Merge, Record
-from lifelore.memory.contribution import Contribution
+from lifelore.memory.contribution import Contribution, LoreKey
 
 Ints = NDArray[np.int64]
-LoreKey = tuple[str, str, int]
 # Records folded at a time: more need more memory, fewer need more time for repeated sorting.
 _AT_A_TIME = 64
 

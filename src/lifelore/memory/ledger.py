@@ -1,7 +1,7 @@
 """SQL of contributions, and of the tombstones of forgotten ones."""
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
 from typing import TypeVar
@@ -9,7 +9,7 @@ from typing import TypeVar
 from sqlalchemy import Connection, Row, bindparam, text
 
 from lifelore.core.errors import StoreError
-from lifelore.memory.contribution import Contribution, Identity, Order
+from lifelore.memory.contribution import Contribution, Identity, LoreKey, Order
 from lifelore.memory.folding import Stored
 from lifelore.memory.record_rules import LARGEST
 
@@ -28,6 +28,15 @@ _SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contri
 _KNOWN = text(
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
+)
+_LARGEST_STAMP = text(
+    "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT stamp FROM lifelore_contributions"
+    " UNION ALL SELECT stamp FROM lifelore_forgotten_records) AS stamps"
+)
+_FORGET_RECORD = text(
+    "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
+    " ON CONFLICT (kind, key, version) DO UPDATE SET stamp = excluded.stamp"
+    " WHERE excluded.stamp > lifelore_forgotten_records.stamp"
 )
 _ADD_TOMBSTONE = text(
     "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (:robot, :process, :seq) ON CONFLICT DO NOTHING"
@@ -67,7 +76,7 @@ def is_known(conn: Connection, identity: Identity) -> bool:
 
 def next_stamp(conn: Connection) -> int:
     """A stamp that is later than the clock and than every stamp in this memory."""
-    largest = conn.execute(text("SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions")).scalar_one()
+    largest = conn.execute(_LARGEST_STAMP).scalar_one()
     if largest >= LARGEST:
         raise StoreError("a contribution has the largest possible stamp; forget the robot whose clock is wrong")
     return max(time.time_ns(), int(largest) + 1)
@@ -126,6 +135,30 @@ def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
     """Add a tombstone for each identity."""
     for batch in in_batches(sorted(identities), 1000):
         conn.execute(_ADD_TOMBSTONE, [_named(identity) for identity in batch])
+
+
+def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
+    """The keys of forgotten records, and the last stamp of the contributions that lose them."""
+    rows = conn.execute(text("SELECT kind, key, version, stamp FROM lifelore_forgotten_records"))
+    return {(row[0], row[1], int(row[2])): int(row[3]) for row in rows}
+
+
+def add_forgotten_records(conn: Connection, forgotten: Mapping[LoreKey, int]) -> None:
+    """Add keys of forgotten records; of two stamps the later one counts."""
+    for (kind, key, version), stamp in sorted(forgotten.items()):
+        conn.execute(_FORGET_RECORD, {"kind": kind, "key": key, "version": version, "stamp": stamp})
+
+
+def strip(conn: Connection, numbers: Iterable[int], forgotten: Mapping[LoreKey, int]) -> list[ContributionRow]:
+    """Delete the forgotten records from the contributions of these row numbers; return the changed rows."""
+    update = text("UPDATE lifelore_contributions SET blob = :blob, digest = :digest WHERE number = :number")
+    changed = []
+    for stored in load(conn, numbers):
+        left = stored.contribution.without(forgotten)
+        if left is not stored.contribution:
+            conn.execute(update, {"blob": left.blob, "digest": left.digest, "number": stored.number})
+            changed.append(ContributionRow(stored.number, left.identity, left.stamp, left.digest))
+    return changed
 
 
 def remove(conn: Connection, numbers: Sequence[int]) -> None:

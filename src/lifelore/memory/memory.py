@@ -236,6 +236,27 @@ class Memory:
             cache.rebuild(conn, stale)
         return len(forgotten)
 
+    def forget_records(self, names: Sequence[tuple[str, str, int]]) -> int:
+        """Remove the records of some (kind, key, version) for ever; return the number of contributions concerned.
+
+        The other records of these contributions stay. No replay, merge or import restores the records. Records of
+        these keys that are contributed later are stored again.
+
+        Raises
+        ------
+        NotFoundError
+            No record has one of these keys.
+        """
+        with self._store.writing() as conn:
+            touched: set[int] = set()
+            for name in names:
+                if not (mentions := cache.mentions(conn, name)):
+                    raise NotFoundError(f"record {name[0]}/{name[1]} version {name[2]} is not in this memory")
+                touched |= mentions
+            stamp = ledger.next_stamp(conn)
+            cache.rebuild(conn, merging.forget_records(conn, dict.fromkeys(names, stamp)))
+        return len(touched)
+
     def rebuild(self) -> None:
         """Compute the cache again from the contributions; changes nothing in a sound memory."""
         with self._store.writing() as conn:

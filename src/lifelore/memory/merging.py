@@ -7,7 +7,7 @@ Contributions are copied source by source, with one batch in main memory at a ti
 the end, so that the cells of a key are written once and not once for each source.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 from sqlalchemy import Connection
@@ -49,6 +49,7 @@ class MemoryUnion:
         self._here = here
         self._own = {entry.identity: entry for entry in ledger.entries(here)}
         self._tombstones = ledger.tombstones(here)
+        self._forgotten = ledger.forgotten_records(here)
         self._sources: dict[int, str] = {}
         self._stale: set[LoreKey] = set()
 
@@ -64,6 +65,7 @@ class MemoryUnion:
         """
         with one_line_refusals(source):
             theirs, tombstones = ledger.entries(there), ledger.tombstones(there)
+            self._forget(ledger.forgotten_records(there))
         ledger.add_tombstones(self._here, tombstones - self._tombstones)
         self._tombstones |= tombstones
         plan = _plan(self._own, theirs, self._tombstones)
@@ -81,6 +83,7 @@ class MemoryUnion:
         StoreError
             A copied contribution is damaged or has another merge for a key; the message names its source.
         """
+        self._strip_copied()
         if self._stale:
             cache.rebuild(self._here, self._stale)
         for name, part in fold(self._copied()).items():
@@ -88,6 +91,21 @@ class MemoryUnion:
                 cache.write(self._here, {name: part})
             except StoreError as error:
                 raise StoreError(f"memory {self._sources[part.mentions[0]]}: {error}") from error
+
+    def _forget(self, theirs: dict[LoreKey, int]) -> None:
+        """Forget records here that a source has forgotten; copied contributions wait for `finish`."""
+        news = {name: stamp for name, stamp in theirs.items() if stamp > self._forgotten.get(name, -1)}
+        self._forgotten |= news
+        self._stale |= forget_records(self._here, news)
+
+    def _strip_copied(self) -> None:
+        if not self._forgotten:
+            return
+        for entry in ledger.strip(self._here, sorted(self._sources.keys() & self._numbers()), self._forgotten):
+            self._own[entry.identity] = entry
+
+    def _numbers(self) -> set[int]:
+        return {entry.number for entry in self._own.values()}
 
     def _remove(self, removed: list[ContributionRow]) -> None:
         # The cache does not hold copied contributions before `finish`, so `delete` finds no keys of them.
@@ -112,6 +130,18 @@ def delete(conn: Connection, numbers: list[int]) -> set[LoreKey]:
     """Delete contributions by row number; return the keys whose cache must be rebuilt."""
     stale = cache.mentioned(conn, numbers)
     ledger.remove(conn, numbers)
+    return stale
+
+
+def forget_records(conn: Connection, forgotten: Mapping[LoreKey, int]) -> set[LoreKey]:
+    """Delete the records of these keys from contributions up to the stamps; return the keys of stale cache."""
+    ledger.add_forgotten_records(conn, forgotten)
+    stale, numbers = set(), set()
+    for name in forgotten:
+        if mentions := cache.mentions(conn, name):
+            stale.add(name)
+            numbers |= mentions
+    ledger.strip(conn, sorted(numbers), forgotten)
     return stale
 
 

@@ -24,12 +24,14 @@ _LORE = text(
 def overview(conn: Connection, location: str) -> dict[str, Any]:
     """Location, schema, robots with their tasks, keys with their size, number of tombstones."""
     tombstones = conn.execute(text("SELECT COUNT(*) FROM lifelore_tombstones")).scalar_one()
+    records = conn.execute(text("SELECT COUNT(*) FROM lifelore_forgotten_records")).scalar_one()
     return {
         "location": location,
         "schema": schema.version(conn),
         "robots": robots(conn),
         "lore": _lore(conn),
         "forgotten": int(tombstones),
+        "forgotten_records": int(records),
     }
 
 

@@ -1,6 +1,6 @@
 """Tables of a memory, created by numbered migrations; a migration and its note are one transaction.
 
-Contributions and tombstones hold the content; lore, mentions and cells are a cache of them.
+Contributions, tombstones and forgotten records hold the content; lore, mentions and cells are a cache of them.
 """
 
 import time
@@ -40,7 +40,13 @@ CREATE TABLE lifelore_cells (
     PRIMARY KEY (lore, slot)){clustered}
 """
 
-MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST)}
+_SECOND = """
+CREATE TABLE lifelore_forgotten_records (
+    kind {text} NOT NULL, key {text} NOT NULL, version {int} NOT NULL, stamp {int} NOT NULL,
+    PRIMARY KEY (kind, key, version))
+"""
+
+MIGRATIONS = {1: ("contributions, tombstones and cache", _FIRST), 2: ("forgotten records", _SECOND)}
 LATEST = max(MIGRATIONS)
 
 # SQLite turns an overflowing sum into a float; the CHECK makes this an error, as it is in PostgreSQL.

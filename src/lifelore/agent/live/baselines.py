@@ -64,6 +64,10 @@ def baselines_for(agent: str, learner: str, sensor: str = "touch") -> list[str]:
     return [] if agent == "scratch" else ["scratch"]
 
 
-def agents_for(agent: str, learner: str, sensor: str = "touch") -> list[str]:
-    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge."""
-    return ["lore" if agent == "all" else agent, *baselines_for(agent, learner, sensor)]
+def agents_for(agent: str, learner: str, compare: bool = True, sensor: str = "touch") -> list[str]:
+    """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
+
+    With `compare` False the agent lives alone; ``all`` asks for the baselines by name, so they live too.
+    """
+    baselines = baselines_for(agent, learner, sensor)
+    return ["lore" if agent == "all" else agent, *(baselines if compare or agent == "all" else [])]

@@ -18,6 +18,7 @@ from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
 from lifelore.agent.live.carried_model import carried_model
 from lifelore.agent.live.destinations import NamedPlaces
 from lifelore.agent.live.life_settings import LifeSettings
+from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.map_watch import MapWatch
 from lifelore.agent.live.model_task import live_model_task
@@ -99,7 +100,7 @@ def live(
     watch: Watcher | None = None,
     notify: Callable[[str], None] | None = None,
 ) -> Life:
-    """Live through ``settings.tasks`` tasks and store what is learnt in memory.
+    """Live through ``settings.n_tasks`` tasks and store what is learnt in memory.
 
     Parameters
     ----------
@@ -111,7 +112,8 @@ def live(
     watch : callable, optional
         Called as ``watch(task, results)`` after memory has stored a task; see `Watcher`.
     notify : callable, optional
-        Called with a line of text when a watched map was replaced, or cannot be used.
+        Called with a line of text: before the first task if the world is big, and when a watched map was replaced
+        or cannot be used.
 
     Raises
     ------
@@ -122,12 +124,16 @@ def live(
     """
     stop = stop or Event()
     began = time.perf_counter()
-    names = agents_for(settings.agent, settings.learning.learner, settings.sensor.kind)
+    # A mistake in the name shows before the map is read.
+    first = agents_for(settings.agent, settings.learning.learner, sensor=settings.sensor.kind)[0]
     map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
-        place = _place(settings, world, occupancy, memory, names[0])
+        place = _place(settings, world, occupancy, memory, first)
+        names, notice = size_of_life(settings, place.world.n_states)
+        if notify and notice:
+            notify(notice)
         life = _RunningLife(settings, place, occupancy, names, memory, map_watch, notify)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)

@@ -183,6 +183,8 @@ class LifeSettings:
     agent : str
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
+    compare : bool, optional
+        Whether ``scratch`` lives the same tasks for comparison. None: yes, up to `life_size.BIG` places.
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
@@ -216,6 +218,7 @@ class LifeSettings:
     prior: PriorSettings = field(default_factory=PriorSettings)
     memory: MemorySettings = field(default_factory=MemorySettings)
     agent: str = "lore"
+    compare: bool | None = None
     tasks: int = 30
     destinations: int = 0
     start: Place | None = None

@@ -24,9 +24,9 @@ from lifelore.domains.grids.grid_world import Frame, GridWorld
 from lifelore.domains.worlds import WorldSettings, world_from_settings
 from lifelore.memory import Memory
 
-LEAST_MATCH, LEAST_NAMED_MATCH = 0.95, 0.75
+LEAST_MATCH, LEAST_NAMED_MATCH = 0.96, 0.75
 """Least share of walls on walls for a recognition; the second where the user names the building. A floor with the
-same walls and other furniture reaches 0.94, another building 0.6 (generated offices, see docs/courier.md)."""
+same walls and other furniture reaches 0.95, another building 0.6 (generated offices, see docs/courier.md)."""
 LEAST_MARGIN = 0.15
 """Least lead over the best clearly different pose, and over every other building."""
 SAME_FRAME = 0.05, 0.002

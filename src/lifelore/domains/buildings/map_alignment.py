@@ -57,6 +57,8 @@ def aligned_map(
         Cell of the lower left corner, counted from the lower left corner of the earlier map; at most 0.
     """
     pixel = new.resolution if pixel is None else pixel
+    if pose == IDENTITY and MapFrame.of(new) == frame and pixel == new.resolution:
+        return new, (0, 0)
     to_frame = composed(
         inverse(frame.origin), composed(pose, new.origin)
     )  # picture of `new` → picture of the frame
@@ -80,10 +82,14 @@ def aligned_map(
 
 def _extent(new: OccupancyMap, to_frame: Pose) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Smallest and largest x and y of the known pixels in the frame of the earlier picture."""
-    row, column = np.nonzero(new.state != UNKNOWN)
+    known = new.state != UNKNOWN
+    row = np.flatnonzero(known.any(axis=1))
     if not row.size:
         return np.zeros(2), np.zeros(2)
-    centres = moved(to_frame, np.column_stack([column + 0.5, len(new.state) - row - 0.5]) * new.resolution)
+    # The first and the last pixel of each row contain every extreme point.
+    first, last = known[row].argmax(axis=1), known.shape[1] - 1 - known[row, ::-1].argmax(axis=1)
+    column, row = np.concatenate([first, last]), np.concatenate([row, row])
+    centres = moved(to_frame, np.column_stack([column + 0.5, len(known) - row - 0.5]) * new.resolution)
     half = new.resolution / 2
     return centres.min(axis=0) - half, centres.max(axis=0) + half
 

@@ -22,7 +22,9 @@ _OUTER_WALL = 0.2
 _SMALLEST, _LARGEST = 12.0, 150.0
 
 
-def office_map(seed: int = 0, width_m: float = 32.0, height_m: float = 22.0) -> OccupancyMap:
+def office_map(
+    seed: int = 0, width_m: float = 32.0, height_m: float = 22.0, furniture: int | None = None
+) -> OccupancyMap:
     """An invented office floor, connected, with corridors, rooms, doors of at least 0.9 m and furniture.
 
     Parameters
@@ -32,6 +34,8 @@ def office_map(seed: int = 0, width_m: float = 32.0, height_m: float = 22.0) -> 
     width_m, height_m : float
         Space the floor may take, in metres, 12 to 150 each; the default gives some 1,400–2,400 states
         at cells of 0.5 m.
+    furniture : int, optional
+        Another seed for the furniture alone, for a second floor with the same walls.
 
     Raises
     ------
@@ -44,6 +48,8 @@ def office_map(seed: int = 0, width_m: float = 32.0, height_m: float = 22.0) -> 
     generator = stream(seed, "office")
     plan = plan_office(generator, round(width_m, 1), round(height_m, 1))
     state = _draw(plan, round(width_m, 1), round(height_m, 1), generator)
+    if furniture is not None:
+        state = _draw(plan, round(width_m, 1), round(height_m, 1), stream(furniture, "office furniture"))
     flips = generator.integers(2, size=2) * 2 - 1
     state = np.ascontiguousarray(state[:: flips[0], :: flips[1]])
     return OccupancyMap(state, RESOLUTION, source=f"office (seed {seed})")

@@ -10,7 +10,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -125,19 +125,19 @@ class _Walls:
         reach = int(np.ceil(2 * WALL_TOLERANCE / self.pixel))
         return ndimage.distance_transform_edt(self.map.state == UNKNOWN) <= reach  # type: ignore[operator]
 
-    def inner(self, points: NDArray[np.float64]) -> NDArray[np.float64]:
+    def inner(self, points: NDArray[Any]) -> NDArray[np.float64]:
         """World points as (row, column) of the picture, fractional: pixel centres are whole."""
         x, y = moved(inverse(self.map.origin), points).T / self.pixel
         return np.array([len(self.edge) - y - 0.5, x - 0.5])
 
-    def pixels(self, points: NDArray[np.float64]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    def pixels(self, points: NDArray[Any]) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
         """Flat numbers of the points' pixels, and which points lie within the picture."""
         row, column = np.rint(self.inner(points)).astype(np.int64)
         inside = (row >= 0) & (row < self.edge.shape[0]) & (column >= 0) & (column < self.edge.shape[1])
         return np.where(inside, row * self.edge.shape[1] + column, 0), inside
 
 
-def moved(pose: Pose, points: NDArray[np.float64]) -> NDArray[np.float64]:
+def moved(pose: Pose, points: NDArray[Any]) -> NDArray[np.float64]:
     """Points (n, 2) turned and shifted by a pose."""
     cos, sin = np.cos(pose[2]), np.sin(pose[2])
     return points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
@@ -194,14 +194,15 @@ def _coarse(a: _Walls, b: _Walls) -> NDArray[np.float64]:
     low = a.points.min(axis=0) - 2 * pixel
     n_a = np.ceil(np.ptp(a.points, axis=0) / pixel).astype(int) + 4
     n_b = int(np.ceil(2 * radius / pixel)) + 1
-    shape = [fft.next_fast_len(int(n) + n_b, real=True) for n in n_a]
-    field = fft.rfft2(_coarse_field(a, low, n_a, pixel), shape)
+    shape = np.array([fft.next_fast_len(int(n) + n_b, real=True) for n in n_a], np.int64)
+    field: Any = fft.rfft2(_coarse_field(a, low, n_a, pixel), shape)
     angles = np.arange(0, 2 * np.pi, COARSE_STEP)
     values, places = np.empty((len(angles), N_PEAKS)), np.empty((len(angles), N_PEAKS, 3))
     for k, angle in enumerate(angles):
         cell = np.floor((moved((0.0, 0.0, angle), around) + radius) / pixel).astype(np.int64)
         picture = np.bincount(cell[:, 0] * n_b + cell[:, 1], minlength=n_b * n_b).reshape(n_b, n_b)
-        score = fft.irfft2(field * np.conj(fft.rfft2(picture.astype(np.float32), shape)), shape)
+        turned: Any = fft.rfft2(picture.astype(np.float32), shape)
+        score: Any = fft.irfft2(field * np.conj(turned), shape)
         values[k], shift = _peaks(score, pixel)
         shift = np.where(shift < n_a, shift, shift - shape)
         places[k, :, :2], places[k, :, 2] = low + shift * pixel + radius, angle

@@ -23,8 +23,11 @@ BENCHES = (
     "buildings",
     "merge",
     "capacity",
+    "recognition",
 )
-"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them; ``courier`` takes a map too."""
+"""``bench_NAME(repeats, progress)`` in the module of the same name is one of them."""
+WITH_MAP = ("courier", "recognition")
+"""Benchmarks that take a ROS map."""
 
 
 def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Progress | None = None) -> dict:
@@ -36,9 +39,10 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives; for
+        ``recognition``: offices; for
         ``relations``: lots of scenes, judged together; for ``deep``: runs of learning.
     map : str, optional
-        For ``courier``: a ROS map to live in; default generated offices.
+        For ``courier`` and ``recognition``: a ROS map to live in; default generated offices.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each piece.
 
@@ -59,10 +63,10 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         raise NotFoundError(f"bench must be one of {', '.join(BENCHES)}, got '{name}'")
     if not 1 <= repeats <= MOST_REPEATS:
         raise InputError(f"repeats must lie in [1, {MOST_REPEATS}], got {repeats}")
-    if map is not None and name != "courier":
-        raise InputError(f"map applies to bench courier, got {map} for {name}; leave it out")
+    if map is not None and name not in WITH_MAP:
+        raise InputError(f"map applies to bench {' and '.join(WITH_MAP)}, got {map} for {name}; leave it out")
     run = getattr(import_module(f"{__name__}.{name}"), f"bench_{name}")
-    options = {"map": map} if name == "courier" else {}
+    options = {"map": map} if name in WITH_MAP else {}
     return {"bench": name, **run(repeats, progress or _silent, **options)}
 
 
