@@ -37,11 +37,7 @@ Q_AGENTS = ("lore", "prior", "scratch")
 """A Q-learner has no model: with the prior, `lore` and `prior` are the same agent; without it, it is `scratch`."""
 
 
-LIDAR_AGENTS = tuple(name for name, kind in AGENTS.items() if not kind.exploration_strategy.senses)
-"""With a lidar every agent senses where moves lead, so `frontier` is `scratch`."""
-
-
-def baselines_for(agent: str, learner: str, sensor: str = "touch") -> list[str]:
+def baselines_for(agent: str, learner: str) -> list[str]:
     """Names of the agents that live the same tasks as `agent`, for comparison; ``all`` stands for `lore`.
 
     Raises
@@ -49,25 +45,21 @@ def baselines_for(agent: str, learner: str, sensor: str = "touch") -> list[str]:
     NotFoundError
         No agent has this name.
     InputError
-        No such agent has this learner or sensor.
+        This learner has no such agent.
     """
     if agent != "all" and agent not in AGENTS:
         raise NotFoundError(f"agent must be one of {', '.join(AGENTS)}, all; got '{agent}'")
     if learner == "q" and agent not in (*Q_AGENTS, "all"):
         raise InputError(f"learner 'q' has agents {', '.join(Q_AGENTS)}, got '{agent}': use learner 'model'")
-    if sensor == "lidar" and agent not in (*LIDAR_AGENTS, "all"):
-        raise InputError(
-            f"sensor 'lidar' has agents {', '.join(LIDAR_AGENTS)}, got '{agent}': use agent 'scratch'"
-        )
     if agent == "all" and learner == "model":
-        return [name for name in (LIDAR_AGENTS if sensor == "lidar" else AGENTS) if name != "lore"]
+        return [name for name in AGENTS if name != "lore"]
     return [] if agent == "scratch" else ["scratch"]
 
 
-def agents_for(agent: str, learner: str, compare: bool = True, sensor: str = "touch") -> list[str]:
+def agents_for(agent: str, learner: str, compare: bool = True) -> list[str]:
     """Names of all agents that live when `agent` is asked for; memory stores the first one's knowledge.
 
     With `compare` False the agent lives alone; ``all`` asks for the baselines by name, so they live too.
     """
-    baselines = baselines_for(agent, learner, sensor)
+    baselines = baselines_for(agent, learner)
     return ["lore" if agent == "all" else agent, *(baselines if compare or agent == "all" else [])]

@@ -25,7 +25,7 @@ from lifelore.agent.live.model_task import live_model_task
 from lifelore.agent.live.own_places import OwnGoal, own_places
 from lifelore.agent.live.q_task import live_q_task
 from lifelore.agent.live.recognition import Place, own_place, recognised_place
-from lifelore.agent.live.sight import move_weights, sight_lists
+from lifelore.agent.live.sight import sight_lists
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
@@ -34,7 +34,7 @@ from lifelore.core.learning.known_world import unknown_world
 from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import new_learner, uniform_rows
-from lifelore.core.learning.sight_search import SightSearch, new_sight_search
+from lifelore.core.learning.sight_search import new_sight_search
 from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
@@ -124,12 +124,12 @@ def live(
     """
     stop = stop or Event()
     began = time.perf_counter()
-    # A mistake in the name shows before the map is read.
-    first = agents_for(settings.agent, settings.learning.learner, sensor=settings.sensor.kind)[0]
+    agents_for(settings.agent, settings.learning.learner)  # a mistake in the name shows before the map is read
     map_watch = MapWatch(settings.world) if settings.watch else None
     occupancy = map_from_settings(settings.world) if settings.world.domain == "building" else None
     world = world_from_settings(settings.world, occupancy)
     with open_memory(settings.memory.location) as memory:
+        first = agents_for(settings.agent, settings.learning.learner)[0]
         place = _place(settings, world, occupancy, memory, first)
         names, notice = size_of_life(settings, place.world.n_states)
         if notify and notice:
@@ -200,10 +200,10 @@ class _RunningLife:
         names = NamedPlaces.of(place)
         places = own_places(self.settings, place.world, lambda: _floor_at(place), names, self.memory, first)
         stream = TaskStream(place.world, self.settings, place.grid.frame, places.start)
+        self.sight = sight_lists(self.settings.sensor, place)
         self.world, self.place, self.given, self.first_here = place.world, place, given, first
         self.named, self.places, self.stream = names, places, stream
         self.scope = prior_scope(place.world, self.settings.prior.condition)
-        self.sight = sight_lists(self.settings.sensor, place)
         self.unstored = self.unstored + place.news
 
     def _recalled(self) -> Lore:
@@ -339,7 +339,7 @@ class _SharedTask:
         return self._with_model(kind, lore)
 
     def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        settings, world = self.life.settings, self.life.world
+        settings, world, sight = self.life.settings, self.life.world, self.life.sight
         if not kind.remembers:
             lore.model = unknown_world(world.n_states, self.tables.n_actions)
         explorer = new_model_learner(
@@ -348,14 +348,13 @@ class _SharedTask:
             self.life.stream.world_stream(self.index),
             self.life.stream.own_stream(self.index),
         )
-        perceived, search = self._perceived(kind, lore)
         return live_model_task(
             self.tables,
             self.optimal,
             self.task.domain.discount,
             lore.model,
-            perceived,
-            search,
+            self._perceived(kind, lore),
+            sight and new_sight_search(*sight, self.tables, lore.model),
             kind.exploration_strategy,
             explorer,
             settings.episode_cap(world.n_states),
@@ -363,18 +362,13 @@ class _SharedTask:
             self.stop,
         )
 
-    def _perceived(self, kind: AgentKind, lore: Lore) -> tuple[StateInfo, SightSearch | None]:
-        """Percepts with the costs of the prior, and the search by sight if the agent has a lidar."""
-        percepts, n_actions = self.life.world.percepts, self.tables.n_actions
-        row, probs = np.zeros(len(percepts), np.int64), np.full((1, n_actions), 1 / n_actions)
-        if kind.uses_prior and self.life.settings.prior.condition != "none":
-            codes, row = np.unique(lore.scope.contexts, return_inverse=True)
-            probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
-        perceived = StateInfo(percepts, row.astype(np.int32), try_costs(probs))
-        if self.life.sight is None:
-            return perceived, None
-        weights = move_weights(probs)
-        return perceived, new_sight_search(*self.life.sight, self.tables, lore.model, perceived.cost_row, weights)
+    def _perceived(self, kind: AgentKind, lore: Lore) -> StateInfo:
+        percepts = self.life.world.percepts
+        if not kind.uses_prior or self.life.settings.prior.condition == "none":
+            return StateInfo(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
+        codes, row = np.unique(lore.scope.contexts, return_inverse=True)
+        probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
+        return StateInfo(percepts, row.astype(np.int32), try_costs(probs))
 
     def _with_q(self, kind: AgentKind, lore: Lore) -> TaskResult:
         settings = self.life.settings

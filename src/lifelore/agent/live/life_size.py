@@ -22,9 +22,9 @@ def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | 
     places : int
         Number of states of the world.
     """
-    agent, learner, sensor = settings.agent, settings.learning.learner, settings.sensor.kind
-    names = agents_for(agent, learner, places <= BIG if settings.compare is None else settings.compare, sensor)
-    left_out = settings.compare is None and len(names) < len(agents_for(agent, learner, sensor=sensor))
+    agent, learner = settings.agent, settings.learning.learner
+    names = agents_for(agent, learner, places <= BIG if settings.compare is None else settings.compare)
+    left_out = settings.compare is None and len(names) < len(agents_for(agent, learner))
     seconds = estimated_seconds(places, len(names), settings.n_tasks) if learner == "model" else 0.0
     if seconds < LONG and not left_out:
         return names, None

@@ -1,7 +1,7 @@
 """Search by sight: a learner that perceives places at a distance walks to the views with most new places a step.
 
 In each state the learner perceives all states in sight: where their moves lead, and whether they are the goal.
-It walks to the place with the largest ratio of expected new places in sight to steps (frontier-based exploration,
+It walks to the place with the largest ratio of new places in sight to steps (frontier-based exploration,
 Yamauchi 1997, with the gain of the next best view). In a remembered world all places are known, and the same rule
 is a greedy tour of viewpoints. For two known places, the learner knows whether they are in sight of each other.
 
@@ -21,8 +21,6 @@ from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKE
 from lifelore.core.learning.model_learning import ALL_NEW, least_tried
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
-UNIT = 16
-"""Weight of a remembered place that is not yet seen in the task; a whole number, so that gains sum exactly."""
 FOUND_STEP, FOUND_EPISODE = 0, 1
 """Places in `SightSearch.found`."""
 SEARCH, DRIVE, SHORTEN = range(3)
@@ -33,11 +31,11 @@ class SightSearch(NamedTuple):
     """Sight of a world, and the state of a search by sight in one task; the last four are changed in place.
 
     begin, seen : (n_states + 1,) int64 and (n_pairs,) int32: ``seen[begin[s]:begin[s + 1]]`` are the states in
-        sight of s, itself included; sight is mutual
+        sight of s, with s itself and all states that its moves lead to; sight is mutual
     revealed : (n_states,) int8, LOOKED | DEAD_END | GOAL, which the learner recognises on sight
-    move_weight : (n_contexts, n_actions) int64, weight of a place never seen by the move that leads to it
-    weight : (n_states,) int64, expected number of new places, in `UNIT`, by seeing this one; 0 if unknown or seen
-    gain : (n_states,) int64, sum of `weight` over the places in sight
+    new : (n_states,) int8, 1 for places that are known, as remembered or as the end of a known move, but not yet
+        seen in this task
+    gain : (n_states,) int32, number of new places in sight
     stood : (n_states,) int8, 1 for states in which the learner has been in this task
     found : (2,) int64, steps of the task and episode at which the goal was first seen; -1 before
     """
@@ -45,35 +43,25 @@ class SightSearch(NamedTuple):
     begin: NDArray[np.int64]
     seen: NDArray[np.int32]
     revealed: NDArray[np.int8]
-    move_weight: NDArray[np.int64]
-    weight: NDArray[np.int64]
-    gain: NDArray[np.int64]
+    new: NDArray[np.int8]
+    gain: NDArray[np.int32]
     stood: NDArray[np.int8]
     found: NDArray[np.int64]
 
 
 def new_sight_search(
-    begin: NDArray[np.int64],
-    seen: NDArray[np.int32],
-    tables: Tables,
-    model: WorldModel,
-    cost_row: NDArray[np.int32],
-    move_weight: NDArray[np.int64],
+    begin: NDArray[np.int64], seen: NDArray[np.int32], tables: Tables, model: WorldModel
 ) -> SightSearch:
     """The search at the start of a task, for a learner that remembers `model`; arrays as in `SightSearch`."""
-    weight = np.where(model.percept != UNKNOWN, UNIT, 0).astype(np.int64)
-    state, action = np.nonzero((model.target >= 0) & (model.percept != UNKNOWN)[:, None])
-    named = model.target[state, action]
-    new = model.percept[named] == UNKNOWN
-    np.maximum.at(weight, named[new], move_weight[cost_row[state[new]], action[new]])
-    sums = np.concatenate([[0], np.cumsum(weight[seen])])
+    new = (model.percept != UNKNOWN).astype(np.int8)
+    new[model.target[model.target != UNKNOWN]] = 1
+    sums = np.concatenate([[0], np.cumsum(new[seen], dtype=np.int64)])
     return SightSearch(
         begin,
         seen,
         places_on_sight(tables),
-        move_weight,
-        weight,
-        sums[begin[1:]] - sums[begin[:-1]],
+        new,
+        (sums[begin[1:]] - sums[begin[:-1]]).astype(np.int32),
         np.zeros(tables.n_states, np.int8),
         np.full(2, -1),
     )
@@ -112,7 +100,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
             left, ret, reach = 0, 0.0, 1.0
         if stood[state] == 0:
             stood[state] = 1
-            n_new, new_goals = _look(state, next_state, model, state_info, place, queue, search)
+            n_new, new_goals = _look(state, next_state, model, state_info.percept, place, queue, search)
             if n_new > 0:
                 left, n_news = 0, ALL_NEW
             if new_goals > 0:
@@ -172,11 +160,10 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
 
 
 @kernel(allocates=False)
-def _look(state, next_state, model, state_info, place, queue, search):
+def _look(state, next_state, model, percept, place, queue, search):
     """Learn the moves of all places in sight; returns how many are new in this task, and how many are goals."""
     target, remembered = model
-    percept, cost_row, _ = state_info
-    begin, seen, revealed, move_weight, weight, gain, _, _ = search
+    begin, seen, revealed, new, gain, _, _ = search
     n_new, goals = 0, 0
     for k in range(begin[state], begin[state + 1]):
         s = seen[k]
@@ -187,25 +174,25 @@ def _look(state, next_state, model, state_info, place, queue, search):
             remembered[s] = percept[s]
             for a in range(target.shape[1]):
                 target[s, a] = next_state[s, a, 0]
-            _set_weight(s, 0, begin, seen, weight, gain)
+            if new[s] == 1:
+                _count(s, new, -1, begin, seen, gain)
             queue[n_new] = s
             n_new += 1
     for k in range(n_new):
         s = queue[k]
         for a in range(target.shape[1]):
             t = target[s, a]
-            if place[t] == NOT_LOOKED and remembered[t] == UNKNOWN and move_weight[cost_row[s], a] > weight[t]:
-                _set_weight(t, move_weight[cost_row[s], a], begin, seen, weight, gain)
+            if place[t] == NOT_LOOKED and new[t] == 0:
+                _count(t, new, 1, begin, seen, gain)
     return n_new, goals
 
 
 @inlined
-def _set_weight(state, new, begin, seen, weight, gain):
-    change = new - weight[state]
-    if change != 0:
-        weight[state] = new
-        for k in range(begin[state], begin[state + 1]):
-            gain[seen[k]] += change
+def _count(state, new, change, begin, seen, gain):
+    """Add a place to the new ones (`change` 1) or remove it (-1)."""
+    new[state] += change
+    for k in range(begin[state], begin[state + 1]):
+        gain[seen[k]] += change
 
 
 @kernel(allocates=False)
