@@ -31,6 +31,15 @@ def test_a_lidar_life_ends_every_task_without_collision(tmp_path, reach):
             assert not any(result["collisions"] for result in results(life, agent))
 
 
+def test_the_robot_drives_to_the_goal_that_it_saw(tmp_path):
+    life = office(tmp_path, sensor="lidar", tasks=6)
+    for task in life.report["tasks"][2:]:
+        # Memory knows the way as soon as the goal is seen; the episode still ends at the goal.
+        own = task["agents"]["lore"]
+        assert own["steps_to_80"] - own["steps_to_goal"] <= 20
+        assert own["first_return"] > 0
+
+
 def test_the_seen_map_is_true_and_remembered(tmp_path):
     life = office(tmp_path, sensor="lidar", tasks=1)
     model, world = life.lore.model, life.world
