@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lifelore.agent.live.building_memory import forget_building
 from lifelore.agent.live.destinations import Destination, NamedPlaces, destination_from_text
 from lifelore.agent.live.job_list import Job
 from lifelore.agent.live.life import Life, live
@@ -100,6 +101,16 @@ def test_names_belong_to_their_building(room, tmp_path):
     assert life_in(room, goal="lab", cell=0.25, tasks=1).report["tasks"][0]["position"] == list(LAB)
     with pytest.raises(NotFoundError, match="memory knows no names here"):
         live(flat_settings(domain="building", memory=str(tmp_path / "life.db"), goal="lab"))
+
+
+def test_names_are_forgotten_with_their_building(room):
+    life_in(room, goals=jobs(Destination(LAB, "lab"), Destination(DOCK, "dock")))
+    with open_memory(Path(room).parent / "life.db") as memory:
+        names = NamedPlaces(memory.keys("building")[0][0])
+        assert names.names(memory) == ["dock", "lab"]
+        forget_building(memory, "room")
+        assert names.names(memory) == []
+        assert memory.keys("destination") == []
 
 
 def test_names_move_with_a_map_that_was_saved_again():

@@ -1,6 +1,6 @@
 """Lists the remembered buildings, and forgets one."""
 
-from lifelore.agent.live import building_record, transitions
+from lifelore.agent.live import building_record, destinations, transitions
 from lifelore.agent.live.building_record import remembered_buildings
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import Memory
@@ -17,7 +17,7 @@ def buildings_in(memory: Memory) -> list[dict]:
 
 
 def forget_building(memory: Memory, name: str) -> dict:
-    """Forget the map and the transitions of a building for ever; action priors and other records stay.
+    """Forget the map, the transitions and the named destinations of a building for ever; other records stay.
 
     Returns
     -------
@@ -39,7 +39,7 @@ def forget_building(memory: Memory, name: str) -> dict:
     if len(keys) > 1:
         raise InputError(f"building {name!r} is the name of {len(keys)} buildings; give a key: {', '.join(keys)}")
     names = [(building_record.KIND, keys[0], building_record.VERSION)]
-    for kind in (building_record.MAP_KIND, transitions.KIND):
+    for kind in (building_record.MAP_KIND, transitions.KIND, destinations.KIND):
         names += [
             (kind, key, version) for key, version, about in memory.keys(kind) if about.get("building") == keys[0]
         ]

@@ -100,7 +100,8 @@ class NamedPlaces:
     def record(self, name: str, point: Point) -> Record:
         """The record by which memory knows a point by its name from then on."""
         values = np.rint(moved(self.pose, np.array([point]))[0] * _MICROMETRES).astype(np.int64)
-        return Record(KIND, f"{self.key}/{name}", VERSION, "newest", np.arange(2), values, {"name": name})
+        about = {"name": name, "building": self.key}
+        return Record(KIND, f"{self.key}/{name}", VERSION, "newest", np.arange(2), values, about)
 
     def located(self, argument: str, destination: Destination, memory: Memory) -> Destination:
         """The destination with its point, looked up in memory if it has only a name.
