@@ -13,15 +13,23 @@ DOCUMENT = {
     "domain", "map", "n_states", "building", "seed", "settings", "tasks", "summary", "memory", "seconds",
 }  # fmt: skip
 TASK = {"index", "goal", "optimal_return", "agents"}
-RESULT = {"first_return", "collisions", "steps_to_80", "episodes_to_80", "reached", "final_return"}
+RESULT = {
+    "first_return",
+    "collisions",
+    "steps_to_goal",
+    "steps_to_80",
+    "episodes_to_80",
+    "reached",
+    "final_return",
+}
 ESTIMATE = {"value", "median", "ci95", "n"}
 RATIOS = ("steps_to_80_ratio", "collisions_ratio", "jumpstart")
-MEASURES = ("steps_to_80", "collisions", "episodes_to_80", "first_return")
+MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
 TOLD = {
     "domain", "map", "tasks", "cell", "robot_radius", "destinations", "learner", "prior", "agent", "robot",
     "start", "memory", "episodes", "max_steps", "seed", "jobs", "density", "discount", "goal_reward",
     "wall_reward", "alpha0", "weight", "form", "ties", "learning_rate", "epsilon", "epsilon_decay",
-    "epsilon_floor",
+    "epsilon_floor", "sensor", "range",
 }  # fmt: skip
 LATTICE = ("live", "--domain", "lattice", "--json")
 
@@ -47,7 +55,7 @@ def check_task(task: dict, names: list[str]) -> None:
     for result in task["agents"].values():
         assert set(result) == RESULT
         assert type(result["reached"]) is bool
-        for name in ("collisions", "steps_to_80", "episodes_to_80"):
+        for name in ("collisions", "steps_to_goal", "steps_to_80", "episodes_to_80"):
             check_number(result[name], whole=True)
             assert result[name] >= 0
         for name in ("first_return", "final_return"):
@@ -110,11 +118,11 @@ def test_settings_in_the_report_are_those_that_were_told(ask, tmp_path):
         "robot": "rosie", "episodes": 20, "max_steps": 50, "seed": 9, "jobs": 1, "density": 0.6,
         "discount": 0.9, "goal_reward": 50.0, "wall_reward": -2.0, "alpha0": 0.5, "weight": 2.0,
         "form": "softmax", "ties": "prior", "learning_rate": 0.3, "epsilon": 0.8, "epsilon_decay": 0.9,
-        "epsilon_floor": 0.1,
+        "epsilon_floor": 0.1, "sensor": "touch",
     }  # fmt: skip
     options = [f"--{name.replace('_', '-')}={value}" for name, value in told.items()]
     settings = ask("live", *options, "--memory", tmp_path / "life.db", "--json").document["settings"]
-    unused = dict.fromkeys(("map", "start", "cell", "robot_radius"))
+    unused = dict.fromkeys(("map", "start", "cell", "robot_radius", "range"))
     assert settings == told | unused | {"memory": str(tmp_path / "life.db")}
 
 
@@ -191,6 +199,15 @@ def test_a_person_sees_a_table_and_what_was_written(ask, tmp_path):
     assert {path.name for path in written} >= {"summary.json", "life.png", "world.png", "prior.pgm"}
     assert all(path.stat().st_size > 0 for path in written)
     assert set(json.loads(Path("out/summary.json").read_text())) == DOCUMENT
+
+
+def test_a_lidar_is_named_in_the_report_and_the_table(ask):
+    lidar = ("live", "--sensor", "lidar", "--range", "3", "--tasks", 2, "--memory", "life.db")
+    settings = ask(*lidar, "--json").document["settings"]
+    assert (settings["sensor"], settings["range"]) == ("lidar", 3.0)
+    assert "steps to see goal" in ask(*lidar).out
+    assert "range applies to sensor lidar" in ask("live", "--range", "3", "--memory", "none.db").refusal
+    assert not Path("none.db").exists()
 
 
 def test_json_and_pictures_at_once(ask):

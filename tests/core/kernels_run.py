@@ -26,6 +26,7 @@ def all_arrays() -> dict[str, np.ndarray]:
     from lifelore.core.learning.known_world import best_known_actions, unknown_world
     from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
     from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
+    from lifelore.core.learning.sight_search import explore_by_sight, new_sight_search
     from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
     from lifelore.core.planning.planning import optimal_q, policy_values
     from lifelore.core.streams import stream
@@ -62,6 +63,16 @@ def all_arrays() -> dict[str, np.ndarray]:
             pass
         best = best_known_actions(model, explorer.place)
         out |= _named(f"{strategy}", (*model, *explorer, *curve, best))
+    visible = np.random.default_rng(3).random((15, 15)) < 0.2
+    visible |= visible.T | np.eye(15, dtype=bool)
+    begin, states = np.r_[0, np.cumsum(visible.sum(axis=1))], np.nonzero(visible)[1].astype(np.int32)
+    for exhaustive in (False, True):
+        model, explorer = unknown_world(15, 3), new_model_learner(15, 3, stream(2, "w"), stream(2, "o"))
+        curve, search = new_curve(12), new_sight_search(begin, states, tables, model)
+        strategy = ExplorationStrategy(exhaustive=exhaustive)
+        while explore_by_sight(tables, model, seen, strategy, explorer, search, curve, 30, 0.9, 50):
+            pass
+        out |= _named(f"by sight {exhaustive}", (*model, *explorer, *search, *curve))
     return out
 
 

@@ -182,6 +182,26 @@ def test_courier_lives_at_home_and_abroad(monkeypatch):
     assert len(result["goals"]) == 8
 
 
+def test_lives_with_a_lidar_at_each_range(monkeypatch):
+    from lifelore.experiments.bench.lives import lidar
+
+    monkeypatch.setattr(lidar, "TASKS", 3)
+    monkeypatch.setattr(lidar, "RANGES", (2.0, 6.0))
+    result = bench("lidar", repeats=2)
+    rows = {row["name"]: row for row in result["rows"]}
+    assert len(rows) == 18
+    for reach in (2, 6):
+        seen, enough = (
+            rows[f"lore, {reach} m, {unit}"] for unit in ("steps until the goal is seen", "steps to 80 %")
+        )
+        assert 0 <= seen["value"] <= enough["value"]
+        scratch = rows[f"scratch, {reach} m, steps to 80 %"]["value"]
+        assert enough["ratio"] == pytest.approx(enough["value"] / scratch)
+        assert rows[f"lore, {reach} m, capped tasks of 2"]["value"] == 0
+    collisions = [goal for goal in result["goals"] if goal["name"].startswith("collisions")]
+    assert [goal["measured"] for goal in collisions] == [0, 0]
+
+
 def test_a_map_is_for_the_courier():
     with pytest.raises(InputError, match="map applies to bench courier"):
         bench("kernels", map="x.yaml")

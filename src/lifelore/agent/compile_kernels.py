@@ -58,12 +58,13 @@ def _compiled() -> set[str]:
 
 def _live(folder: Path) -> None:
     from lifelore.agent.live.life import live
-    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
+    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, SensorSettings
 
     for learner in ("model", "q"):
         learning = LearningSettings(learner, episodes=3, max_steps=50)
         memory = MemorySettings(str(folder / f"{learner}.db"))
         live(LifeSettings(learning=learning, memory=memory, agent="all", tasks=2))
+    live(LifeSettings(memory=MemorySettings(str(folder / "lidar.db")), tasks=1, sensor=SensorSettings("lidar")))
 
 
 def _perceive(folder: Path) -> None:

@@ -10,13 +10,14 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
-            "long_user. Benefit: courier, recognition, worlds, contexts, relations, pictures, deep, deep_layouts."
+            "long_user. Benefit: courier, recognition, lidar, worlds, contexts, relations, pictures, deep, "
+            "deep_layouts."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,
     map: Annotated[
         str | None,
-        typer.Option(metavar="YAML", help="courier, recognition: a ROS map; default: generated offices."),
+        typer.Option(metavar="YAML", help="courier, recognition, lidar: a ROS map; default: generated offices."),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:

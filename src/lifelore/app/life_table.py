@@ -12,6 +12,8 @@ SHOWN = (
     ("first_return", "first return"),
 )
 
+SHOWN_BY_SIGHT = (SHOWN[0], ("steps_to_goal", "steps to see goal"), *SHOWN[2:])
+
 LISTED = 20
 """Maximum number of tasks with chosen goals that are listed, the last ones."""
 
@@ -31,7 +33,8 @@ def print_life(report: dict, written: list[str]) -> None:
     if report["building"]:
         console.print(_building_line(report["building"]), highlight=False, soft_wrap=True)
     if tasks:
-        console.print(_thirds(report["summary"]["agents"]))
+        shown = SHOWN if report["settings"]["sensor"] == "touch" else SHOWN_BY_SIGHT
+        console.print(_thirds(report["summary"]["agents"], shown))
         for name, ratios in report["summary"].items():
             if name != "agents":
                 console.print(_ratio_line(name, ratios), highlight=False, soft_wrap=True)
@@ -66,13 +69,13 @@ def _building_line(building: dict) -> str:
     return f"recognised as {building['name']}" + "".join(f", {ground}" for ground in grounds)
 
 
-def _thirds(agents: dict) -> Table:
+def _thirds(agents: dict, shown: tuple[tuple[str, str], ...]) -> Table:
     table = Table("agent", "third", title="means and 95 % intervals over the first and last third of the tasks")
-    for _, title in SHOWN:
+    for _, title in shown:
         table.add_column(title, justify="right")
     for name, thirds in agents.items():
         for which in ("first", "last"):
-            cells = [_number(thirds[which][measure]) for measure, _ in SHOWN]
+            cells = [_number(thirds[which][measure]) for measure, _ in shown]
             table.add_row(name if which == "first" else "", which, *cells, end_section=which == "last")
     return table
 

@@ -33,6 +33,14 @@ def live(
     learner: Annotated[
         str, Option(help="model (plans on a learnt model of the moves) or q (the thesis's Q-learning).")
     ] = "model",
+    sensor: Annotated[
+        str,
+        Option(
+            help="touch (a move is known once made, the goal once entered) or lidar (building: all places in line "
+            "of sight within --range are seen; the goal is found at sight, then the robot drives there)."
+        ),
+    ] = "touch",
+    range: Annotated[float | None, Option(help="Range of the lidar in metres [5].")] = None,
     prior: Annotated[
         str, Option(help="Action prior conditioned on the observation or the state, or none.")
     ] = "observation",
@@ -118,7 +126,13 @@ def live(
     from contextlib import nullcontext
 
     from lifelore.agent.live.life import live as live_through
-    from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
+    from lifelore.agent.live.life_settings import (
+        LearningSettings,
+        LifeSettings,
+        MemorySettings,
+        PriorSettings,
+        SensorSettings,
+    )
     from lifelore.agent.live.output.l2_log import LifeLog
     from lifelore.agent.live.output.long_table import LongTable
     from lifelore.agent.live.output.report import check_folder, write_portfolio
@@ -143,6 +157,7 @@ def live(
         ),
         prior=PriorSettings(prior, alpha0, weight, form, ties),
         memory=MemorySettings(memory, robot, building),
+        sensor=SensorSettings(sensor, range),
         agent=agent,
         compare=compare,
         tasks=30 if tasks is None else tasks,

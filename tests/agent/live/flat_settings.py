@@ -2,7 +2,13 @@
 
 from typing import Any
 
-from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings, PriorSettings
+from lifelore.agent.live.life_settings import (
+    LearningSettings,
+    LifeSettings,
+    MemorySettings,
+    PriorSettings,
+    SensorSettings,
+)
 from lifelore.domains.worlds import WorldSettings
 
 LEARNING = ("learner", "episodes", "max_steps", "learning_rate", "epsilon", "epsilon_decay", "epsilon_floor")
@@ -20,4 +26,6 @@ def flat_settings(**flat: Any) -> LifeSettings:
     prior = PriorSettings(**condition, **taken("alpha0", "weight", "form", "ties"))
     location = {"location": flat.pop("memory")} if "memory" in flat else {}
     memory = MemorySettings(**location, **taken("robot"))
+    kind = {"kind": flat.pop("sensor")} if "sensor" in flat else {}
+    life["sensor"] = SensorSettings(**kind, **taken("range"))
     return LifeSettings(WorldSettings(**{"domain": "lattice"} | flat), learning, prior, memory, **life)

@@ -11,6 +11,7 @@ def task(
     def agent(steps, hits, first, reached):
         return {
             "steps_to_80": steps,
+            "steps_to_goal": steps // 2,
             "collisions": hits,
             "first_return": first,
             "episodes_to_80": 1,
@@ -41,6 +42,7 @@ def test_ratios_are_of_means_and_medians_of_pairs_over_the_last_third():
     assert summary["lore_vs_scratch"]["jumpstart"]["value"] == 10.0
     assert summary["lore_vs_scratch"]["capped"] == {"lore": 1, "scratch": 0}
     assert summary["agents"]["lore"]["first"]["steps_to_80"]["value"] == 999
+    assert summary["agents"]["lore"]["first"]["steps_to_goal"]["value"] == 499
     assert summary["agents"]["lore"]["last"]["capped"] == 1
 
 

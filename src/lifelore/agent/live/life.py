@@ -25,6 +25,7 @@ from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
 from lifelore.agent.live.model_task import live_model_task
 from lifelore.agent.live.q_task import live_q_task
+from lifelore.agent.live.sight import sight_lists
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
@@ -33,6 +34,7 @@ from lifelore.core.learning.known_world import unknown_world
 from lifelore.core.learning.model_learning import StateInfo, new_model_learner
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import new_learner, uniform_rows
+from lifelore.core.learning.sight_search import new_sight_search
 from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
@@ -198,6 +200,7 @@ class _RunningLife:
         names = NamedPlaces.of(place)
         places = own_places(self.settings, place.world, lambda: _floor_at(place), names, self.memory, first)
         stream = TaskStream(place.world, self.settings, place.grid.frame, places.start)
+        self.sight = sight_lists(self.settings.sensor, place)
         self.world, self.place, self.given, self.first_here = place.world, place, given, first
         self.named, self.places, self.stream = names, places, stream
         self.scope = prior_scope(place.world, self.settings.prior.condition)
@@ -338,7 +341,7 @@ class _SharedTask:
         return self._with_model(kind, lore)
 
     def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        settings, world = self.life.settings, self.life.world
+        settings, world, sight = self.life.settings, self.life.world, self.life.sight
         if not kind.remembers:
             lore.model = unknown_world(world.n_states, self.tables.n_actions)
         explorer = new_model_learner(
@@ -353,6 +356,7 @@ class _SharedTask:
             self.task.domain.discount,
             lore.model,
             self._perceived(kind, lore),
+            sight and new_sight_search(*sight, self.tables, lore.model),
             kind.exploration_strategy,
             explorer,
             settings.episode_cap(world.n_states),
@@ -426,6 +430,8 @@ def _settings_document(settings: LifeSettings, world: GridWorld, location: str) 
         "destinations": settings.destinations,
         "learner": learning.learner,
         "prior": prior.condition,
+        "sensor": settings.sensor.kind,
+        "range": settings.sensor.reach,
         "agent": settings.agent,
         "robot": settings.memory.robot,
         "start": settings.start,

@@ -1,4 +1,4 @@
-"""Settings of `live`, in four groups: the world, the learner, the action prior and the memory."""
+"""Settings of `live`, in five groups: the world, the learner, the sensor, the action prior and the memory."""
 
 from dataclasses import dataclass, field
 from math import ceil, isfinite
@@ -11,6 +11,9 @@ from lifelore.domains.worlds import WorldSettings
 
 LEARNERS = ("model", "q")
 CONDITIONS = ("observation", "state", "none")
+SENSORS = ("touch", "lidar")
+DEFAULT_RANGE = 5.0
+"""Range of a lidar in metres."""
 MOST_LENGTH = 1e3
 """Largest cell side and robot radius, in metres: a larger number is a typing mistake."""
 MOST_REWARD = 1e6
@@ -57,6 +60,42 @@ class LearningSettings:
         _check_share("epsilon", self.epsilon)
         _check_share("epsilon_decay", self.epsilon_decay)
         _check_share("epsilon_floor", self.epsilon_floor)
+
+
+@dataclass(frozen=True)
+class SensorSettings:
+    """How far the agents perceive.
+
+    Parameters
+    ----------
+    kind : {"touch", "lidar"}
+        With ``touch``, a move is known once it was made, and the goal once it was entered. With ``lidar``, in
+        buildings alone, all places within `range` in line of sight are perceived from each place: where their
+        moves lead, and whether they are the goal.
+    range : float, optional
+        Range of the lidar in metres, > 0; None: `DEFAULT_RANGE`. Does not apply to ``touch``.
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
+    """
+
+    kind: str = "touch"
+    range: float | None = None
+
+    def __post_init__(self) -> None:
+        _check_choice("sensor", self.kind, SENSORS)
+        if self.range is not None and self.kind != "lidar":
+            raise InputError(f"range applies to sensor lidar, got {self.range} for {self.kind}; leave it out")
+        _check_magnitude("range", self.range, MOST_LENGTH)
+        if self.range is not None and self.range <= 0:
+            raise InputError(f"range must be positive, got {self.range}")
+
+    @property
+    def reach(self) -> float | None:
+        """Range of the lidar in metres; None without a lidar."""
+        return (DEFAULT_RANGE if self.range is None else self.range) if self.kind == "lidar" else None
 
 
 @dataclass(frozen=True)
@@ -140,6 +179,7 @@ class LifeSettings:
     learning : LearningSettings
     prior : PriorSettings
     memory : MemorySettings
+    sensor : SensorSettings
     agent : str
         The agent that lives and whose knowledge is stored, one of `lifelore.agent.live.baselines.AGENTS`;
         ``scratch`` lives the same tasks for comparison. ``all``: `lore` and every baseline.
@@ -186,6 +226,7 @@ class LifeSettings:
     goal: Place | None = None
     goals: tuple[Job, ...] = ()
     watch: bool = False
+    sensor: SensorSettings = field(default_factory=SensorSettings)
 
     def __post_init__(self) -> None:
         _check_whole("tasks", self.tasks, 1, 10**6)
@@ -199,6 +240,15 @@ class LifeSettings:
             raise InputError(
                 f"goals needs a building, whose places have metres, got domain '{self.world.domain}'; "
                 "use goal with ROW,COL"
+            )
+        if self.sensor.kind == "lidar" and self.world.domain != "building":
+            raise InputError(
+                f"sensor lidar needs a building, whose map has lines of sight, got domain '{self.world.domain}'; "
+                "use sensor touch"
+            )
+        if self.sensor.kind == "lidar" and self.learning.learner != "model":
+            raise InputError(
+                f"sensor lidar needs learner model, which plans on places seen, got '{self.learning.learner}'"
             )
         if self.watch and self.world.map is None:
             raise InputError("watch needs the map of a building, got none; give the YAML file of a ROS map")

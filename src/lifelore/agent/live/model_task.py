@@ -4,7 +4,14 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
+from lifelore.agent.live.task_result import (
+    CHECK_EVERY,
+    CHECK_EVERY_BY_SIGHT,
+    THRESHOLD,
+    Stopped,
+    TaskResult,
+    first_arrival,
+)
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.known_value import KnownValue
 from lifelore.core.learning.known_world import WorldModel, best_known_actions, known_policy
@@ -15,6 +22,7 @@ from lifelore.core.learning.model_learning import (
     check_deterministic,
     explore,
 )
+from lifelore.core.learning.sight_search import FOUND_STEP, SightSearch, explore_by_sight
 from lifelore.core.mdp import Tables
 
 NEAR = 1e-9
@@ -28,21 +36,33 @@ def live_model_task(
     discount: float,
     model: WorldModel,
     perceived: StateInfo,
+    search: SightSearch | None,
     strategy: ExplorationStrategy,
     explorer: ModelLearner,
     episodes: int,
     max_steps: int,
     stop: Event,
 ) -> TaskResult:
-    """Explore until the greedy policy has 80 % of the `optimal` value or the cap is reached; changes `model`."""
+    """Explore until the greedy policy has 80 % of the `optimal` value or the cap is reached; changes `model`.
+
+    With `search` the learner perceives places at a distance, else by touch. It may then know enough as soon as it
+    sees the goal; it still walks to the end of that episode, which counts for the returns and the model alone.
+    """
     check_deterministic(tables)
     curve = new_curve(episodes)
     known = KnownValue(tables, model, explorer, discount)
+    task = perceived, strategy, explorer
+
+    def run(budget: int) -> int:
+        if search is None:
+            return explore(tables, model, *task, curve, max_steps, discount, budget)
+        return explore_by_sight(tables, model, *task, search, curve, max_steps, discount, budget)
+
     value, total, trace = 0.0, 0, []
     while value < THRESHOLD * optimal:
         if stop.is_set():
             raise Stopped
-        steps = explore(tables, model, perceived, strategy, explorer, curve, max_steps, discount, CHECK_EVERY)
+        steps = run(CHECK_EVERY if search is None else CHECK_EVERY_BY_SIGHT)
         if steps == 0:
             break
         total += steps
@@ -51,19 +71,31 @@ def live_model_task(
             value = known.exact()
         trace.append((total, value / optimal))
     reached = value >= THRESHOLD * optimal
-    episode, begun, running = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP]), explorer.running[0]
-    if begun:
-        curve.returns[episode], curve.steps[episode] = running, begun
+    collisions, begun = int(curve.collisions.sum()), _begun(explorer)
+    while search is not None and reached and explorer.cursor[STEP]:
+        run(1)
+    episode, step = int(explorer.cursor[EPISODE]), int(explorer.cursor[STEP])
+    if step:
+        curve.returns[episode], curve.steps[episode] = explorer.running[0], step
+    arrival = first_arrival(curve, episodes * max_steps)
+    if search is not None and search.found[FOUND_STEP] >= 0:
+        arrival = int(search.found[FOUND_STEP])
     return TaskResult(
         first_return=float(curve.returns[0]),
-        collisions=int(curve.collisions.sum()),
+        collisions=collisions,
         steps_to_80=total if reached else episodes * max_steps,
-        episodes_to_80=episode + int(begun > 0) if reached else episodes,
+        episodes_to_80=begun if reached else episodes,
         reached=bool(reached),
         final_return=known.exact(),
         policy=known_policy(model, explorer.place),
         best=best_known_actions(model, explorer.place),
         trace=np.array(trace, float).reshape(-1, 2),
-        curve=first_episodes(curve, episode + int(begun > 0)),
+        curve=first_episodes(curve, _begun(explorer)),
         complete=episode,
+        steps_to_goal=arrival,
     )
+
+
+def _begun(explorer: ModelLearner) -> int:
+    """Number of episodes that began, with the interrupted one."""
+    return int(explorer.cursor[EPISODE]) + int(explorer.cursor[STEP] > 0)

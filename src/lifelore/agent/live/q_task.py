@@ -4,7 +4,7 @@ from threading import Event
 
 import numpy as np
 
-from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult
+from lifelore.agent.live.task_result import CHECK_EVERY, THRESHOLD, Stopped, TaskResult, first_arrival
 from lifelore.core.learning.curve import EPISODE, STEP, first_episodes, new_curve
 from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn
 from lifelore.core.mdp import Tables
@@ -48,6 +48,7 @@ def live_q_task(
         trace=np.array(trace, float).reshape(-1, 2),
         curve=first_episodes(curve, episodes),
         complete=episodes,
+        steps_to_goal=first_arrival(curve, episodes * schedule.max_steps),
     )
 
 

@@ -5,7 +5,7 @@ import math
 from lifelore.core.learning.learning_metrics import jumpstart
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 
-MEASURES = ("steps_to_80", "collisions", "episodes_to_80", "first_return")
+MEASURES = ("steps_to_80", "steps_to_goal", "collisions", "episodes_to_80", "first_return")
 
 
 def plain(estimate: Estimate) -> dict:

@@ -171,7 +171,7 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
             left -= 1
             a = np.int64(plan[left])
         else:
-            a = _least_tried(tried, state, own)
+            a = least_tried(tried, state, own)
         following = np.int64(next_state[state, a, 0])
         reward = reward_of[state, a, 0]
         event = event_of[state, a, 0]
@@ -229,7 +229,8 @@ def _arrive(state, target, seen, percept, tried):
 
 
 @inlined
-def _least_tried(tried, state, random):
+def least_tried(tried, state, random):
+    """The move of a state that was made least often in this task; ties are drawn."""
     best, ties = 0, 0
     for a in range(tried.shape[1]):
         if tried[state, a] < tried[state, best]:

@@ -28,13 +28,14 @@ BENCHES = {
     "merge": "fleet",
     "capacity": "fleet",
     "recognition": "lives",
+    "lidar": "lives",
     "worlds": "lives",
     "contexts": "action",
     "deep_layouts": "action",
     "long_user": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
-WITH_MAP = ("courier", "recognition")
+WITH_MAP = ("courier", "recognition", "lidar")
 """Benchmarks that also take a ROS map."""
 
 
@@ -46,11 +47,11 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     name : str
         One of `BENCHES`.
     repeats : int
-        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier``: lives;
-        for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs of
-        learning.
+        Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
+        lives; for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs
+        of learning.
     map : str, optional
-        For ``courier`` and ``recognition``: a ROS map to live in; default generated offices.
+        For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
         Called as ``progress(done, total, label)`` after each piece.
 
