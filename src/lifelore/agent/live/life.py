@@ -7,14 +7,9 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
 from functools import cached_property
-from pathlib import Path
 from threading import Event
 
-import numpy as np
-
-from lifelore.action.priors.back_off import posterior_mean
-from lifelore.action.priors.exploration import prior_rows, try_costs
-from lifelore.agent.live.baselines import AGENTS, AgentKind, agents_for
+from lifelore.agent.live.baselines import AGENTS, agents_for
 from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.map_watch import MapWatch
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
@@ -23,22 +18,15 @@ from lifelore.agent.live.goals.own_places import OwnGoal, own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
 from lifelore.agent.live.lore import Lore, prior_scope
-from lifelore.agent.live.model_task import live_model_task
-from lifelore.agent.live.q_task import live_q_task
+from lifelore.agent.live.settings_document import path_text, settings_document
+from lifelore.agent.live.shared_task import SharedTask
 from lifelore.agent.live.sight import sight_lists
 from lifelore.agent.live.summary import summarise
 from lifelore.agent.live.task_result import Stopped, TaskResult
 from lifelore.agent.live.task_stream import TaskStream
 from lifelore.core.errors import InputError
-from lifelore.core.learning.known_world import unknown_world
-from lifelore.core.learning.model_learning import StateInfo, new_model_learner
-from lifelore.core.learning.q_learner import QLearning
-from lifelore.core.learning.q_learning import new_learner, uniform_rows
-from lifelore.core.learning.sight_search import new_sight_search
-from lifelore.core.mdp import Tables, Task
 from lifelore.core.planning.planning import mean_start_value, optimal_q
 from lifelore.core.protocols import Progress, Record
-from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import Floor, floor_of
 from lifelore.domains.buildings.occupancy_map import OccupancyMap
 from lifelore.domains.grids.grid_world import GridWorld
@@ -283,9 +271,9 @@ class _RunningLife:
                 f"discount must leave the goal of task {index} a positive value at its starts, "
                 f"got {task.domain.discount}; use a larger discount"
             )
-        shared = _SharedTask(self, task, tables, optimal, index, stop)
+        shared = SharedTask(self.settings, self.world, self.sight, self.stream, task, tables, optimal, index, stop)
         try:
-            futures = {name: pool.submit(shared.live, name) for name in self.names}
+            futures = {name: pool.submit(shared.live, AGENTS[name], self.lores[name]) for name in self.names}
             results = {name: future.result() for name, future in futures.items()}
         except BaseException:
             stop.set()
@@ -323,145 +311,18 @@ class _RunningLife:
         return [record for record in records if len(record.slots)]
 
 
-@dataclass(frozen=True)
-class _SharedTask:
-    """One task that every agent learns, on the same random streams."""
-
-    life: _RunningLife
-    task: Task
-    tables: Tables
-    optimal: float
-    index: int
-    stop: Event
-
-    def live(self, name: str) -> TaskResult:
-        kind, lore = AGENTS[name], self.life.lores[name]
-        if self.life.settings.learning.learner == "q":
-            return self._with_q(kind, lore)
-        return self._with_model(kind, lore)
-
-    def _with_model(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        settings, world, sight = self.life.settings, self.life.world, self.life.sight
-        if not kind.remembers:
-            lore.model = unknown_world(world.n_states, self.tables.n_actions)
-        explorer = new_model_learner(
-            world.n_states,
-            self.tables.n_actions,
-            self.life.stream.world_stream(self.index),
-            self.life.stream.own_stream(self.index),
-        )
-        return live_model_task(
-            self.tables,
-            self.optimal,
-            self.task.domain.discount,
-            lore.model,
-            self._perceived(kind, lore),
-            sight and new_sight_search(*sight, self.tables, lore.model),
-            kind.exploration_strategy,
-            explorer,
-            settings.episode_cap(world.n_states),
-            settings.step_cap,
-            self.stop,
-        )
-
-    def _perceived(self, kind: AgentKind, lore: Lore) -> StateInfo:
-        percepts = self.life.world.percepts
-        if not kind.uses_prior or self.life.settings.prior.condition == "none":
-            return StateInfo(percepts, np.zeros(len(percepts), np.int32), np.zeros((1, self.tables.n_actions)))
-        codes, row = np.unique(lore.scope.contexts, return_inverse=True)
-        probs = posterior_mean(lore.prior, codes, lore.scope.coarser)
-        return StateInfo(percepts, row.astype(np.int32), try_costs(probs))
-
-    def _with_q(self, kind: AgentKind, lore: Lore) -> TaskResult:
-        settings = self.life.settings
-        own = self.life.stream.own_stream(self.index)
-        rows = uniform_rows(self.tables)
-        if kind.uses_prior and settings.prior.condition != "none":
-            # A separate stream: a draw of the prior must not change the choices shared with the other agents.
-            drawn = stream(settings.seed, "task", self.index, "prior")
-            rows = prior_rows(
-                self.tables,
-                lore.scope.contexts,
-                lambda codes: lore.prior.probs(codes, settings.prior.form, generator=drawn),
-                settings.prior.ties,
-            )
-        method = QLearning(
-            settings.episode_cap(self.tables.n_states),
-            settings.step_cap,
-            settings.learning.learning_rate,
-            settings.learning.epsilon,
-            settings.learning.epsilon_decay,
-            settings.learning.epsilon_floor,
-        )
-        learner = new_learner(
-            self.tables.n_states, self.tables.n_actions, self.life.stream.world_stream(self.index), own
-        )
-        return live_q_task(
-            self.tables, self.optimal, rows, method.schedule(self.task.domain.discount), learner, self.stop
-        )
-
-
 def _report(settings: LifeSettings, life: _RunningLife, seconds: float) -> dict:
     world, place = life.world, life.place
     report = {
         "domain": settings.world.domain,
-        "map": _text(settings.world.map),
+        "map": path_text(settings.world.map),
         "n_states": world.n_states,
         "building": place.report,
         "seed": settings.seed,
-        "settings": _settings_document(settings, world, life.memory.location),
+        "settings": settings_document(settings, world, life.memory.location),
         "tasks": life.finished,
         "summary": summarise(life.finished) if life.finished else {},
         "memory": {"tasks_before": life.tasks_before, "tasks_after": life.memory.tasks(settings.memory.robot)},
         "seconds": round(seconds, 3),
     }
     return report | ({"map_changes": life.map_changes} if settings.watch else {})
-
-
-def _settings_document(settings: LifeSettings, world: GridWorld, location: str) -> dict:
-    """All settings in one flat dictionary, with the defaults of the world and the learner filled in."""
-    learning, prior = settings.learning, settings.prior
-    document = {
-        "domain": settings.world.domain,
-        "map": _text(settings.world.map),
-        "tasks": settings.n_tasks,
-        "cell": settings.world.cell,
-        "robot_radius": settings.world.robot_radius,
-        "destinations": settings.destinations,
-        "learner": learning.learner,
-        "prior": prior.condition,
-        "sensor": settings.sensor.kind,
-        "range": settings.sensor.reach,
-        "agent": settings.agent,
-        "robot": settings.memory.robot,
-        "start": settings.start,
-        "memory": location,
-        "episodes": settings.episode_cap(world.n_states),
-        "max_steps": settings.step_cap,
-        "seed": settings.seed,
-        "jobs": settings.jobs,
-        "density": settings.world.density,
-        "discount": world.discount,
-        "goal_reward": world.goal_reward,
-        "wall_reward": world.wall_reward,
-        "alpha0": prior.alpha0,
-        "weight": prior.weight,
-        "form": prior.form,
-        "ties": prior.ties,
-        "learning_rate": learning.learning_rate,
-        "epsilon": learning.epsilon,
-        "epsilon_decay": learning.epsilon_decay,
-        "epsilon_floor": learning.epsilon_floor,
-    }
-    optional = {
-        "goal": settings.goal,
-        "goals": len(settings.goals) or None,
-        "watch": settings.watch or None,
-        "size": settings.world.size,
-        "loops": settings.world.loops,
-    }
-    return document | {name: value for name, value in optional.items() if value is not None} | world.about
-
-
-def _text(path: str | Path | None) -> str | None:
-    return None if path is None else str(path)
