@@ -20,15 +20,8 @@ from lifelore.core.learning.known_world import (
     unknown_world,
 )
 from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, new_model_learner
-from lifelore.core.learning.sight_search import (
-    DRIVE,
-    SEARCH,
-    SHORTEN,
-    explore_by_sight,
-    new_sight_search,
-    places_on_sight,
-    plan_by_sight,
-)
+from lifelore.core.learning.sight_plan import DRIVE, SEARCH, SHORTEN, plan_by_sight
+from lifelore.core.learning.sight_search import explore_by_sight, new_sight_search, places_on_sight
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 from lifelore.core.streams import stream
 

@@ -19,12 +19,11 @@ from lifelore.core.compiled.random_state import uniform_integer
 from lifelore.core.learning.curve import DISCOUNT, EPISODE, GOALS, NEWS, PLAN_LENGTH, RETURN, STATE, STEP, TOTAL
 from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN, WorldModel
 from lifelore.core.learning.model_learning import ALL_NEW, least_tried
+from lifelore.core.learning.sight_plan import DRIVE, SEARCH, SHORTEN, plan_by_sight
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 FOUND_STEP, FOUND_EPISODE = 0, 1
 """Places in `SightSearch.found`."""
-SEARCH, DRIVE, SHORTEN = range(3)
-"""Purposes of a plan: find the goal, reach the goal seen in this episode, or reach it on a shorter path."""
 
 
 class SightSearch(NamedTuple):
@@ -193,63 +192,3 @@ def _count(state, new, change, begin, seen, gain):
     new[state] += change
     for k in range(begin[state], begin[state + 1]):
         gain[seen[k]] += change
-
-
-@kernel(allocates=False)
-def plan_by_sight(start, target, remembered, place, gain, purpose, plan, queue, parent, parent_action, random):
-    """Breadth-first search for the place to walk to; fills `plan`, returns its length or 0.
-
-    That place is the goal if the purpose is DRIVE and a known path leads there; the goal or a place never seen,
-    whichever is nearer, if it is SHORTEN; else the largest gain per step. A goal is also taken where no gain is
-    left. `parent` must be UNKNOWN everywhere, and is so again afterwards.
-    """
-    best, best_score, ties = -1, 0.0, 0
-    nearest, goal = -1, -1
-    head, tail, level_end, depth = 0, 1, 1, 1.0
-    queue[0] = start
-    parent[start] = start
-    while head < tail:
-        if head == level_end:
-            if nearest >= 0:
-                break
-            level_end, depth = tail, depth + 1.0
-        s = queue[head]
-        head += 1
-        if s != start and (place[s] == GOAL or place[s] == DEAD_END):
-            continue
-        for a in range(target.shape[1]):
-            t = target[s, a]
-            if t == UNKNOWN or parent[t] != UNKNOWN:
-                continue
-            parent[t] = s
-            parent_action[t] = a
-            queue[tail] = t
-            tail += 1
-            if place[t] == GOAL:
-                if goal < 0:
-                    goal = t
-                if purpose != SEARCH and (nearest < 0 or place[nearest] != GOAL):
-                    nearest = t
-            elif place[t] != DEAD_END:
-                if purpose == SHORTEN and nearest < 0 and place[t] == NOT_LOOKED and remembered[t] == UNKNOWN:
-                    nearest = t
-                score = gain[t] / depth
-                if score > best_score:
-                    best, best_score, ties = t, score, 1
-                elif score == best_score and score > 0.0:
-                    ties += 1
-                    if uniform_integer(random, ties) == 0:
-                        best = t
-    if nearest >= 0:
-        best = nearest
-    elif best < 0:
-        best = goal
-    length, s = 0, best
-    if best >= 0:
-        while s != start:
-            plan[length] = parent_action[s]
-            length += 1
-            s = parent[s]
-    for i in range(tail):
-        parent[queue[i]] = UNKNOWN
-    return np.int64(length)
