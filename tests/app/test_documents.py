@@ -35,8 +35,9 @@ def understand(command, arguments: list[str], name: str, typed: bool) -> list[st
         if not arguments:
             return []
         first, *rest = arguments
-        assert first in command.commands or first == "--help", f"'{name}' has no command '{first}'"
-        return [] if first == "--help" else [first, *understand(command.commands[first], rest, first, typed)]
+        own = {option for parameter in command.params for option in parameter.opts} | {"--help"}
+        assert first in command.commands or first in own, f"'{name}' has no command '{first}'"
+        return [] if first in own else [first, *understand(command.commands[first], rest, first, typed)]
     known = {option for parameter in command.params for option in parameter.opts} | {"--help"}
     assert {word.split("=")[0] for word in arguments if word.startswith("-")} <= known
     if typed:

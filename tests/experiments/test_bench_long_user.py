@@ -3,7 +3,8 @@
 import pytest
 
 from lifelore.agent.reuse.history import open_history, user_key
-from lifelore.experiments.bench import BENCHES, bench, long_user
+from lifelore.experiments.bench import BENCHES, bench
+from lifelore.experiments.bench.interaction import long_user
 from lifelore.memory import open_memory
 
 

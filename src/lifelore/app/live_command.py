@@ -1,5 +1,6 @@
 """`lifelore live`: live through a stream of tasks in one world."""
 
+import os
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -205,7 +206,7 @@ def _missing_folders(memory: str | None, out: str | None) -> list[Path]:
 
     place = locate(memory)
     folders = ([place.parent] if isinstance(place, Path) else []) + ([Path(out)] if out else [])
-    return [folder for folder in folders if not folder.exists()]
+    return [folder for folder in folders if not os.path.exists(folder)]  # also a name too long for a file
 
 
 def _map(map: str | None, watch: str | None) -> str | None:

@@ -33,7 +33,8 @@ def size_of_life(settings: LifeSettings, places: int) -> tuple[list[str], str | 
         words.append(f"about {_duration(seconds)} for {settings.n_tasks} tasks of {', '.join(names)}")
     if left_out:
         words.append(f"above {BIG:,} places scratch lives beside {agent} only with --compare")
-    advice = "a larger --cell" + (" or fewer agents" if len(names) > 1 else "")
+    smaller = ["a larger --cell"] if settings.world.domain == "building" else ["fewer tasks"]
+    advice = " or ".join(smaller + ["fewer agents"] * (len(names) > 1))
     return names, "; ".join(words) + f"; {advice} takes less"
 
 
