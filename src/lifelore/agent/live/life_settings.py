@@ -195,7 +195,7 @@ class LifeSettings:
     goal : (x, y) or str, or (row, column), optional
         Goal of every task; None: drawn.
     goals : tuple of Job
-        Buildings alone: the goals of the tasks in order, one task a job, see `read_jobs`.
+        Buildings alone: the goals of the tasks in order, one task a job, see ``goals.job_list.read_jobs``.
     watch : bool
         Read the map again between tasks when its files changed.
     jobs : int
