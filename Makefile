@@ -47,13 +47,13 @@ demo: setup ## The main job on embedded defaults; pictures in out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
 
 test: setup-test ## The tests, on all cores
-	$(PYTEST) -m "not soak"
+	$(PYTEST) -m "not soak" tests src/lifelore
 
 test-fast: setup-test ## The quick part of the tests: no claims, processes or pictures
 	$(PYTEST) -m "not soak and not slow"
 
 coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
-	$(PYTEST) -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
+	$(PYTEST) -m "not soak" tests src/lifelore --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
 
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
