@@ -46,7 +46,7 @@ $(BIN)/.test: $(BIN)/.core
 demo: setup ## The main job on embedded defaults; pictures in out/demo
 	$(BIN)/lifelore live --memory out/demo/lifelore.db --out out/demo
 
-test: setup-test ## The tests, on all cores
+test: setup-test ## The tests and the examples in docstrings, on all cores
 	$(PYTEST) -m "not soak" tests src/lifelore
 
 test-fast: setup-test ## The quick part of the tests: no claims, processes or pictures

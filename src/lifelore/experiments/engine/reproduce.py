@@ -54,7 +54,8 @@ def reproduce(
         same settings, seed and code takes them up.
     seed : int
     progress : callable, optional
-        ``progress(done, total, label)``, called from this thread as cells finish.
+        ``progress(done, total, label)``, called from this thread as cells finish; both count the cells of all
+        claims.
 
     Returns
     -------
@@ -77,7 +78,18 @@ def reproduce(
         raise InputError(f"jobs must be at least 1, got {jobs}")
     claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
     chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
-    return [_run(c, mode, settings, jobs, Path(out), seed, progress) for c, settings in chosen]
+    sizes = [len(claim.cells(settings)) for claim, settings in chosen]
+    results, before = [], 0
+    for (claim, settings), size in zip(chosen, sizes, strict=True):
+        shown = _part_of(progress, before, sum(sizes)) if progress else _silent
+        results.append(_run(claim, mode, settings, jobs, Path(out), seed, shown))
+        before += size
+    return results
+
+
+def _part_of(progress: Progress, before: int, total: int) -> Progress:
+    """Progress of one claim as a part of the cells of all claims."""
+    return lambda done, _, label: progress(before + done, total, label)
 
 
 def _cores() -> int:
@@ -89,7 +101,7 @@ def _run(claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: in
     code = source_key(claim.run_cell.__module__)
     key = {"claim": claim.id, "settings": settings, "seed": seed, "code": code}
     store = CellStore(out / claim.id / "cells", key)
-    kept = _run_cells(claim, settings, seed, store, jobs, progress or _silent)
+    kept = _run_cells(claim, settings, seed, store, jobs, progress)
     result = finish(claim, mode, settings, seed, kept)
     _write(claim, result, _folder(out / claim.id, mode))
     return result
