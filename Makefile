@@ -53,7 +53,7 @@ test-fast: setup-test ## The quick part of the tests: no claims, processes or pi
 	$(PYTEST) -m "not soak and not slow"
 
 coverage: setup-test ## The share of lines that the tests run; the lines in out/coverage
-	$(PYTEST) -m "not soak" tests src/lifelore --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered
+	$(PYTEST) -m "not soak" --cov=lifelore --cov-report=html:out/coverage --cov-report=term:skip-covered tests src/lifelore
 
 test-deep: $(DEEP)/.ready ## The tests of the extra deep (torch), in .venv-deep
 	$(DEEP)/bin/python -c "import torch, stable_baselines3, sb3_contrib, minigrid"
