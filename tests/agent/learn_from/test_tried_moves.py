@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.agent.learn_from.run_log import Run
-from lifelore.agent.learn_from.tried_moves import move_directions, tried_moves
+from lifelore.agent.learn_from.tried_moves import tried_moves
 from lifelore.domains.grids.grid_world import Frame, GridWorld
 
 FREE = np.array([[1, 1, 0], [1, 1, 1]], bool)
@@ -40,7 +40,7 @@ def test_states_at_is_the_inverse_of_positions(world):
 
 
 def test_moves_point_where_positions_lead(world):
-    for action, direction in enumerate(move_directions(world)):
+    for action, direction in enumerate(world.move_vectors):
         state = np.flatnonzero(world.neighbour[:, action] >= 0)[:1]
         step = world.positions(world.neighbour[state, action]) - world.positions(state)
         assert np.allclose(step[0], world.frame.cell * direction)

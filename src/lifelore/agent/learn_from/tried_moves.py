@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.learn_from.run_log import BUMP, Run
-from lifelore.domains.grids.grid_world import MOVES, GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 
 FARTHEST = 2.0
 """Cells: the longest straight piece between two poses; over a longer one the way of the robot is not known."""
@@ -92,17 +92,10 @@ def _bump(world: GridWorld, state: int, direction: NDArray | None, tried: TriedM
     if direction is None:
         tried.undirected += 1
         return
-    action = int(np.argmax(move_directions(world) @ direction))
+    action = int(np.argmax(world.move_vectors @ direction))
     if world.neighbour[state, action] >= 0:
         tried.new_obstacles.append((state, action))
     tried._add(state, action, state)
-
-
-def move_directions(world: GridWorld) -> NDArray[np.float64]:
-    """Unit vectors (n_actions, 2) of the moves, x and y in the frame of the map."""
-    yaw = world.frame.origin[2]
-    right, up = MOVES[:, 1], -MOVES[:, 0]
-    return np.column_stack([np.cos(yaw) * right - np.sin(yaw) * up, np.sin(yaw) * right + np.cos(yaw) * up])
 
 
 def _direction(run: Run, i: int) -> NDArray[np.float64] | None:

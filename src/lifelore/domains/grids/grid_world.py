@@ -60,6 +60,13 @@ class Frame:
     cell: float = 1.0
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
+    def metres(self, columns: ArrayLike, rows: ArrayLike) -> NDArray[np.float64]:
+        """World positions in metres, (n, 2) x and y, of points in cells; `rows` count upwards from the corner."""
+        x0, y0, yaw = self.origin
+        x, y = np.asarray(columns) * self.cell, np.asarray(rows) * self.cell
+        cos, sin = np.cos(yaw), np.sin(yaw)
+        return np.column_stack([x0 + cos * x - sin * y, y0 + sin * x + cos * y])
+
 
 @dataclass(frozen=True, eq=False)
 class GridWorld:
@@ -167,12 +174,15 @@ class GridWorld:
 
     def positions(self, states: NDArray[np.int32]) -> NDArray[np.float64]:
         """World positions in metres, (n, 2) x and y, of the centres of the states' cells."""
-        x0, y0, yaw = self.frame.origin
         rows, columns = self.cells[states].T
-        x = (columns + 0.5) * self.frame.cell
-        y = (self.shape[0] - rows - 0.5) * self.frame.cell
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        return np.column_stack([x0 + cos * x - sin * y, y0 + sin * x + cos * y])
+        return self.frame.metres(columns + 0.5, self.shape[0] - rows - 0.5)
+
+    @cached_property
+    def move_vectors(self) -> NDArray[np.float64]:
+        """Unit vectors (n_actions, 2) of the moves, x and y in the world."""
+        yaw = self.frame.origin[2]
+        right, up = MOVES[:, 1], -MOVES[:, 0]
+        return np.column_stack([np.cos(yaw) * right - np.sin(yaw) * up, np.sin(yaw) * right + np.cos(yaw) * up])
 
     def states_at(self, points: ArrayLike) -> NDArray[np.int32]:
         """The states (n,) int32 in whose cells `points` lie, (n, 2) x and y in metres; -1 where there is none."""

@@ -126,7 +126,4 @@ class RememberedMoves:
         """Centres (n, 2) in metres of the map's frame, of cells by index."""
         frame, number = self.world.frame, self.cells[index]
         from_bottom, column = number >> transitions.COLUMN_BITS, number & ((1 << transitions.COLUMN_BITS) - 1)
-        x0, y0, yaw = frame.origin
-        x, y = (column + 0.5) * frame.cell, (from_bottom + 0.5) * frame.cell
-        cos, sin = np.cos(yaw), np.sin(yaw)
-        return np.column_stack([x0 + cos * x - sin * y, y0 + sin * x + cos * y])
+        return frame.metres(column + 0.5, from_bottom + 0.5)

@@ -15,7 +15,7 @@ from lifelore.core.learning.known_world import WorldModel
 from lifelore.domains.buildings.floor import Floor
 from lifelore.domains.buildings.inflation import inflate
 from lifelore.domains.buildings.occupancy_map import FREE, OccupancyMap, write_occupancy_map
-from lifelore.domains.grids.grid_world import MOVES, GridWorld
+from lifelore.domains.grids.grid_world import GridWorld
 
 NO_OPINION, KEEP_OUT = 255, 100
 """Values of a mask: skipped by nav2's filters, and never entered."""
@@ -145,14 +145,11 @@ def write_directions(
     """
     states = np.flatnonzero(counted).astype(np.int32)
     points = world.positions(states) if floor is None else floor.metres(floor.anchors[states])
-    yaw = world.frame.origin[2]
-    right, up = MOVES[:, 1], -MOVES[:, 0]
-    vectors = np.column_stack([np.cos(yaw) * right - np.sin(yaw) * up, np.sin(yaw) * right + np.cos(yaw) * up])
     with path.open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["x", "y", "dx", "dy", "probability"])
         for state, (x, y) in zip(states, points, strict=True):
-            for (dx, dy), probability in zip(vectors, probs[state], strict=True):
+            for (dx, dy), probability in zip(world.move_vectors, probs[state], strict=True):
                 # Adding 0 turns -0.0 into 0.0.
                 row = (x, y, dx, dy, probability)
                 writer.writerow([f"{round(float(value), 4) + 0:.4f}" for value in row])

@@ -127,7 +127,7 @@ def bench_contexts(
                 "interquartile mean": interquartile_mean_estimate(values),
             }
             for kind, estimate in estimates.items():
-                told = estimate.to_dict()
+                found = estimate.to_dict()
                 entry = row(f"{words}, lore minus scratch, {kind}: {name}", estimate.value, "return")
-                rows.append(entry | {"ci95": told["ci95"], "n": estimate.n})
+                rows.append(entry | {"ci95": found["ci95"], "n": estimate.n})
     return {"rows": rows, "goals": [at_least("lives with each kind of context", LEAST_LIVES, repeats)]}
