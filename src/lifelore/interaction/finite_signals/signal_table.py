@@ -77,6 +77,18 @@ class SignalTable:
             table.conditional_entropy[policy] = 0 - _times_log(rows).sum(axis=1)
         return table
 
+    def copy(self) -> Self:
+        """A table of its own with the same numbers."""
+        table = type(self).__new__(type(self))
+        table.probs, table.conditional_entropy = self.probs.copy(), self.conditional_entropy.copy()
+        return table
+
+    def replace(self, policy: int, rows: NDArray[Any]) -> None:
+        """Put other rows (n_types, n_signals) in place of a policy's; types that were alike must stay so."""
+        self.probs[policy] = rows
+        _clean(self.probs[policy], policy)
+        self.conditional_entropy[policy] = 0 - _times_log(self.probs[policy]).sum(axis=1)
+
     @property
     def n_policies(self) -> int:
         return self.probs.shape[0]
