@@ -56,7 +56,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def _unseen(results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Learnt models, tasks never in training: regret and stuck tasks of rules that doubt, beside the best GP-UCB."""
+    """Learnt models, tasks never in training: rules that doubt their models beside the best GP-UCB."""
     best = best_gp(results, "headline")
     shown = [("best GP-UCB", best, "headline"), *((name, name, "uncertain, with unseen") for name in DOUBTING)]
     found, sums = {}, {}
