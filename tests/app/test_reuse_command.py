@@ -240,5 +240,5 @@ def test_choosing_and_updating_start_neither_compiler_nor_scipy(reuse, log, tmp_
         done = subprocess.run(command, capture_output=True, text=True, check=True)
         status, *imported = done.stderr.split()
         assert status == "0"
-        assert {"numpy", "sqlalchemy"} < set(imported)
+        assert {"numpy", "sqlite3"} < set(imported)
         assert {"numba", "scipy", "sklearn", "matplotlib", "networkx"} & set(imported) == set()

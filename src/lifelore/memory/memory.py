@@ -6,16 +6,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from sqlalchemy import URL, Connection, text
-
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import audit, cache, ledger, merging, overview
 from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
+from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import new_contribution
 from lifelore.memory.export import export
 from lifelore.memory.folding import fold
-from lifelore.memory.location import locate
+from lifelore.memory.location import Server, locate
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 
 NAMED = 10
@@ -174,9 +173,9 @@ class Memory:
 
     def tasks(self, robot: str) -> int:
         """Number of stored tasks of a robot; 0 for an unknown robot."""
-        count = text("SELECT COUNT(*) FROM lifelore_contributions WHERE robot = :robot")
+        count = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = ?"
         with self._store.reading() as conn:
-            return int(conn.execute(count, {"robot": robot}).scalar_one())
+            return int(conn.value(count, (robot,)))
 
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""
@@ -238,7 +237,9 @@ class Memory:
             union.finish()
         return counts
 
-    def _take(self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
+    def _take(
+        self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | Server"
+    ) -> dict[str, int]:
         if isinstance(place, Memory):
             if place.location == self.location:
                 return union.take(here, self.location)
