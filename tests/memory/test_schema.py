@@ -11,19 +11,18 @@ NOW = sorted(schema.MIGRATIONS)
 
 
 @pytest.fixture
-def first_schema(monkeypatch):
-    """Lifelore as it was before forgotten records and states: its tables, and how it writes."""
-    from lifelore.memory import cache, ledger
+def first_schema():
+    """A memory as Lifelore wrote it before forgotten records and states."""
 
     def make(where, fill):
-        with monkeypatch.context() as patch:
-            patch.setattr(schema, "LATEST", 1)
-            stamps = "SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions"
-            patch.setattr(ledger, "_LARGEST_STAMP", stamps)
-            patch.setattr(cache, "_SET_STATE", "SELECT :lore, :token, :state")
-            with open_memory(where) as memory:
-                fill(memory)
-                assert steps(memory) == [1]
+        with open_memory(where) as memory:
+            fill(memory)
+            with memory._store.writing() as conn:
+                conn.execute("DROP TABLE lifelore_forgotten_records")
+                for column in ("token", "state"):
+                    conn.execute(f"ALTER TABLE lifelore_lore DROP COLUMN {column}")
+                conn.execute("DELETE FROM lifelore_migrations WHERE number > 1")
+            assert steps(memory) == [1]
 
     return make
 
@@ -69,7 +68,7 @@ def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
     first_schema(where, fill)
     with open_memory(where) as memory:
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
-        assert memory.recall_state("prior", "b7", 1) == (0, None, {})
+        assert memory.recall_state("prior", "b7", 1) == (0, None, {}, None)
         assert memory.check() == []
 
 

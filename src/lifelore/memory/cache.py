@@ -2,11 +2,12 @@
 
 import json
 import secrets
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
@@ -43,8 +44,20 @@ _UPSERT = {
 _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
 _MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = ?"
 _NAMED = "kind = ? AND key = ? AND version = ?"
-_STATE = f"SELECT token, state, about FROM lifelore_lore WHERE {_NAMED}"
-_SET_STATE = "UPDATE lifelore_lore SET token = :token, state = :state WHERE number = :lore"
+_ADD = (
+    "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin, token, state)"
+    " VALUES (:kind, :key, :version, :merge, :about, :origin, :token, :first) ON CONFLICT (kind, key, version)"
+    " DO UPDATE SET about = excluded.about, origin = excluded.origin, token = excluded.token, state = {}"
+    " RETURNING number, merge"
+)
+_ADD_WITHOUT_STATE = _ADD.format("NULL")
+_ADD_WITH_STATE = _ADD.format("CASE WHEN lifelore_lore.token = :expected THEN :state END")
+_STATES = "SELECT kind, key, version, merge, token, state, about, NULL, NULL FROM lifelore_lore WHERE {}"
+_SLOTS = (
+    " UNION ALL SELECT NULL, NULL, NULL, NULL, NULL, NULL, NULL, slot, value FROM lifelore_cells"
+    f" WHERE lore = (SELECT number FROM lifelore_lore WHERE {_NAMED}) AND slot BETWEEN ? AND ?"
+)
+_FORGET_STATE = "UPDATE lifelore_lore SET token = ?, state = NULL WHERE number = ?"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
 
@@ -70,36 +83,80 @@ class StoredState(NamedTuple):
     token : another number after each change of the key's cells, whoever changes them
     content : bytes, or None where the last change brought no state
     about : the newest description of the key
+    record : with the slots that were asked for; None where none were
     """
 
     token: int
     content: bytes | None
     about: Mapping[str, Any]
+    record: Record | None = None
 
 
-def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
-    """Merge folded contributions into the cache; the ledger must hold them already.
+def add(conn: Connection, parts: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
+    """Merge the newest contribution into the cache; the ledger must hold it already.
 
     `state` is stored if nobody else has changed its key since it was computed.
     """
-    before = None if state is None else read_state(conn, state.name)
+    for name, part in sorted(parts.items()):
+        own = state if state is not None and state.name == name else None
+        note = {
+            **_noted(name, part),
+            "token": _new_token(),
+            "first": own.content if own is not None and own.token is None else None,
+        }
+        if own is None or own.token is None:
+            found = conn.first(_ADD_WITHOUT_STATE, note)
+        else:
+            found = conn.first(_ADD_WITH_STATE, note | {"expected": own.token, "state": own.content})
+        lore, merge = found  # pyright: ignore[reportGeneralTypeIssues] - an upsert without condition gives a row
+        require_one_merge(name, {merge, part.merge})
+        conn.execute(_MENTION, (part.origin, lore))
+        _write_cells(conn, lore, part)
+
+
+def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
+    """Merge folded contributions of any age into the cache, without states; the ledger must hold them already."""
     for name, part in sorted(folded.items()):
-        about = json.dumps(part.about, sort_keys=True)
-        conn.execute(_NOTE, {**_named(name), "merge": part.merge, "about": about, "origin": part.origin})
+        conn.execute(_NOTE, _noted(name, part))
         lore, merge, _ = conn.execute(_FIND, name).fetchone()
         require_one_merge(name, {merge, part.merge})
         conn.execute_many(_MENTION, [(number, lore) for number in part.mentions])
         _write_cells(conn, lore, part)
-        follows = state is not None and state.name == name and state.token == (before.token if before else None)
-        content = state.content if follows and state is not None else None
-        # Random, because a key that is deleted and written again must not get an earlier token again.
-        conn.execute(_SET_STATE, {"lore": lore, "token": secrets.randbits(62), "state": content})
+        conn.execute(_FORGET_STATE, (_new_token(), lore))
 
 
-def read_state(conn: Connection, name: LoreKey) -> StoredState | None:
-    """The state of a key; None when no contribution has the key."""
-    found = conn.first(_STATE, name)
-    return None if found is None else StoredState(found[0], found[1], json.loads(found[2]))
+def _noted(name: LoreKey, part: Folded) -> dict[str, Any]:
+    about = json.dumps(part.about, sort_keys=True)
+    return {**_named(name), "merge": part.merge, "about": about, "origin": part.origin}
+
+
+def _new_token() -> int:
+    """A random number, because a key that is deleted and written again must not get an earlier token again."""
+    return secrets.randbits(62)
+
+
+def read_states(
+    conn: Connection, names: Sequence[LoreKey], slots: tuple[int, int] | None = None
+) -> list[StoredState | None]:
+    """The states of keys, and the cells of the first key within `slots`; None where there is no key."""
+    sql, parameters = _STATES.format(" OR ".join([f"({_NAMED})"] * len(names))), list(chain.from_iterable(names))
+    if slots is not None:
+        sql, parameters = sql + _SLOTS, [*parameters, *names[0], *slots]
+    rows = conn.execute(sql, parameters).fetchall()
+    cells = [(slot, value) for *_, slot, value in rows if slot is not None]
+    found: dict[LoreKey, StoredState] = {}
+    for kind, key, version, merge, token, state, about, slot, _ in rows:
+        if slot is None:
+            name, described = (kind, key, version), json.loads(about)
+            wanted = slots is not None and name == names[0]
+            record = Record(*name, merge, *_columns(sorted(cells)), described) if wanted else None
+            found[name] = StoredState(token, state, described, record)
+    return [found.get(name) for name in names]
+
+
+def _columns(cells: Iterable[tuple[int, int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
+    return np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
 
 
 def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
@@ -124,10 +181,7 @@ def read(conn: Connection, name: LoreKey, within: tuple[int, int] = EVERY_SLOT) 
     if found is None:
         return None
     lore, merge, about = found
-    cells = conn.execute(_READ, (lore, *within))
-    table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
-    slots, values = np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
-    return Record(*name, merge, slots, values, json.loads(about))
+    return Record(*name, merge, *_columns(conn.execute(_READ, (lore, *within))), json.loads(about))
 
 
 def names(conn: Connection, kind: str) -> list[tuple[str, int, dict]]:

@@ -9,7 +9,7 @@ from typing import TypeVar
 from lifelore.core.errors import StoreError
 from lifelore.memory import schema
 from lifelore.memory.connection import Connection
-from lifelore.memory.contribution import Contribution, Identity, LoreKey, Order
+from lifelore.memory.contribution import Contribution, Identity, LoreKey, Offer, Order
 from lifelore.memory.folding import Stored
 from lifelore.memory.record_rules import LARGEST
 
@@ -31,6 +31,13 @@ _KNOWN = (
 _LARGEST_STAMP = (
     "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT stamp FROM lifelore_contributions"
     " UNION ALL SELECT stamp FROM lifelore_forgotten_records) AS stamps"
+)
+# The row is new and the newest; no row is inserted otherwise.
+_INSERT_NEWEST = (
+    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
+    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest"
+    f" WHERE :stamp > ({_LARGEST_STAMP}) AND NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
+    " ON CONFLICT (robot, process, seq) DO NOTHING RETURNING number"
 )
 _FORGET_RECORD = (
     "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
@@ -81,9 +88,15 @@ def next_stamp(conn: Connection) -> int:
     return max(time.time_ns(), int(largest) + 1)
 
 
-def insert(conn: Connection, contribution: Contribution) -> Stored:
-    """Insert one contribution."""
-    return Stored(int(conn.value(_INSERT + " RETURNING number", vars(contribution))), contribution)
+def insert(conn: Connection, offer: Offer) -> int | None:
+    """Insert a contribution as the newest; its row number, or None where it is stored already or was forgotten."""
+    found = conn.first(_INSERT_NEWEST, vars(offer.stamped(time.time_ns())))
+    if found is not None:
+        return int(found[0])
+    if is_known(conn, offer.identity):
+        return None
+    # A stamp in this memory is ahead of the clock.
+    return int(conn.value(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn)))))
 
 
 def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:

@@ -47,6 +47,12 @@ class Store:
             conn.execute("ROLLBACK")
 
     @contextmanager
+    def looking(self) -> Iterator[Connection]:
+        """A connection to read by a single statement, which is its own snapshot of the database."""
+        with one_line_refusals(self.location), self.pool.connection() as conn:
+            yield conn
+
+    @contextmanager
     def writing(self) -> Iterator[Connection]:
         """The only writing transaction; it is committed completely, or after an error not at all."""
         with one_line_refusals(self.location), self.pool.connection() as conn:

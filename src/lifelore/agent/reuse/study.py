@@ -14,7 +14,7 @@ from typing import Any, NoReturn
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
