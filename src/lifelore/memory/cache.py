@@ -15,6 +15,7 @@ from lifelore.memory import ledger
 from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
 
+_described = json.JSONEncoder(sort_keys=True).encode
 _ROWS_AT_ONCE = 10_000
 _FEW_ROWS = 16
 """Cells that are written by one statement; a statement of more would be too long for more speed."""
@@ -126,8 +127,7 @@ def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
 
 
 def _noted(name: LoreKey, part: Folded) -> dict[str, Any]:
-    about = json.dumps(part.about, sort_keys=True)
-    return {**_named(name), "merge": part.merge, "about": about, "origin": part.origin}
+    return {**_named(name), "merge": part.merge, "about": _described(part.about), "origin": part.origin}
 
 
 def _new_token() -> int:

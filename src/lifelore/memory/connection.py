@@ -4,7 +4,7 @@ The drivers are used directly: a library above them would need most of the time 
 """
 
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from functools import cache
 from typing import Any
@@ -20,23 +20,35 @@ class Connection:
     driver : sqlite3.Connection or psycopg.Connection
         Without transactions of its own.
     is_sqlite : bool
+
+    Attributes
+    ----------
+    statements : int
+        Number of statements so far, without those that begin and end transactions.
     """
 
     def __init__(self, driver: Any, *, is_sqlite: bool) -> None:
         self._driver = driver
         self.is_sqlite = is_sqlite
+        self.statements = 0
+
+    def control(self, sql: str) -> None:
+        """Begin or end a transaction."""
+        self._driver.execute(sql)
 
     def execute(self, sql: str, parameters: Parameters = ()) -> Any:
         """Run a statement; the cursor gives rows as tuples.
 
         Parameters are ``:name`` or ``?``. The text has no other colon or question mark.
         """
+        self.statements += 1
         if self.is_sqlite:
             return self._driver.execute(sql, parameters)
         return self._driver.execute(_for_psycopg(sql), parameters) if parameters else self._driver.execute(sql)
 
-    def execute_many(self, sql: str, rows: Iterable[Parameters]) -> None:
+    def execute_many(self, sql: str, rows: Sequence[Parameters]) -> None:
         """Run a statement once for each row of parameters."""
+        self.statements += len(rows)
         if self.is_sqlite:
             self._driver.executemany(sql, rows)
         else:
@@ -76,6 +88,12 @@ class Pool:
     def __init__(self, connect: Callable[[], Connection]) -> None:
         self._connect = connect
         self._waiting: list[Connection] = []
+        self._ended = 0
+
+    @property
+    def statements(self) -> int:
+        """Number of statements of all connections that are not in use now."""
+        return self._ended + sum(conn.statements for conn in self._waiting)
 
     @contextmanager
     def connection(self) -> Iterator[Connection]:
@@ -87,11 +105,15 @@ class Pool:
         try:
             yield conn
         except BaseException:
-            conn.close()
+            self._end(conn)
             raise
         self._waiting.append(conn)
 
     def close(self) -> None:
         """Close the waiting connections."""
         while self._waiting:
-            self._waiting.pop().close()
+            self._end(self._waiting.pop())
+
+    def _end(self, conn: Connection) -> None:
+        self._ended += conn.statements
+        conn.close()

@@ -42,9 +42,9 @@ class Store:
     def reading(self) -> Iterator[Connection]:
         """A transaction on a snapshot of the database, which never waits for writers."""
         with one_line_refusals(self.location), self.pool.connection() as conn:
-            conn.execute("BEGIN" if self.is_sqlite else "BEGIN ISOLATION LEVEL REPEATABLE READ")
+            conn.control("BEGIN" if self.is_sqlite else "BEGIN ISOLATION LEVEL REPEATABLE READ")
             yield conn
-            conn.execute("ROLLBACK")
+            conn.control("ROLLBACK")
 
     @contextmanager
     def looking(self) -> Iterator[Connection]:
@@ -57,13 +57,12 @@ class Store:
         """The only writing transaction; it is committed completely, or after an error not at all."""
         with one_line_refusals(self.location), self.pool.connection() as conn:
             if self.is_sqlite:
-                conn.execute("BEGIN IMMEDIATE")
+                conn.control("BEGIN IMMEDIATE")
             else:
-                conn.execute("BEGIN")
-                conn.execute(f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'")
-                conn.execute(f"SELECT pg_advisory_xact_lock({_WRITERS_LOCK})")
+                wait = f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'"
+                conn.control(f"BEGIN; {wait}; SELECT pg_advisory_xact_lock({_WRITERS_LOCK})")
             yield conn
-            conn.execute("COMMIT")
+            conn.control("COMMIT")
 
     def lies_at(self, place: Path | Server) -> bool:
         """Whether `place` is the location of this database."""
