@@ -164,7 +164,7 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
-    from lifelore.agent.reuse.log import read_outcome
+    from lifelore.agent.reuse.log_columns import read_outcome
     from lifelore.agent.reuse.one_user import update as updated
 
     value = read_outcome(outcome)

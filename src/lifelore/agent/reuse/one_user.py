@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
-from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
 from lifelore.agent.reuse.user_belief import UserBelief, open_belief
@@ -133,7 +133,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         The outcome is no finite number, none of the values a categorical library knows, or another one was taken.
     """
     key, number, attempt = parse_identifier(decision)
-    known = open_belief(memory, study, key)
+    known = open_belief(memory, study, key, number=number)
     found = known.find(memory, study, number, attempt)
     if found is None:
         raise NotFoundError(f"no decision {decision} in study '{study.name}': never made here, or forgotten")
@@ -148,7 +148,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         )  # fmt: skip
     if not taken:
         # The outcome was there before, or another process was faster.
-        known = open_belief(memory, study, key)
+        known = open_belief(memory, study, key, number=number)
         again, after = known.find(memory, study, number, attempt), known.state
         if again is None or again.decision.outcome != outcome:
             there = f"ended with {again.decision.outcome:g} already" if again else "was forgotten"

@@ -8,13 +8,13 @@ fit counts. Nothing of any single user is in here.
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
@@ -154,7 +154,7 @@ class Study:
 
         A larger share holds out the same users and more.
         """
-        return bool(stream(0, "reuse control", self.name, user).random() < self.control)
+        return _control_draw(self.name, user) < self.control
 
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
@@ -197,6 +197,13 @@ class Study:
             seq += 1
 
 
+@lru_cache(maxsize=10_000)
+def _control_draw(study: str, user: str) -> float:
+    """A number in [0, 1) that is the same for ever; users come again, so the last ones are stored."""
+    return stream(0, "reuse control", study, user).random()
+
+
+@lru_cache(maxsize=10_000)
 def policy_number(policy: str) -> int:
     """A number that stands for a policy's name in records, the same in every memory."""
     return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
