@@ -20,6 +20,7 @@ from lifelore.agent.reuse.user_belief import UserBelief, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.memory import KeyState, Memory
 
@@ -83,11 +84,12 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     head, user = known.state.head, known.history.user
     belief = study.algorithm.belief(head.log_belief)
     control = study.holds_out(user)
-    odds = _control_odds(study) if control else _odds(study, belief)
+    known_of_user = study.choice_for(head.task)
+    odds = _control_odds(study) if control else _odds(study, known_of_user, belief)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
-    expected = expected_utility(belief, study.choice_of.performance.mean)
+    expected = expected_utility(belief, known_of_user.performance.mean)
     answer = {
         "user": user,
         "policy": policy,
@@ -103,9 +105,9 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     return decision, answer
 
 
-def _odds(study: Study, belief: NDArray[np.float64]) -> _Odds:
+def _odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64]) -> _Odds:
     """What the rule does, and a share of anything."""
-    probs = study.selection.probabilities(study.choice_of, belief)
+    probs = study.selection.probabilities(library, belief)
     probs = (1 - study.explore) * probs + study.explore / len(probs)
     return _Odds(study.active, probs / probs.sum())
 

@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, decisions_in, read_decisions, slots_from
 from lifelore.agent.reuse.past import PastUser, index_name, read_past_user
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes, learn
+from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
+from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.memory import Memory
 
 NAMED_TYPE = 0.99
@@ -119,18 +120,20 @@ def open_belief(
 
 def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    log_belief, surprise = study.algorithm.start(prior_of(study, context, past)), 0.0
+    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past)), 0.0)
+    belief = WorkingBelief(study, prior)
     for policy, outcome in past.outcomes:
-        surprise += learn(study, log_belief, policy, outcome)
-    start = Checkpoint(0, log_belief, surprise)
+        belief.learn(policy, outcome)
+    start = belief.checkpoint(0)
     state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
     return state.after(study, decisions, start)
 
 
-def last_belief(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
-    """The belief after all decisions of a history, (n_types,)."""
-    state = replayed(study, history.context or past.context, past, history.decisions)
-    return study.algorithm.belief(state.head.log_belief)
+def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
+    """Expected outcome of each policy of the library after all decisions of a history, (n_policies,)."""
+    head = replayed(study, history.context or past.context, past, history.decisions).head
+    known = study.task(head.task) or study.library
+    return expected_utility(study.algorithm.belief(head.log_belief), known.performance.mean)
 
 
 def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:

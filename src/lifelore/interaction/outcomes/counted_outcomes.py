@@ -84,6 +84,10 @@ class CountedOutcomes:
             self._spread = Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
         return self._spread
 
+    @spread.setter
+    def spread(self, spread: Spread) -> None:
+        self._spread = spread
+
     def for_task(self) -> TaskCounts | None:
         """A model of one task, which its own outcomes change; None where all is known exactly."""
         return None if self.exact else TaskCounts(self, self.spread)
