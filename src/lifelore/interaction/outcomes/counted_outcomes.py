@@ -77,6 +77,10 @@ class CountedOutcomes:
         cell = int(self._cells(np.array([value], np.float64))[0])
         return None if cell < 0 else cell
 
+    def cells_of(self, values: Array) -> NDArray[np.int64]:
+        """The cells of outcomes (n,), -1 where an outcome has none."""
+        return self._cells(values)
+
     @property
     def spread(self) -> Spread:
         """How much the tasks of a type differ; estimated at the first call where it is not given."""

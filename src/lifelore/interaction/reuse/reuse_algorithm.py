@@ -28,6 +28,7 @@ from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.outcomes.batch_likelihood import batch_likelihood
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.task_step import learn
+from lifelore.interaction.reuse.user_outcomes import UserOutcomes
 from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule
 from lifelore.interaction.selection.choice import choose, tied_shares
 
@@ -175,7 +176,8 @@ class ReuseAlgorithm:
         users: Numbers,
         policies: Numbers,
         signals: Any,
-        select: Callable[[NDArray[Any]], Numbers] | None = None,
+        select: Callable[[NDArray[Any], slice], Numbers] | None = None,
+        outcomes: UserOutcomes | None = None,
     ) -> tuple[Array, Numbers]:
         """Learn from a signal for each of `users`, in blocks and in order, and select in the same pass.
 
@@ -188,7 +190,10 @@ class ReuseAlgorithm:
         signals : sequence of length k
             Numbers for returns, category numbers for categories.
         select : callable, optional
-            Beliefs of a block of users after the update, (m, n_types), to the policies to run next, (m,).
+            Beliefs of a block of users after the update, (m, n_types), and the users' places in `users` to the
+            policies to run next, (m,).
+        outcomes : UserOutcomes, optional
+            What the users have shown: likelihoods are then given that, and the signals are added to it.
 
         Returns
         -------
@@ -202,7 +207,7 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN. Blocks before that signal are updated.
         """
-        signals = self._likelihood.checked(signals)
+        signals = (self._likelihood if outcomes is None else outcomes.law).checked(signals)
         if not len(users) == len(policies) == len(signals):
             raise InputError(
                 f"users, policies and signals must be equally many, got {len(users)}, {len(policies)} and "
@@ -215,7 +220,10 @@ class ReuseAlgorithm:
         linear = np.empty_like(work, np.float32) if self.dtype == "f4" else None
         for at, own in blocks(users):
             here = len(own)
-            self._likelihood.write(policies[at], signals[at], work[:here])
+            if outcomes is None:
+                self._likelihood.write(policies[at], signals[at], work[:here])
+            else:
+                outcomes.write(own, policies[at], signals[at], work[:here])
             if linear is None:
                 (_loaded or _load()).bayes_users(log_beliefs, own, work[:here], log_evidence[at])
             else:
@@ -224,7 +232,7 @@ class ReuseAlgorithm:
                 log_beliefs[own] = self.dynamics.step(log_beliefs[own].astype(np.float64))
             if select is not None:
                 known = linear is not None and not self._changing
-                chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own))  # pyright: ignore
+                chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own), at)  # pyright: ignore
         return log_evidence, chosen
 
     def update_row(

@@ -281,7 +281,7 @@ def _size_goals(label: str, times: Rates) -> list[dict[str, Any]]:
 def _many_users(repeats: int, after: Callable[[str], None]) -> Result:
     """Users in random order: learn from the last outcome and select the next policy, in one pass."""
     case = Reserve(SIGNALS)
-    users = UserBeliefs(case.library, USERS, "f4")
+    users = UserBeliefs(case.library, USERS, "f4", models="plug-in")
     random = stream(0, "bench", "reuse", "users")
     contenders = {name: _serving(case, users, name, random) for name in ("sampling", "greedy")}
     if installed(MABWISER):
