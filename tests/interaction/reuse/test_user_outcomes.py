@@ -5,6 +5,7 @@ import pytest
 from scipy.special import gammaln
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -134,6 +135,33 @@ def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
     assert (utility[every, users.select(every, "greedy")] >= utility.max(axis=1) - 1e-3).all()
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_users_whose_types_change_agree_with_one_agent_a_user(kind, dtype):
+    model, random = library(kind), np.random.default_rng(0)
+    prior = np.linspace(1, 3, N_TYPES) / np.linspace(1, 3, N_TYPES).sum()
+    changing = TypeDynamics.hazard(0.05, prior)
+    users = UserBeliefs(model, 12, dtype, dynamics=changing)
+    agents = [BayesianPolicyReuse(model, Greedy(), dynamics=changing) for _ in range(12)]
+    for _ in range(12):
+        # A user comes more than once in a call: its signals are taken in turn.
+        who, policies = random.integers(0, 12, 30), random.integers(0, N_POLICIES, 30)
+        signals = drawn(kind, random, 30)
+        evidence = users.update(who, policies, signals)
+        for k, (user, policy, signal) in enumerate(
+            zip(who.tolist(), policies.tolist(), signals.tolist(), strict=True)
+        ):
+            agents[user].update(policy, signal)
+            assert evidence[k] == pytest.approx(agents[user]._evidence[-1].log_evidence, rel=1e-6, abs=1e-4)
+        one_by_one = np.array([agent.belief for agent in agents])
+        assert users.belief(np.arange(12)) == pytest.approx(one_by_one, abs=10 * BELIEF[dtype])
+    stated = users.probabilities(np.arange(12), "sampling")
+    for user, agent in enumerate(agents):
+        agent.rule = RULES["sampling"]()
+        assert stated[user] == pytest.approx(agent.probabilities(), abs=100 * BELIEF[dtype])
+
+
 @pytest.mark.parametrize("kind", ["gaussian", "categorical"])
 def test_sampling_follows_the_stated_probabilities(kind):
     model, random = library(kind), np.random.default_rng(2)
@@ -180,10 +208,12 @@ def test_ten_tried_policies_of_sixty_eight_take_less_than_600_bytes():
 
 
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
-@pytest.mark.parametrize("kind", ["gaussian", "partly exact", "histogram"])
+@pytest.mark.parametrize("kind", ["gaussian", "partly exact", "histogram", "changing"])
 def test_a_million_hostile_outcomes_leave_beliefs(kind, dtype):
-    random, n = np.random.default_rng(0), 1000
-    users, every = UserBeliefs(library(kind), n, dtype), np.arange(n)
+    random, n, dynamics = np.random.default_rng(0), 1000, TypeDynamics.static()
+    if kind == "changing":
+        kind, dynamics = "gaussian", TypeDynamics.hazard(0.002, np.full(N_TYPES, 1 / N_TYPES))
+    users, every = UserBeliefs(library(kind), n, dtype, dynamics=dynamics), np.arange(n)
     rounds = 1000 if kind == "gaussian" else 100
     for turn in range(rounds):
         size = 10.0 ** random.uniform(-320, 100, n)

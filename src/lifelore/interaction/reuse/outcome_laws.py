@@ -79,11 +79,9 @@ class NormalLaw:
     spread : float
     groups : int
         Groups of `n_slots` numbers in a chunk.
-    faded : int
-        The group that counts less, beside the first, when a user's past fades; 0 where there is none.
     """
 
-    groups, faded = 3, 2
+    groups = 3
 
     def __init__(self, moments: OutcomeMoments, spread: float) -> None:
         self.spread = spread
@@ -113,12 +111,22 @@ class NormalLaw:
         """Finite numbers (k,)."""
         return finite_signals(signals)
 
-    def write(self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, out: Array) -> None:
+    def write(
+        self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, out: Array, adds: bool = True
+    ) -> None:
         """Write log densities (k, n_types) given what each user has shown, and add the signals, in order."""
         _kernels().student_rows(
-            users, policies, signals, *shown, self._centre, self._doubt, self._weight, self._half, self._narrow,
-            self._top, self._alike, out,
+            adds, users, policies, signals, *shown, self._centre, self._doubt, self._weight, self._half,
+            self._narrow, self._top, self._alike, out,
         )  # fmt: skip
+
+    def write_new(self, policies: Numbers, signals: Array, out: Array) -> None:
+        """Write log densities (k, n_types) of users who have shown nothing."""
+        _kernels().new_student_rows(policies, signals, self._centre, self._half, self._narrow, self._top, out)
+
+    def add(self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, keeps: Array) -> None:
+        """Let what each user has shown count `keeps` (k,) of what it did, then add a signal; nothing where NaN."""
+        _kernels().add_moments(users, policies, signals, keeps, *shown)
 
     def tried(self, shown: Shown, users: Numbers) -> Tried:
         """The policies that `users` tried."""
@@ -145,7 +153,7 @@ class NormalLaw:
 class CountedLaw:
     """The law of histogram and categorical outcomes; see `NormalLaw`."""
 
-    groups, faded = 1, 0
+    groups = 1
 
     def __init__(self, model: CountedOutcomes, spread: float) -> None:
         self.spread, self._model = spread, model
@@ -170,10 +178,24 @@ class CountedLaw:
         """Finite numbers (k,)."""
         return finite_signals(signals)
 
-    def write(self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, out: Array) -> None:
+    def write(
+        self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, out: Array, adds: bool = True
+    ) -> None:
         """Write log densities (k, n_types) given what each user has shown, and add the signals, in order."""
         cells = self._model.cells_of(signals)
-        _kernels().counted_rows(users, policies, cells, *shown, self._prior, self._totals, self._log_sizes, out)
+        _kernels().counted_rows(
+            adds, users, policies, cells, *shown, self._prior, self._totals, self._log_sizes, out
+        )
+
+    def write_new(self, policies: Numbers, signals: Array, out: Array) -> None:
+        """Write log densities (k, n_types) of users who have shown nothing."""
+        cells = self._model.cells_of(signals)
+        _kernels().new_counted_rows(policies, cells, self._prior, self._totals, self._log_sizes, out)
+
+    def add(self, shown: Shown, users: Numbers, policies: Numbers, signals: Array, keeps: Array) -> None:
+        """Let what each user has shown count `keeps` (k,) of what it did, then add a signal; nothing where NaN."""
+        cells = self._model.cells_of(signals)
+        _kernels().add_counts(users, policies, cells, keeps, len(self._means), *shown)
 
     def tried(self, shown: Shown, users: Numbers) -> Tried:
         """The policies that `users` tried."""

@@ -38,7 +38,7 @@ def _touched(users, first, heads, whole):
     for k in range(first, min(first + _AHEAD, users.shape[0])):
         chunk = heads[users[k]]
         while chunk >= 0:
-            total += whole[chunk, 0] + whole[chunk, 16] + whole[chunk, NEXT]
+            total ^= whole[chunk, 0] ^ whole[chunk, WORDS]
             chunk = whole[chunk, NEXT]
     return total
 
@@ -92,20 +92,16 @@ def give_back(users, heads, sizes, whole, state):
         heads[user], sizes[user] = -1, 0
 
 
-@kernel
-def fade(users, heads, real, whole, keep, n, second):
-    """Let what `users` (k,) have shown count `keep` of what it did: the first n numbers of a chunk, and n others.
-
-    second : first of the others; 0 where there are none
-    """
-    for k in range(users.shape[0]):
-        chunk = heads[users[k]]
-        while chunk >= 0:
-            for j in range(n):
-                real[chunk, j] *= keep
-                if second > 0:
-                    real[chunk, second + j] *= keep
-            chunk = whole[chunk, NEXT]
+@inlined
+def _fade(head, real, whole, keep, n, second):
+    """Multiply the first n numbers of a user's chunks by `keep`, and the n from `second` on if that is not 0."""
+    chunk = head
+    while chunk >= 0:
+        for j in range(n):
+            real[chunk, j] *= keep
+            if second > 0:
+                real[chunk, second + j] *= keep
+        chunk = whole[chunk, NEXT]
 
 
 # ---- moments: Student's t ----------------------------------------------------------------------------------
@@ -169,12 +165,43 @@ def _alike_row(value, count, average, squares, centre, doubt, weight, half, out)
         out[i] = top - 0.5 * plain_log(scale) - (y + 0.5) * plain_log1p(ratio)
 
 
+@inlined
+def _add_moment(user, policy, value, chunk, place, heads, sizes, real, whole, state):
+    """Add an outcome of a policy whose slot is found already; chunk -1: the policy is new to the user."""
+    if chunk < 0:
+        chunk, place = _new_place(user, policy, _POLICIES, SLOTS, heads, sizes, whole, state)
+        for first in range(0, 3 * SLOTS, SLOTS):
+            real[chunk, first + place] = 0.0
+    count, average = real[chunk, place] + 1.0, real[chunk, _MEANS + place]
+    gap = value - average
+    average += gap / count
+    real[chunk, place], real[chunk, _MEANS + place] = count, average
+    real[chunk, _SQUARES + place] += gap * (value - average)
+
+
 @kernel
 def student_rows(
-    users, policies, values, heads, sizes, real, whole, state, centre, doubt, weight, half, narrow, top, alike, out
+    adds,
+    users,
+    policies,
+    values,
+    heads,
+    sizes,
+    real,
+    whole,
+    state,
+    centre,
+    doubt,
+    weight,
+    half,
+    narrow,
+    top,
+    alike,
+    out,
 ):
     """Write log densities of outcomes given what each user has shown, and add the outcomes; in order.
 
+    adds : bool, False: the outcomes are not added, see `add_moments`
     users, policies : (k,) int64
     values : (k,) float64, at most 1e100 in size
     heads, sizes : (n_users,) int32; real, whole, state: see the module; room for k more chunks
@@ -188,26 +215,43 @@ def student_rows(
     ahead = 0
     for k in range(users.shape[0]):
         if k % _AHEAD == 0:
-            ahead += _touched(users, k, heads, whole)
+            ahead ^= _touched(users, k, heads, whole)
         user, policy, value, row = users[k], policies[k], values[k], out[k]
         m0, i0, a0, h0 = centre[policy], doubt[policy], weight[policy], half[policy]
         chunk, place = _place_of(policy, heads[user], _POLICIES, SLOTS, whole)
         if chunk < 0:
             _new_row(value, m0, h0, narrow[policy], top[policy], row)
-            chunk, place = _new_place(user, policy, _POLICIES, SLOTS, heads, sizes, whole, state)
-            real[chunk, place], real[chunk, _MEANS + place], real[chunk, _SQUARES + place] = 1.0, value, 0.0
-            continue
-        count, average = real[chunk, place], real[chunk, _MEANS + place]
-        squares = real[chunk, _SQUARES + place]
-        if alike[policy]:
-            _alike_row(value, count, average, squares, m0, i0[0], a0, h0[0], row)
         else:
-            _tried_row(value, count, average, squares, m0, i0, a0, h0, row)
-        gap = value - average
-        average += gap / (count + 1.0)
-        real[chunk, place], real[chunk, _MEANS + place] = count + 1.0, average
-        real[chunk, _SQUARES + place] = squares + gap * (value - average)
+            count, average = real[chunk, place], real[chunk, _MEANS + place]
+            squares = real[chunk, _SQUARES + place]
+            if alike[policy]:
+                _alike_row(value, count, average, squares, m0, i0[0], a0, h0[0], row)
+            else:
+                _tried_row(value, count, average, squares, m0, i0, a0, h0, row)
+        if adds:
+            _add_moment(user, policy, value, chunk, place, heads, sizes, real, whole, state)
     return ahead
+
+
+@kernel
+def new_student_rows(policies, values, centre, half, narrow, top, out):
+    """Write log densities of outcomes of users who have shown nothing; arguments as in `student_rows`."""
+    for k in range(policies.shape[0]):
+        j = policies[k]
+        _new_row(values[k], centre[j], half[j], narrow[j], top[j], out[k])
+
+
+@kernel
+def add_moments(users, policies, values, keeps, heads, sizes, real, whole, state):
+    """Let what each user has shown count `keeps` (k,) of what it did, then add an outcome; nothing where NaN."""
+    for k in range(users.shape[0]):
+        if not 0.0 <= keeps[k] <= 1.0:
+            continue
+        user, policy = users[k], policies[k]
+        if keeps[k] < 1.0:
+            _fade(heads[user], real, whole, keeps[k], SLOTS, _SQUARES)
+        chunk, place = _place_of(policy, heads[user], _POLICIES, SLOTS, whole)
+        _add_moment(user, policy, values[k], chunk, place, heads, sizes, real, whole, state)
 
 
 @kernel
@@ -235,10 +279,28 @@ def tried_moments(users, heads, sizes, real, whole, starts, policies, counts, av
 # ---- counts: Dirichlet -------------------------------------------------------------------------------------
 
 
+@inlined
+def _counted_row(prior, totals, seen, total, log_size, out):
+    """Log density of a cell seen `seen` times among `total`; minus infinity where it is impossible."""
+    for i in range(out.shape[0]):
+        share = np.divide(prior[i] + seen, totals[i] + total)
+        out[i] = plain_log(share) - log_size if share > 0 else -np.inf
+
+
+@inlined
+def _add_count(user, key, heads, sizes, real, whole, state):
+    chunk, place = _place_of(key, heads[user], _KEYS, CELLS, whole)
+    if chunk < 0:
+        chunk, place = _new_place(user, key, _KEYS, CELLS, heads, sizes, whole, state)
+        real[chunk, place] = 0.0
+    real[chunk, place] += 1.0
+
+
 @kernel
-def counted_rows(users, policies, cells, heads, sizes, real, whole, state, prior, totals, log_sizes, out):
+def counted_rows(adds, users, policies, cells, heads, sizes, real, whole, state, prior, totals, log_sizes, out):
     """Write log densities of cells given the cells that each user has shown, and add them; in order.
 
+    adds : bool, False: the cells are not added, see `add_counts`
     cells : (k,) int64, -1 for an outcome in no cell, which is impossible and is not added
     prior : (n_policies, n_cells, n_types) float64, counts of the library
     totals : (n_policies, n_types) float64, their sums
@@ -249,30 +311,47 @@ def counted_rows(users, policies, cells, heads, sizes, real, whole, state, prior
     n_cells, ahead = prior.shape[1], 0
     for k in range(users.shape[0]):
         if k % _AHEAD == 0:
-            ahead += _touched(users, k, heads, whole)
+            ahead ^= _touched(users, k, heads, whole)
         user, policy, cell, row = users[k], policies[k], cells[k], out[k]
         if cell < 0:
             row[:] = -np.inf
             continue
         key = policy * n_cells + cell
-        found, place, seen, total = -1, 0, 0.0, 0.0
+        seen, total = 0.0, 0.0
         chunk = heads[user]
         while chunk >= 0:
             for j in range(CELLS):
                 other = whole[chunk, _KEYS + j]
                 if other >= 0 and other // n_cells == policy:
                     total += real[chunk, j]
-                    if other == key:
-                        found, place, seen = chunk, j, real[chunk, j]
+                    seen += real[chunk, j] if other == key else 0.0
             chunk = whole[chunk, NEXT]
-        own, sums, shift = prior[policy, cell], totals[policy], log_sizes[cell]
-        for i in range(row.shape[0]):
-            share = np.divide(own[i] + seen, sums[i] + total)
-            row[i] = plain_log(share) - shift if share > 0 else -np.inf
-        if found < 0:
-            found, place = _new_place(user, key, _KEYS, CELLS, heads, sizes, whole, state)
-        real[found, place] = seen + 1.0
+        _counted_row(prior[policy, cell], totals[policy], seen, total, log_sizes[cell], row)
+        if adds and row.max() > -np.inf:
+            _add_count(user, key, heads, sizes, real, whole, state)
     return ahead
+
+
+@kernel
+def new_counted_rows(policies, cells, prior, totals, log_sizes, out):
+    """Write log densities of cells of users who have shown nothing; arguments as in `counted_rows`."""
+    for k in range(policies.shape[0]):
+        j, cell = policies[k], cells[k]
+        if cell < 0:
+            out[k] = -np.inf
+        else:
+            _counted_row(prior[j, cell], totals[j], 0.0, 0.0, log_sizes[cell], out[k])
+
+
+@kernel
+def add_counts(users, policies, cells, keeps, n_cells, heads, sizes, real, whole, state):
+    """As `add_moments`, for cells; -1 adds nothing."""
+    for k in range(users.shape[0]):
+        if cells[k] < 0 or not 0.0 <= keeps[k] <= 1.0:
+            continue
+        if keeps[k] < 1.0:
+            _fade(heads[users[k]], real, whole, keeps[k], CELLS, 0)
+        _add_count(users[k], policies[k] * n_cells + cells[k], heads, sizes, real, whole, state)
 
 
 @kernel

@@ -52,10 +52,18 @@ class UserOutcomes:
         """The policies that `users` tried."""
         return self.law.tried(self._shown(), users)
 
-    def fade(self, users: Numbers, keep: float) -> None:
-        """Let what distinct `users` have shown count `keep` of what it did: their types may have changed."""
-        n, second = self.law.n_slots, self.law.faded * self.law.n_slots
-        _kernels().fade(users, self._heads, self._real, self._shown().whole, keep, n, second)
+    def predict(self, users: Numbers, policies: Numbers, signals: Any, out: Array, new: Array) -> None:
+        """Write log densities (k, n_types) of checked signals, into `new` those of users who showed nothing."""
+        self.law.write(self._shown(), users, policies, signals, out, adds=False)
+        self.law.write_new(policies, signals, new)
+
+    def add(self, users: Numbers, policies: Numbers, signals: Any, keeps: Array) -> None:
+        """Add checked signals of distinct users, after what they have shown counts `keeps` (k,) of what it did.
+
+        Where `keeps` is NaN, nothing changes.
+        """
+        self._reserve(len(users))
+        self.law.add(self._shown(), users, policies, signals, keeps)
 
     def slots(self, user: int) -> tuple[Numbers, Array]:
         """The keys (m,) and numbers (m, groups) of what a single user has shown; see `OutcomeLaw.task`."""
