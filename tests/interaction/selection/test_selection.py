@@ -132,16 +132,16 @@ def test_expected_entropy_two_ways(seed, n_types, n_signals):
 def test_the_kernels_by_hand():
     probs = np.array([[[1.0, 0.0], [0.5, 0.5]], [[0.0, 1.0], [0.25, 0.75]]])
     mixed = np.empty((2, 2))
-    mixtures(np.array([0.2, 0.8]), np.array([0, 1]), probs, mixed)
+    mixtures(np.array([0.2, 0.8]), np.array([0, 1]), np.array([0, 1]), probs, mixed)
     assert mixed == pytest.approx(np.array([[0.6, 0.4], [0.2, 0.8]]))
-    mixtures(np.array([1.0]), np.array([1]), probs, mixed)
+    mixtures(np.array([1.0]), np.array([1]), np.array([0, 1]), probs, mixed)
     assert mixed == pytest.approx(probs[:, 1])
     best = np.empty(2)
     # Two candidates worth 1 on their own type: the larger joint of each signal, summed.
     alone, both = np.array([[0, 1], [0, 1]], np.int32), np.array([2, 2])
-    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), alone, both, probs, best)
+    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), alone, both, np.array([0, 1]), probs, best)
     assert best == pytest.approx([max(0.2, 0.4) + 0.4, max(0.0, 0.2) + max(0.2, 0.6)])
-    best_after_signals(np.array([[0.0, 3.0]]), np.array([1]), alone, both, probs, best)
+    best_after_signals(np.array([[0.0, 3.0]]), np.array([1]), alone, both, np.array([0, 1]), probs, best)
     assert best == pytest.approx([3.0, 3.0])
 
 
@@ -187,10 +187,10 @@ def test_mixtures_of_any_number_of_types(seed, n_kept):
     random = np.random.default_rng(seed)
     probs, kept = random.dirichlet(np.ones(5), (3, 13)), np.sort(random.permutation(13)[:n_kept])
     share, mixed = random.dirichlet(np.ones(n_kept)), np.empty((3, 5))
-    mixtures(share, kept, probs, mixed)
+    mixtures(share, kept, np.arange(3), probs, mixed)
     assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
     apart = np.tile(np.arange(13, dtype=np.int32), (3, 1))
-    class_mixtures(share, kept, apart, probs, mixed)
+    class_mixtures(share, kept, apart, np.arange(3), probs, mixed)
     assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
 
 

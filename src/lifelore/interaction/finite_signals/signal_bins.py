@@ -58,7 +58,7 @@ def informative_cuts(outcomes: _Outcomes, policy: int, n_bins: int) -> Array:
     cuts = _fine_cuts(outcomes.mean[some, policy], outcomes.deviation[some, policy])
     below = outcomes.cumulative(policy, cuts, some)
     fine = np.maximum(np.diff(below, axis=1, prepend=0.0, append=1.0), 0.0)
-    return cuts[_ends(fine, n_bins)[:-1] - 1]
+    return cuts[ends_of_joined(fine, n_bins)[:-1] - 1]
 
 
 def check_bins(n_bins: int) -> None:
@@ -69,11 +69,11 @@ def check_bins(n_bins: int) -> None:
 
 def joined_bins(fine: Array, n_bins: int) -> Array:
     """`fine` (n_types, n) with neighbours joined until at most `n_bins` columns are left; rows keep their sums."""
-    ends = _ends(fine, n_bins)
+    ends = ends_of_joined(fine, n_bins)
     return np.add.reduceat(fine, np.concatenate([[0], ends[:-1]]), axis=1)
 
 
-def _ends(fine: Array, n_bins: int) -> NDArray[np.int64]:
+def ends_of_joined(fine: Array, n_bins: int) -> NDArray[np.int64]:
     """One past the last column of each joined bin."""
     if fine.shape[1] <= n_bins:
         return np.arange(1, fine.shape[1] + 1)

@@ -1,8 +1,8 @@
 """Selection rules: which policy to run next under a belief over types (thesis §4.5).
 
 Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
-the rules that look ahead share: `support`, `type_classes`, `information`. `belief_program` computes the exact
-optimum.
+the rules that look ahead share: `support`, `type_classes`, `information`. How they decide quickly: `exact_best`,
+`signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact optimum.
 """
 
 from lifelore.core.errors import NotFoundError
