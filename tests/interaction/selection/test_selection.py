@@ -41,6 +41,7 @@ EVERY_RULE = [
     *(rule() for rule in RULES.values()),
     BeliefEntropy(variant="thesis"),
     ExpectedImprovement("thesis"),
+    ExpectedImprovement(of="outcome"),
     KnowledgeGradient("thesis"),
     KnowledgeGradient(candidates="all", mass=1.0),
     ProbabilityOfImprovement(variant="thesis"),
@@ -80,7 +81,8 @@ def test_every_rule_agrees_with_its_plain_twin(seed):
     b = belief.tolist()
     now = naive.utilities(b, mean)
     assert Greedy().scores(library, belief) == pytest.approx(now)
-    assert ExpectedImprovement().scores(library, belief) == pytest.approx(
+    assert ExpectedImprovement().scores(library, belief) == pytest.approx(naive.mean_improvement(b, mean))
+    assert ExpectedImprovement(of="outcome").scores(library, belief) == pytest.approx(
         naive.expected_improvement(b, mean, deviation), rel=1e-6, abs=1e-7
     )
     top = max(max(row) for weight, row in zip(b, mean, strict=True) if weight > 0)
@@ -207,6 +209,48 @@ def test_the_knowledge_gradient_pays_for_a_perfect_signal():
     assert choose(rule.scores(library, flat, episodes_left=2), np.random.default_rng(0)) == 2
     assert choose(rule.scores(library, flat, episodes_left=0), np.random.default_rng(0)) in (0, 1)
     assert mutual_information(flat, library.table()) == pytest.approx([0.0, 0.0, math.log(2)])
+
+
+def test_improvement_of_the_pay_by_hand():
+    # Now policy 0 is best, with 8. It pays 2 more on type 0; policy 1 pays 12 more on type 1.
+    library = PolicyLibrary.from_means([[10.0, 0.0], [2.0, 20.0]], [[1.0, 500.0], [30.0, 7.0]])
+    belief = np.array([0.75, 0.25])
+    assert ExpectedImprovement().scores(library, belief).tolist() == [1.5, 3.0]
+    # Noise changes nothing of it, unlike of the improvement of the outcome.
+    loud = PolicyLibrary.from_means(library.performance.mean, 1e4)
+    assert ExpectedImprovement().scores(loud, belief).tolist() == [1.5, 3.0]
+    assert ExpectedImprovement(of="outcome").scores(loud, belief).min() > 1e3
+
+
+@pytest.mark.parametrize("noise", [1.0, 1e3])
+def test_without_an_improvement_of_the_pay_selection_is_greedy(noise):
+    mean = np.array([[3.0, 7.0, 7.0, 1.0], [7.0, 7.0, 2.0, 0.0], [90.0, 5.0, 0.0, 90.0]])
+    library = PolicyLibrary.from_means(mean, noise * np.arange(1, 13.0).reshape(3, 4))
+    rule = ExpectedImprovement()
+    # A certain type; two types with one best policy; a better type that is all but ruled out.
+    none = np.array([[1.0, 0, 0], [0, 1.0, 0], [0.4, 0.6, 0], [1 - 1e-12, 0, 1e-12]])
+    some = np.array([0.5, 0.0, 0.5])
+    rows = np.stack([none[0], some, none[1], some, none[2], none[3]])
+    shares = rule.probabilities(library, rows)
+    assert np.array_equal(shares[[0, 2, 4, 5]], Greedy().probabilities(library, none))
+    assert shares[0].tolist() == [0, 0.5, 0.5, 0]
+    assert shares[4].tolist() == [0, 1, 0, 0]
+    for row, share in zip(rows, shares, strict=True):
+        assert np.array_equal(rule.probabilities(library, row), share)
+    # Where a pay can improve, the score is the improvement: here policies 0 and 3 on type 2 alone.
+    best = 0.5 * 3 + 0.5 * 90
+    assert rule.scores(library, some).tolist() == [0.5 * (90 - best), 0, 0, 0.5 * (90 - best)]
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 6))
+def test_a_known_type_gets_its_best_policy_whatever_the_noise(seed, n_types):
+    random = np.random.default_rng(seed)
+    mean = random.normal(scale=10, size=(n_types, 5)) + random.choice([0.0, 1e6])
+    library = PolicyLibrary.from_means(mean, np.exp(random.normal(scale=3, size=mean.shape)))
+    for type_ in range(n_types):
+        shares = ExpectedImprovement().probabilities(library, np.eye(n_types)[type_])
+        assert shares[mean[type_].argmax()] == 1
 
 
 def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
@@ -382,6 +426,7 @@ def test_a_flat_belief_over_symmetric_types_ties_all_policies():
     [
         (lambda: EpsilonGreedy(1.2), "epsilon must lie in"),
         (lambda: ExpectedImprovement("printed"), "variant must be"),
+        (lambda: ExpectedImprovement(of="reward"), "of must be 'pay'"),
         (lambda: ProbabilityOfImprovement(target=math.nan), "target must be finite"),
         (lambda: ProbabilityOfImprovement(margin=0.0), "margin must be positive"),
         (lambda: BeliefEntropy(kappa=-1.0), "kappa must be at least 0"),

@@ -68,7 +68,7 @@ class Reserve:
         """The rules whose loops are measured beside them."""
         n = self.n_signals
         return {
-            "expected improvement": ExpectedImprovement(),
+            "expected improvement": ExpectedImprovement(of="outcome"),
             "belief entropy": BeliefEntropy(n_bins=n),
             "information-directed": InformationDirected(n_bins=n),
             "knowledge gradient": KnowledgeGradient(n_bins=n),
