@@ -93,8 +93,9 @@ def test_every_rule_agrees_with_its_plain_twin(seed):
     scores = BeliefEntropy(kappa=40.0, mass=1.0).scores(library, belief)
     assert scores - 40 * entropy(belief) == pytest.approx(naive.belief_entropy(b, mean, laws, 40.0))
     gained = np.array(naive.knowledge_gain(b, mean, laws))
-    scores = KnowledgeGradient(mass=1.0, candidates="all").scores(library, belief, episodes_left=7)
-    assert scores == pytest.approx(now + 7 * gained, abs=1e-9)
+    for candidates in ("auto", "all"):
+        scores = KnowledgeGradient(mass=1.0, candidates=candidates).scores(library, belief, episodes_left=7)
+        assert scores == pytest.approx(now + 7 * gained, abs=1e-9)
     ratio = naive.information_ratio(b, mean, laws)
     assert InformationDirected(mass=1.0).scores(library, belief) ** 2 == pytest.approx(ratio, rel=1e-5)
 
@@ -265,6 +266,24 @@ def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
     assert knowledge_gain(belief, mean, table)[4] == pytest.approx(0.98 * 10 + 0.02 * 8 - 9.8)
     assert knowledge_gain(belief, mean, table, candidates="responses")[4] == pytest.approx(0.02 * 5)
     assert responses(mean, belief).tolist() == [0, 1, 2]
+
+
+def test_small_libraries_consider_all_policies_and_large_ones_the_best_responses(monkeypatch):
+    # Types, policies, signals: 7 · 9² · 6 products.
+    wrong = 0
+    for seed in range(60):
+        library, belief = problem(seed, 7, 9, 6)
+        mean, table = library.performance.mean, library.table()
+        exact = np.array(naive.knowledge_gain(belief.tolist(), mean.tolist(), table.probs.tolist()))
+        own = responses(mean[belief > 0], belief[belief > 0]).tolist()
+        shortcut = naive.knowledge_gain(belief.tolist(), mean.tolist(), table.probs.tolist(), own)
+        monkeypatch.setattr("lifelore.interaction.selection.knowledge_gradient.LARGEST_EXACT", 7 * 9**2 * 6)
+        assert knowledge_gain(belief, mean, table, 1.0, "auto") == pytest.approx(exact, abs=1e-9)
+        monkeypatch.setattr("lifelore.interaction.selection.knowledge_gradient.LARGEST_EXACT", 7 * 9**2 * 6 - 1)
+        assert knowledge_gain(belief, mean, table, 1.0, "auto") == pytest.approx(shortcut, abs=1e-9)
+        wrong += bool((np.abs(exact - shortcut) > 1e-6).any())
+    # The shortcut leaves out policies that are second best on many types: in most of these libraries some score.
+    assert wrong > 10
 
 
 def test_epsilon_greedy_and_sampling_select_as_often_as_they_say():

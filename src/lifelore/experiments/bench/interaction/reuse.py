@@ -259,7 +259,7 @@ def _works(case: LargeReserve) -> dict[str, Callable]:
         "expected improvement": ExpectedImprovement(of="outcome"),
         "belief entropy": BeliefEntropy(n_bins=n),
         "information-directed": InformationDirected(n_bins=n),
-        "knowledge gradient": KnowledgeGradient(n_bins=n),
+        "knowledge gradient": KnowledgeGradient(n_bins=n, candidates="responses"),
     }
     for name, rule in rules.items():
         if case.size <= DENSE_GRADIENT or name != "knowledge gradient":

@@ -71,7 +71,7 @@ class Reserve:
             "expected improvement": ExpectedImprovement(of="outcome"),
             "belief entropy": BeliefEntropy(n_bins=n),
             "information-directed": InformationDirected(n_bins=n),
-            "knowledge gradient": KnowledgeGradient(n_bins=n),
+            "knowledge gradient": KnowledgeGradient(n_bins=n, candidates="responses"),
         }
 
     def looped(self, name: str) -> Array:

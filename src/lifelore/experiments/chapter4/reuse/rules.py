@@ -19,7 +19,7 @@ STANDARD: dict[str, SelectionRule] = {
     "PI": ProbabilityOfImprovement(),
     "EI": ExpectedImprovement(of="outcome"),
     "BE": BeliefEntropy(),
-    "KG": KnowledgeGradient(),
+    "KG": KnowledgeGradient(candidates="responses"),
     "IDS": InformationDirected(),
 }
 """EI improves the outcome; ε as in the thesis; κ of BE is the range of mean pays; IDS is not in the thesis."""
