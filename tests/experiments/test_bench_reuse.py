@@ -54,7 +54,7 @@ def test_loops_give_the_rules_own_scores(monkeypatch):
     scores = KnowledgeGradient(n_bins=6, mass=1.0).scores(library, belief, episodes_left=HORIZON)
     assert case.looped("knowledge gradient") == pytest.approx(scores, rel=1e-9)
     monkeypatch.setattr(reuse_loops, "POINTS", 10)
-    scores = ExpectedImprovement().scores(library, belief)
+    scores = ExpectedImprovement(of="outcome").scores(library, belief)
     assert case.looped("expected improvement") == pytest.approx(scores, rel=0.03, abs=0.03 * scores.max())
     assert flat is library.prior
 

@@ -75,7 +75,7 @@ class BayesianPolicyReuse:
         seed: int | np.random.Generator = 0,
     ) -> None:
         self.library = library
-        self.rule: SelectionRule = rule or ExpectedImprovement()
+        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
         self.algorithm = ReuseAlgorithm(library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0

@@ -5,6 +5,9 @@ the rules that look ahead share: `support`, `type_classes`, `information`. How t
 `signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact optimum.
 """
 
+from collections.abc import Mapping
+from typing import Any
+
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
@@ -32,10 +35,16 @@ RULES: dict[str, type] = {
 }
 """Every rule by the name that sessions and the command line use."""
 
+BEFORE: dict[str, dict[str, Any]] = {
+    "expected-improvement": {"of": "outcome"},
+    "knowledge-gradient": {"candidates": "responses"},
+}
+"""Settings that rules had before they could be chosen or before their defaults changed, for files without them."""
+
 __all__ = [
     "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule", "choose",
-    "rule_named", "tied_shares",
+    "restored_rule", "rule_named", "tied_shares",
 ]  # fmt: skip
 
 
@@ -50,3 +59,14 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
+
+
+def restored_rule(name: str, settings: Mapping[str, Any]) -> SelectionRule:
+    """The rule that was saved with these settings; a setting that is missing has the value that it had then.
+
+    Examples
+    --------
+    >>> restored_rule("expected-improvement", {"variant": "standard"})
+    ExpectedImprovement(variant='standard', of='outcome')
+    """
+    return rule_named(name, **{**BEFORE.get(name, {}), **settings})

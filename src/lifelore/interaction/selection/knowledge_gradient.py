@@ -23,7 +23,11 @@ from lifelore.interaction.selection.rule import Array, Deterministic, Variant, c
 from lifelore.interaction.selection.signal_rows import MOST_NUMBERS, signal_rows
 from lifelore.interaction.selection.support import MASS, check_mass, supported_types
 
-Candidates = Literal["responses", "all"]
+Candidates = Literal["auto", "responses", "all"]
+
+LARGEST_EXACT = 1 << 22
+"""Number of products n_types n_policies² n_signals up to which "auto" considers all policies; more costs time: at
+this number a decision takes 0.3 ms, beside 0.2 ms with the best responses alone."""
 
 LEAST_EXACT = 32
 """Least number of policies whose gain is computed exactly in large tables; more costs time and misses less."""
@@ -44,10 +48,11 @@ class KnowledgeGradient(Deterministic):
         Number of bins of real-valued signals.
     lookahead : float
         Value of K − t where the agent has no horizon; ≥ 0.
-    candidates : {"responses", "all"}
+    candidates : {"auto", "responses", "all"}
         Policies considered as the next choice: the best responses to the types of the support and the policy that
         is best now, or all policies. Only "all" considers a policy that is best on no type but second best on
-        many.
+        many. "auto" considers all policies of a small library (see `LARGEST_EXACT`) and the best responses in a
+        larger library.
 
     Raises
     ------
@@ -59,7 +64,7 @@ class KnowledgeGradient(Deterministic):
     mass: float = MASS
     n_bins: int = 8
     lookahead: float = 50.0
-    candidates: Candidates = "responses"
+    candidates: Candidates = "auto"
     name: ClassVar[str] = "knowledge-gradient"
 
     def __post_init__(self) -> None:
@@ -67,8 +72,8 @@ class KnowledgeGradient(Deterministic):
         check_mass(self.mass)
         if not (self.lookahead >= 0 and np.isfinite(self.lookahead)):
             raise InputError(f"lookahead must be at least 0, got {self.lookahead}")
-        if self.candidates not in ("responses", "all"):
-            raise InputError(f"candidates must be 'responses' or 'all', got {self.candidates!r}")
+        if self.candidates not in ("auto", "responses", "all"):
+            raise InputError(f"candidates must be 'auto', 'responses' or 'all', got {self.candidates!r}")
 
     def scores(
         self, library: PolicyLibrary, belief: Array, *, episodes_left: float | None = None, **_: Any
@@ -93,12 +98,13 @@ def knowledge_gain(
     table : SignalTable
     mass : float
         Share of the belief that is used.
-    candidates : {"responses", "all"}
+    candidates : {"auto", "responses", "all"}
         As for `KnowledgeGradient`.
     """
+    every = _considers_all(candidates, table)
 
     def gain_of(belief: Array) -> Array:
-        support, weighted_means = _weighted_means(belief, mean, mass, candidates)
+        support, weighted_means = _weighted_means(belief, mean, mass, every)
         return exact_gain(np.arange(table.n_policies), support, weighted_means, table)
 
     rows = np.asarray(belief, np.float64)
@@ -129,7 +135,7 @@ def knowledge_scores(
     utility, rows = expected_utility(belief, mean), signal_rows(table) if belief.ndim == 1 else None
     if belief.ndim > 1 or (rows is None and table.probs.size <= MOST_NUMBERS):
         return utility + weight * knowledge_gain(belief, mean, table, mass, candidates)
-    support, weighted_means = _weighted_means(belief, mean, mass, candidates)
+    support, weighted_means = _weighted_means(belief, mean, mass, _considers_all(candidates, table))
 
     def exact(policies: NDArray[np.int64]) -> Array:
         return utility[policies] + weight * exact_gain(policies, support, weighted_means, table)
@@ -141,17 +147,20 @@ def knowledge_scores(
         scores[best] = exact(best)
         return scores
     gain, error = rounded_gain(support, weighted_means, rows)
-    scores = utility + weight * gain
-    return exact_best(scores, float(scores.max()) - 2 * weight * error, exact)
+    upper = utility + weight * (gain + error)
+    return exact_best(upper, float(upper.max()) - 2 * weight * error, exact)
 
 
-def _weighted_means(
-    belief: Array, mean: Array, mass: float, candidates: Candidates
-) -> tuple[NDArray[np.int64], Array]:
+def _considers_all(candidates: Candidates, table: SignalTable) -> bool:
+    products = table.n_types * table.n_policies**2 * table.n_signals
+    return candidates == "all" or (candidates == "auto" and products <= LARGEST_EXACT)
+
+
+def _weighted_means(belief: Array, mean: Array, mass: float, every: bool) -> tuple[NDArray[np.int64], Array]:
     """The support of a belief, and its shares times the means of the candidates, (k, n_candidates)."""
     support, share = supported_types(belief, mass)
     means = mean[support] if len(support) < len(belief) else mean
-    if candidates == "responses":
+    if not every:
         best = responses(means, share)
         means = means[:, best] if len(best) < means.shape[1] else means
     return support, np.ascontiguousarray(means * share[:, None])

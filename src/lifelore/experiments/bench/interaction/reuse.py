@@ -176,7 +176,7 @@ def _methods(case: Reserve) -> dict[str, Callable[[int], Player]]:
 
         return make
 
-    methods = {EI: reuse(ExpectedImprovement()), SAMPLING: reuse(BeliefSampling())}
+    methods = {EI: reuse(ExpectedImprovement(of="outcome")), SAMPLING: reuse(BeliefSampling())}
     if installed(MABWISER):
         average = case.mean.mean(axis=0)
         methods[UCB1] = lambda number: mabwiser_ucb1(average, ALPHAS["as it comes"])
@@ -256,10 +256,10 @@ def _works(case: LargeReserve) -> dict[str, Callable]:
     works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
     rules: dict[str, SelectionRule] = {
         "greedy": Greedy(),
-        "expected improvement": ExpectedImprovement(),
+        "expected improvement": ExpectedImprovement(of="outcome"),
         "belief entropy": BeliefEntropy(n_bins=n),
         "information-directed": InformationDirected(n_bins=n),
-        "knowledge gradient": KnowledgeGradient(n_bins=n),
+        "knowledge gradient": KnowledgeGradient(n_bins=n, candidates="responses"),
     }
     for name, rule in rules.items():
         if case.size <= DENSE_GRADIENT or name != "knowledge gradient":
