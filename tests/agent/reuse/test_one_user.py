@@ -72,7 +72,7 @@ def test_the_same_seed_chooses_the_same_and_another_need_not(memory, tmp_path):
 
 
 def test_the_belief_is_that_of_policy_reuse_bit_for_bit_in_whatever_order_outcomes_come(memory):
-    study, agent = study_of(), BayesianPolicyReuse(study_of().library)
+    study, agent = study_of(), BayesianPolicyReuse(study_of().library, models="plug-in")
     generator = np.random.default_rng(0)
     made = [choose(memory, study, "ann") for _ in range(12)]
     outcomes = generator.normal(4, 3, 12)
@@ -85,7 +85,7 @@ def test_the_belief_is_that_of_policy_reuse_bit_for_bit_in_whatever_order_outcom
 
 def test_types_that_change_are_followed(memory):
     study = study_of(change=0.1)
-    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
     for outcome in (8.0, 7.0, 1.0, 2.0):
         made = choose(memory, study, "ann")
         update(memory, study, made["decision"], outcome)
@@ -290,7 +290,7 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         there = {history.identifier(one): one.outcome for one in history.decisions}
         assert all(decision in there for _, decision in told)
         assert all(there[decision] is not None for what, decision in told if what == "ended")
-        agent = BayesianPolicyReuse(study.library)
+        agent = BayesianPolicyReuse(study.library, models="plug-in")
         for one in history.decisions:
             if one.outcome is not None:
                 agent.update(one.policy, one.outcome)

@@ -51,7 +51,7 @@ def stored(memory, user="ann"):
 
 def naive(study, decisions):
     """The slow twin: an agent that takes in every decision in its order."""
-    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
     for one in decisions:
         if one.outcome is None or one.policy not in study.library.policies:
             agent.skip()

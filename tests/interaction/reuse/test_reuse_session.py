@@ -119,7 +119,7 @@ def test_a_session_of_an_earlier_lifelore_improves_the_outcome():
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 1"),
+        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 2"),
         (lambda h, a: h.update(format="else"), "another kind of file"),
         (lambda h, a: h.update(rule="best"), "rule must be one of"),
         (lambda h, a: h.update(settings={"wish": 1}), "wish"),

@@ -58,7 +58,7 @@ def drawn(model: PolicyLibrary, random: np.random.Generator, n: int):
 def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
     model, random = library(kind), np.random.default_rng(0)
     users = UserBeliefs(model, 40, dtype)
-    agents = [BayesianPolicyReuse(model) for _ in range(40)]
+    agents = [BayesianPolicyReuse(model, models="plug-in") for _ in range(40)]
     for _ in range(15):
         who, policies = random.integers(0, 40, 60), random.integers(0, N_POLICIES, 60)
         signals = drawn(model, random, 60)
@@ -124,7 +124,7 @@ def test_a_user_may_come_twice_across_and_within_blocks():
     policies, signals = random.integers(0, N_POLICIES, n), drawn(model, random, n)
     users = UserBeliefs(model, 3, "f8")
     users.update(np.ones(n, int), policies, signals)
-    agent = BayesianPolicyReuse(model)
+    agent = BayesianPolicyReuse(model, models="plug-in")
     for policy, signal in zip(policies.tolist(), signals.tolist(), strict=True):
         agent.update(policy, signal)
     assert users.log_belief[1] == pytest.approx(agent.log_belief, rel=1e-9, abs=1e-9)
@@ -211,7 +211,7 @@ def test_a_library_that_learns_is_taken_anew():
         model.observe(0, 0, 9.0)
     users.refresh()
     users.update([0], [0], [9.0])
-    agent = BayesianPolicyReuse(model)
+    agent = BayesianPolicyReuse(model, models="plug-in")
     agent.update(0, 9.0)
     assert users.belief([0])[0] == pytest.approx(agent.belief, abs=1e-12)
     assert users.select([0], "greedy").tolist() == [agent.expected_utility().argmax()]
@@ -373,7 +373,7 @@ def test_evidence_below_the_range_of_numbers_is_not_that_of_the_impossible():
     said = {0: [-1.7e308, 0.0], 1: [-1.7e308, -np.inf]}
     signal = LikelihoodSignal(lambda policy, x: said[int(x)], 2)
     model = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=signal)
-    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model)
+    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model, models="plug-in")
     for x in (0, 1):
         evidence = users.update([0], [0], [x])
         agent.update(0, x)

@@ -48,12 +48,17 @@ def large(monkeypatch):
     monkeypatch.setattr(knowledge_gradient, "EXACT_WORK", 0)
 
 
-def learnt(random, n_types=7, n_policies=5, n_signals=6, kind=np.float64):
+def learnt(random, n_types, n_policies, n_signals, kind: type = np.float64):
     """Means, and a table in which no two types are alike and some signals nearly impossible."""
     probs = random.dirichlet(np.full(n_signals, 0.2), (n_policies, n_types)) + 1e-12
     probs[random.random(probs.shape) < 0.1] = 2e-9
     probs /= probs.sum(axis=2, keepdims=True)
     return random.normal(scale=30, size=(n_types, n_policies)), SignalTable(probs.astype(kind))
+
+
+def any_size(random):
+    n_types, n_policies, n_signals = random.integers((1, 1, 2), (12, 12, 9))
+    return learnt(random, n_types, n_policies, n_signals)
 
 
 def beliefs(random, n_types):
@@ -75,7 +80,7 @@ def library_of(mean, table):
 @given(seeds, st.sampled_from([MASS, 1.0]))
 def test_rules_choose_as_by_exact_scores_in_float32_and_by_tangents(seed, mass):
     random = np.random.default_rng(seed)
-    mean, table = learnt(random, *random.integers(1, 12, 2), random.integers(2, 9))
+    mean, table = any_size(random)
     library, belief = library_of(mean, table), beliefs(random, len(mean))
     rules = [BeliefEntropy(mass=mass), InformationDirected(mass=mass)]
     exact = [rule.scores(library, belief[None])[0] for rule in rules]
@@ -102,7 +107,7 @@ def assert_same_choice(found, exact):
 @given(seeds, st.sampled_from([MASS, 1.0]), st.sampled_from(["all", "responses"]))
 def test_knowledge_gradients_in_float32_choose_as_exact_ones(seed, mass, candidates):
     random = np.random.default_rng(seed)
-    mean, table = learnt(random, *random.integers(1, 12, 2), random.integers(2, 9))
+    mean, table = any_size(random)
     belief, weight = beliefs(random, len(mean)), float(random.choice([0.0, 1.0, 50.0]))
     exact = belief @ mean + weight * knowledge_gain(belief, mean, table, mass, candidates)
     with pytest.MonkeyPatch.context() as patch:
@@ -148,7 +153,7 @@ def test_policies_that_are_alike_tie(single):
 @given(seeds, st.sampled_from([MASS, 1.0]))
 def test_bounds_hold(seed, mass):
     random = np.random.default_rng(seed)
-    mean, table = learnt(random, *random.integers(1, 12, 2), random.integers(2, 9))
+    mean, table = any_size(random)
     belief = beliefs(random, len(mean))
     support, share = supported_types(belief, mass)
     rows = signal_rows.SignalRows(
@@ -228,6 +233,29 @@ def test_the_gradient_of_a_large_table_is_exact_where_it_matters(large, monkeypa
     assert knowledge_scores(belief, mean, table, 9.0, MASS) == pytest.approx(exact, abs=1e-8)
 
 
+@pytest.mark.parametrize("size", ["single", "large"])
+def test_rows_that_a_task_replaces_are_seen(size, request):
+    request.getfixturevalue(size)
+    random = np.random.default_rng(7)
+    mean, table = learnt(random, 9, 6, 10)
+    _, other = learnt(random, 9, 6, 10)
+    changed = table.copy()
+    belief = random.dirichlet(np.ones(9))
+
+    def scores(of):
+        found = information_bounds.scores_by_information(belief, of, MASS, lambda known, some: known)
+        return np.array([found, knowledge_scores(belief, mean, of, 3.0, MASS)])
+
+    first = scores(changed)
+    assert np.array_equal(first, scores(table))
+    changed.replace(2, other.probs[2].copy())
+    changed.replace(4, other.probs[4].copy())
+    fresh = SignalTable.restored(changed.probs.copy())
+    assert np.array_equal(scores(changed), scores(fresh))
+    assert not np.array_equal(scores(changed), first)
+    assert np.array_equal(scores(table), first)
+
+
 # ---- odd tables and beliefs ----------------------------------------------------------------------------------
 
 
@@ -253,7 +281,7 @@ def test_means_of_any_size_and_beliefs_near_zero(single, scale):
     with np.errstate(under="ignore"):
         exact = belief @ mean + 5 * knowledge_gain(belief, mean, table)
         found = knowledge_scores(belief, mean * scale, table, 5.0)
-    assert found / scale == pytest.approx(exact, abs=1e-4)
+    assert found / scale == pytest.approx(exact, abs=1e-3)
     assert np.isfinite(BeliefEntropy(mass=1.0).scores(library_of(mean, table), belief)).all()
 
 

@@ -1,7 +1,6 @@
-"""Base of outcome models by mean and variance, and the distribution functions of the normal and of Student's t."""
+"""Base of outcome models by mean and variance."""
 
 from collections.abc import Sequence
-from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -19,6 +18,8 @@ from lifelore.interaction.outcomes.outcome_model import (
     rows_of_samples,
 )
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.outcomes.task_normals import TaskNormals, spread_of
 
 Array = NDArray[np.float64]
 
@@ -78,6 +79,19 @@ class MomentOutcomes:
     @property
     def n_policies(self) -> int:
         return self.mean.shape[1]
+
+    @property
+    def spread(self) -> Spread:
+        """How much the tasks of a type differ; estimated at the first call where it is not given."""
+        if self.moments.spread is None:
+            self.moments.spread = spread_of(self.moments)
+        return self.moments.spread
+
+    def for_task(self) -> TaskNormals | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly."""
+        if np.isinf(self.moments.count).all() and not self.spread.values.any():
+            return None
+        return TaskNormals(self.moments, self.spread)
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
@@ -149,28 +163,3 @@ class MomentOutcomes:
     def _renew(self, type_: int, policy: int) -> None:
         """Compute the derived arrays again for a pair."""
         raise NotImplementedError
-
-
-# SciPy is imported at the first call: a choice by stored tables needs none of these functions.
-
-
-def ndtr(z: Any) -> Any:
-    """Distribution function of the standard normal."""
-    return _special().ndtr(z)
-
-
-def stdtr(freedom: Any, t: Any) -> Any:
-    """Distribution function of Student's t."""
-    return _special().stdtr(freedom, t)
-
-
-def gammaln(x: Any) -> Any:
-    """Logarithm of the gamma function's absolute value."""
-    return _special().gammaln(x)
-
-
-@cache
-def _special() -> Any:
-    from scipy import special
-
-    return special

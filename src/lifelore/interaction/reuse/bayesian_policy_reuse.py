@@ -8,7 +8,7 @@ signal is from. Signals may come late, in any order, or not at all. Thesis: §4.
 """
 
 from collections import deque
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.explanation import (
     MAX_EVIDENCE,
     Evidence,
@@ -30,6 +31,7 @@ from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import ExpectedImprovement, SelectionRule
 
 Array = NDArray[np.float64]
+Models = Literal["uncertain", "plug-in"]
 
 
 class BayesianPolicyReuse:
@@ -38,7 +40,8 @@ class BayesianPolicyReuse:
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied: the agent uses what the library's models learn in place.
+        Not copied. With plug-in models the agent uses what the library's models learn in place; with uncertain
+        models it reads them once, at its start.
     rule : SelectionRule, optional
         `ExpectedImprovement` by default.
     prior : (n_types,) float, optional
@@ -49,6 +52,10 @@ class BayesianPolicyReuse:
         Number of episodes K, at least 1; the knowledge gradient weighs information by the episodes left.
     seed : int or numpy generator
         For rules that draw, and for the choice among equal policies.
+    models : {"uncertain", "plug-in"}
+        Whether a model learnt from a finite number of runs is known to be uncertain: the belief is then over types
+        and the parameters of their models, and each signal teaches both. "plug-in" takes estimates for the truth,
+        as the thesis does. Exact models are the same under both.
 
     Raises
     ------
@@ -73,10 +80,14 @@ class BayesianPolicyReuse:
         dynamics: TypeDynamics | None = None,
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
+        models: Models = "uncertain",
     ) -> None:
-        self.library = library
+        if models not in ("uncertain", "plug-in"):
+            raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
+        self.library, self.models = library, models
+        self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
         self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
-        self.algorithm = ReuseAlgorithm(library, dynamics)
+        self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
@@ -94,10 +105,18 @@ class BayesianPolicyReuse:
         self._selected = self.algorithm.select(self._current(), self.rule, self.generator, self.episodes_left)
         return self._selected[0]
 
-    def update(self, policy: int | str, signal: Any) -> None:
+    def update(self, policy: int | str, signal: Any, outcome: float | None = None) -> None:
         """Learn from the signal of a policy.
 
         A signal that no type explains leaves the belief as it is and raises the surprise.
+
+        Parameters
+        ----------
+        policy : int or str
+        signal
+            As the library's signal model takes it.
+        outcome : float, optional
+            The return, where the signal is another one: it teaches how well the policy does in this task.
 
         Raises
         ------
@@ -107,7 +126,7 @@ class BayesianPolicyReuse:
             The signal model cannot have made the signal, or gave NaN or infinity. The belief stays as it was.
         """
         index = self.library.index_of_policy(policy)
-        log_likelihood, log_evidence = self.algorithm.update_row(self._log_belief, index, signal)
+        log_likelihood, log_evidence = self.algorithm.update_row(self._log_belief, index, signal, outcome)
         self._evidence.append(Evidence(index, log_likelihood, log_evidence))
         self.surprise += surprise_of(log_evidence)
         self.unexplained += log_evidence == -np.inf
@@ -144,11 +163,11 @@ class BayesianPolicyReuse:
 
     def expected_utility(self) -> Array:
         """Ũ(π) under the belief, (n_policies,)."""
-        return expected_utility(self._current(), self.library.performance.mean)
+        return expected_utility(self._current(), self._known.performance.mean)
 
     def probabilities(self) -> Array:
         """Probability that `select` takes each policy, (n_policies,), sums to 1."""
-        return self.rule.probabilities(self.library, self._current(), episodes_left=self.episodes_left)
+        return self.rule.probabilities(self._known, self._current(), episodes_left=self.episodes_left)
 
     def explain(self) -> Explanation:
         """The evidence of the last signals for each type, and the selected policy beside the runner-up."""
@@ -172,6 +191,10 @@ class BayesianPolicyReuse:
             surprise=float(self.surprise),
             unexplained=int(self.unexplained),
         )
+
+    @property
+    def _known(self) -> PolicyLibrary:
+        return self.task or self.library
 
     def _current(self) -> Array:
         if self._belief is None:

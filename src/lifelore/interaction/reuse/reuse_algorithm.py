@@ -24,8 +24,10 @@ from lifelore.interaction.beliefs.bayes_rule import bayes_rule
 from lifelore.interaction.beliefs.belief import ROW_COST, log_prior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.outcomes.batch_likelihood import batch_likelihood
 from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.reuse.task_step import learn
 from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule
 from lifelore.interaction.selection.choice import choose, tied_shares
 
@@ -225,7 +227,9 @@ class ReuseAlgorithm:
                 chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own))  # pyright: ignore
         return log_evidence, chosen
 
-    def update_row(self, log_belief: Array, policy: int, signal: Any) -> tuple[Array, float]:
+    def update_row(
+        self, log_belief: Array, policy: int, signal: Any, outcome: float | None = None
+    ) -> tuple[Array, float]:
         """Learn from a single signal, in place; the same bits as `update` without the start of a compiler.
 
         Parameters
@@ -236,6 +240,8 @@ class ReuseAlgorithm:
             Number of the policy.
         signal
             As the library's signal model takes it.
+        outcome : float, optional
+            The return, where the signal is another one; teaches the outcomes of a `TaskLibrary`.
 
         Returns
         -------
@@ -251,7 +257,9 @@ class ReuseAlgorithm:
         """
         normals = self._normals
         compiled = self._compiled or self._starts_compiler()
-        if compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
+        if isinstance(self.library, TaskLibrary):
+            log_likelihood, log_evidence = learn(self.library, log_belief, policy, signal, outcome, self.dynamics)
+        elif compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
             log_likelihood = np.empty(len(log_belief))
             log_evidence = (_loaded or _load()).normal_row(log_belief, policy, signal, *normals, log_likelihood)
         else:

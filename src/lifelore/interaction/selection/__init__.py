@@ -2,7 +2,8 @@
 
 Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
 the rules that look ahead share: `support`, `type_classes`, `information`. How they decide quickly: `exact_best`,
-`signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact optimum.
+`derived_arrays`, `signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact
+optimum.
 """
 
 from collections.abc import Mapping

@@ -10,15 +10,15 @@ with equality where q is the mixture of signals under β. `q` is the mixture und
 are computed once for each table.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from math import log
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.beliefs.belief import Array
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.selection.derived_arrays import DerivedArrays
 from lifelore.interaction.selection.exact_best import exact_best
 from lifelore.interaction.selection.information import (
     Ints,
@@ -40,8 +40,6 @@ Scored = Callable[[Array, Ints | slice], Array]
 """The scores of some policies from their information; a score rises with the information."""
 EVERY = slice(None)
 _TINY = np.float32(1e-37)
-
-_TANGENTS: WeakKeyDictionary[SignalTable, NDArray[np.float32]] = WeakKeyDictionary()
 
 
 def scores_by_information(
@@ -105,7 +103,7 @@ def rounding_of_information(n_types: int, n_signals: int) -> float:
 
 def tangent_bound(support: Ints, share: Array, table: SignalTable) -> Array:
     """An upper bound on I(π) of every policy, (n_policies,) nats."""
-    divergence = _tangents(table)
+    divergence = _divergence(table)
     if len(support) < table.n_types:
         divergence = divergence[:, support]
     bound = divergence @ share.astype(np.float32)
@@ -113,13 +111,13 @@ def tangent_bound(support: Ints, share: Array, table: SignalTable) -> Array:
     return bound.astype(np.float64) + 2 * rounding_of_information(len(support), table.n_signals)
 
 
-def _tangents(table: SignalTable) -> NDArray[np.float32]:
-    """KL(F(· | τ, π) ‖ the mixture under the flat belief), (n_policies, n_types); computed once for each table."""
-    found = _TANGENTS.get(table)
-    if found is None:
-        found = _TANGENTS[table] = np.empty(table.conditional_entropy.shape, np.float32)
-        for policy, laws in enumerate(table.probs):
-            mixed = laws.mean(axis=0, dtype=np.float64)
-            logs = np.log(np.where(mixed > 0, mixed, 1.0)).astype(laws.dtype)
-            found[policy] = -(laws @ logs) - table.conditional_entropy[policy]
-    return found
+def _fill(divergence: NDArray[np.float32], table: SignalTable, policies: Iterable[int]) -> None:
+    """KL(F(· | τ, π) ‖ the mixture under the flat belief), (n_policies, n_types)."""
+    for policy in policies:
+        laws = table.probs[policy]
+        mixed = laws.mean(axis=0, dtype=np.float64)
+        logs = np.log(np.where(mixed > 0, mixed, 1.0)).astype(laws.dtype)
+        divergence[policy] = -(laws @ logs) - table.conditional_entropy[policy]
+
+
+_divergence = DerivedArrays(lambda table: np.empty(table.conditional_entropy.shape, np.float32), _fill)

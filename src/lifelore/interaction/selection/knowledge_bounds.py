@@ -7,15 +7,15 @@ With weighted means w(τ, q) = β(τ) E[U | τ, q] the gain of a policy π is
 a product for each policy. `KnowledgeGradient` has the meaning of it.
 """
 
-from typing import Any
-from weakref import WeakKeyDictionary
+from collections.abc import Iterable
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.beliefs.belief import Array
-from lifelore.interaction.finite_signals.signal_bins import MOST_TYPES, ends_of_joined
+from lifelore.interaction.finite_signals.signal_bins import MOST_TYPES, joined_ends_of, joined_to
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.selection.derived_arrays import DerivedArrays
 from lifelore.interaction.selection.information import Ints
 from lifelore.interaction.selection.signal_rows import NEGLIGIBLE, ROUNDING, SignalRows
 from lifelore.interaction.selection.type_classes import type_classes
@@ -24,8 +24,6 @@ JOINED = 4
 """Number of joined signals of each policy in the screen of large tables; more costs time and misses less."""
 _AT_ONCE = 1 << 20
 """Size of the largest product in float32."""
-
-_SCREENS: WeakKeyDictionary[SignalTable, NDArray[np.float32]] = WeakKeyDictionary()
 
 
 def exact_gain(policies: Ints, support: Ints, weighted_means: Array, table: SignalTable) -> Array:
@@ -109,15 +107,19 @@ def _less_best(weighted_means: Array) -> tuple[NDArray[np.float32], float, float
     return weighted, scale, scale * float(sizes.sum())
 
 
-def _screen(table: SignalTable) -> NDArray[np.float32]:
-    """P(joined signal | type, policy) of all but the last joined signal, (n_types, (JOINED - 1) * n_policies)."""
-    found = _SCREENS.get(table)
-    if found is None:
-        found = _SCREENS[table] = np.empty((table.n_types, (JOINED - 1) * table.n_policies), np.float32)
-        some = np.unique(np.linspace(0, table.n_types - 1, MOST_TYPES).round().astype(np.int64))
-        for policy, laws in enumerate(table.probs):
-            ends = ends_of_joined(laws[some].astype(np.float64), JOINED)
-            joined: NDArray[Any] = np.zeros((table.n_types, JOINED), laws.dtype)
-            joined[:, : len(ends)] = np.add.reduceat(laws, np.concatenate([[0], ends[:-1]]), axis=1)
-            found[:, policy :: table.n_policies] = joined[:, :-1]
-    return found
+def _empty(table: SignalTable) -> NDArray[np.float32]:
+    return np.empty((table.n_types, (JOINED - 1) * table.n_policies), np.float32)
+
+
+def _fill(screen: NDArray[np.float32], table: SignalTable, policies: Iterable[int]) -> None:
+    """P(joined signal | type, policy) of all but the last joined signal; policies vary fastest."""
+    some = np.unique(np.linspace(0, table.n_types - 1, MOST_TYPES).round().astype(np.int64))
+    for policy in policies:
+        laws = table.probs[policy]
+        ends = joined_ends_of(laws[some].astype(np.float64), JOINED)
+        joined = np.zeros((table.n_types, JOINED), np.float32)
+        joined[:, : len(ends)] = joined_to(laws, ends)
+        screen[:, policy :: table.n_policies] = joined[:, :-1]
+
+
+_screen = DerivedArrays(_empty, _fill)

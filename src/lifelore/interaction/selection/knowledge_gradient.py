@@ -148,7 +148,8 @@ def knowledge_scores(
         return scores
     gain, error = rounded_gain(support, weighted_means, rows)
     upper = utility + weight * (gain + error)
-    return exact_best(upper, float(upper.max()) - 2 * weight * error, exact)
+    scores = exact_best(upper, float(upper.max()) - 2 * weight * error, exact)
+    return np.where(scores == upper, scores - weight * error, scores)
 
 
 def _considers_all(candidates: Candidates, table: SignalTable) -> bool:

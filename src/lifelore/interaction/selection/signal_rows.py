@@ -4,13 +4,14 @@ A product in float32 takes half the time of a product in float64, and a single l
 for each policy. Tables of exact models are left out: their types fall into few classes, which is faster still.
 """
 
+from collections.abc import Iterable
 from typing import NamedTuple
-from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.selection.derived_arrays import DerivedArrays
 from lifelore.interaction.selection.type_classes import type_classes
 
 Singles = NDArray[np.float32]
@@ -35,18 +36,21 @@ class SignalRows(NamedTuple):
     n_signals: int
 
 
-_KNOWN: WeakKeyDictionary[SignalTable, SignalRows | None] = WeakKeyDictionary()
-
-
 def signal_rows(table: SignalTable) -> SignalRows | None:
     """The rows of a table, computed once for each table; None where its size or its classes speak against them."""
-    if table not in _KNOWN:
-        _KNOWN[table] = _rows(table)
-    return _KNOWN[table]
-
-
-def _rows(table: SignalTable) -> SignalRows | None:
     if not LEAST_NUMBERS <= table.probs.size <= MOST_NUMBERS or type_classes(table).few:
         return None
-    values = np.ascontiguousarray(table.probs.transpose(1, 0, 2), np.float32)
-    return SignalRows(values.reshape(table.n_types, -1), table.n_policies, table.n_signals)
+    return SignalRows(_values(table), table.n_policies, table.n_signals)
+
+
+def _empty(table: SignalTable) -> Singles:
+    return np.empty((table.n_types, table.n_policies * table.n_signals), np.float32)
+
+
+def _fill(values: Singles, table: SignalTable, policies: Iterable[int]) -> None:
+    by_policy = values.reshape(table.n_types, table.n_policies, table.n_signals)
+    for policy in policies:
+        by_policy[:, policy] = table.probs[policy]
+
+
+_values = DerivedArrays(_empty, _fill)

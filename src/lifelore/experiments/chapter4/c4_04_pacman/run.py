@@ -112,7 +112,7 @@ def _moved(settings: Mapping, arena: Arena, policies: Array, known: Mapping, str
 
 def reused(library: PolicyLibrary, rule, returns: Array, stream_of: tuple) -> NDArray[np.int64]:
     """The policies that BPR selects, given the return of each in each episode, (n_policies, n_episodes)."""
-    agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of))
+    agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of), models="plug-in")
     chosen = np.empty(returns.shape[1], np.int64)
     for episode in range(returns.shape[1]):
         policy = chosen[episode] = agent.select()
