@@ -178,6 +178,14 @@ class CountedOutcomes:
         self.totals[policy, type_] = self.counts[policy, type_].sum()
         self._renew(type_, policy)
 
+    def absorb(self, type_: int, task: TaskCounts) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, counts in task.shown.items():
+            self.counts[policy, type_] += counts
+            self.totals[policy, type_] = self.counts[policy, type_].sum()
+            self._renew(type_, policy)
+
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         return self._with(rows_of_more(samples, self.n_policies, 0), axis=1)

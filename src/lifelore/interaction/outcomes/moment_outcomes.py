@@ -128,6 +128,14 @@ class MomentOutcomes:
         self.moments.observe(type_, policy, value)
         self._renew(type_, policy)
 
+    def absorb(self, type_: int, task: TaskNormals) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, (count, mean, squares) in task.shown.items():
+            if count > 0:
+                self.moments.absorb(type_, policy, count, mean, squares)
+                self._renew(type_, policy)
+
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         return self.of(self.moments.more(samples, axis=0))

@@ -82,6 +82,7 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
         "episode": agent.episode,
         "surprise": agent.surprise,
         "unexplained": agent.unexplained,
+        "taught": agent._taught,
         "selected": None if agent._selected is None else agent._selected[0],
         "generator": generator_state(agent.generator),
     }
@@ -137,7 +138,7 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     if agent.task is not None:
         agent.task.restore({name.partition(".")[2]: a for name, a in arrays.items() if name.startswith("task.")})
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
-    agent.surprise = float(header["surprise"])
+    agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:
