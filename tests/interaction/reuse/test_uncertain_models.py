@@ -125,7 +125,7 @@ def test_every_rule_selects_with_every_kind_of_model(model):
         for _ in range(4):
             agent.update(agent.select(), float(random.integers(0, 3)))
         assert agent.probabilities().sum() == pytest.approx(1)
-            assert np.isfinite(outcomes_of(agent.task).expected_mean_excess(1.0)).all()
+        assert np.isfinite(outcomes_of(agent.task).expected_mean_excess(1.0)).all()
 
 
 def test_dirichlet_counts_are_those_of_polya_urns():
