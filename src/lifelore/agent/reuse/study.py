@@ -7,7 +7,7 @@ fit counts. Nothing of any single user is in here.
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property
 from typing import Any, NoReturn
 
@@ -22,7 +22,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import SelectionRule, rule_named
+from lifelore.interaction.selection import SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_study", 1
@@ -60,6 +60,8 @@ class Study:
         What it was learnt from, plain data.
     tables : dict of int to SignalTable
         Signal tables of the active policies, by number of bins, as far as memory has them.
+    rule_settings : dict
+        Settings of the rule by name; its defaults for those left out.
     """
 
     name: str
@@ -73,13 +75,14 @@ class Study:
     change: float = 0.0
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, SignalTable] = field(default_factory=dict)
+    rule_settings: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
         _check_share("control", self.control, below_one=True)
         _check_share("explore", self.explore)
         _check_share("change", self.change)
-        rule_named(self.rule)
+        rule_named(self.rule, **self.rule_settings)
         if self.incumbent is not None and self.states.get(self.incumbent) != ACTIVE:
             raise NotFoundError(
                 f"incumbent must be a policy in use, got '{self.incumbent}'; there are {', '.join(self.active)}"
@@ -111,7 +114,7 @@ class Study:
     @cached_property
     def selection(self) -> SelectionRule:
         """The selection rule."""
-        return rule_named(self.rule)
+        return rule_named(self.rule, **self.rule_settings)
 
     @cached_property
     def dynamics(self) -> TypeDynamics:
@@ -174,6 +177,7 @@ class Study:
             "control": self.control,
             "incumbent": self.incumbent,
             "rule": self.rule,
+            "rule_settings": asdict(self.selection),  # pyright: ignore[reportArgumentType]
             "explore": self.explore,
             "change": self.change,
             "fitted": self.fitted,
@@ -227,7 +231,9 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
     settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
-    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables)
+    # A study of an earlier Lifelore has no settings of its rule.
+    rule = asdict(restored_rule(about["rule"], about.get("rule_settings", {})))  # pyright: ignore[reportArgumentType]
+    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables, rule_settings=rule)
 
 
 def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, SignalTable]:

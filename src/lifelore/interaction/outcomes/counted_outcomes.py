@@ -15,6 +15,7 @@ from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
     check_outcome,
     check_type,
+    excess_of_means,
     is_outcome,
     refuse_outcome,
 )
@@ -146,6 +147,10 @@ class CountedOutcomes:
         """E[max(U - threshold, 0)] for every pair, exact, (..., n_types, n_policies)."""
         return self._expectation(self._excess(np.asarray(threshold, np.float64)[..., None]))
 
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
+
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
         below = 1 - self._above(values[:, None])
@@ -176,6 +181,14 @@ class CountedOutcomes:
         self.counts[policy, type_, self._known_cells(np.array([value]))[0]] += 1
         self.totals[policy, type_] = self.counts[policy, type_].sum()
         self._renew(type_, policy)
+
+    def absorb(self, type_: int, task: TaskCounts) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, counts in task.shown.items():
+            self.counts[policy, type_] += counts
+            self.totals[policy, type_] = self.counts[policy, type_].sum()
+            self._renew(type_, policy)
 
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""

@@ -10,7 +10,13 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, rows_of_samples
+from lifelore.interaction.outcomes.outcome_model import (
+    OutcomeRows,
+    check_outcome,
+    check_type,
+    excess_of_means,
+    rows_of_samples,
+)
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.outcomes.task_normals import TaskNormals, spread_of
@@ -91,6 +97,10 @@ class MomentOutcomes:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
         raise NotImplementedError
 
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
+
     def batch_likelihood(self) -> BatchLikelihood:
         """Log densities of finite outcomes."""
         return CalledLikelihood(self.log_densities, finite_signals)
@@ -117,6 +127,14 @@ class MomentOutcomes:
         check_outcome(policy, value, self.n_policies)
         self.moments.observe(type_, policy, value)
         self._renew(type_, policy)
+
+    def absorb(self, type_: int, task: TaskNormals) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, (count, mean, squares) in task.shown.items():
+            if count > 0:
+                self.moments.absorb(type_, policy, count, mean, squares)
+                self._renew(type_, policy)
 
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""

@@ -64,6 +64,18 @@ class OutcomeMoments:
         square = before * (value - self.mean[pair])
         self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
 
+    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
+        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
+        pair = type_, policy
+        if np.isinf(self.count[pair]):
+            raise InputError(f"type {type_} with policy {policy} is known exactly and learns nothing")
+        known, apart = self.count[pair], mean - self.mean[pair]
+        total = known + count
+        gained = squares + known * count / total * apart**2
+        self.variance[pair] = (self.freedom[pair] * self.variance[pair] + gained) / (self.freedom[pair] + count)
+        self.mean[pair] += count / total * apart
+        self.count[pair], self.freedom[pair] = total, self.freedom[pair] + count
+
     def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
         """With the types (axis 0) or policies (axis 1) of `other` after these."""
         pairs = zip(self._fields(), other._fields(), strict=True)

@@ -68,6 +68,11 @@ class TaskCounts(TaskOutcomes):
             self._rows.setdefault(policy, self._law(policy)).shown[cell] += 1
         self._stale.update(self._rows)
 
+    @property
+    def shown(self) -> dict[int, Array]:
+        """Counts of the cells (n_cells,) of each policy that was tried."""
+        return {policy: row.shown.copy() for policy, row in self._rows.items()}
+
     def fade(self, keep: float) -> None:
         """Let everything that the task has shown count `keep` of what it did; the type may have changed."""
         self.fade_weights(keep)

@@ -82,11 +82,15 @@ class TaskNormals(TaskOutcomes):
         """Take in an outcome of this task, and the spreads' log probabilities after it."""
         k, mean, squares = self._shown.get(policy, (0.0, 0.0, 0.0))
         before = value - mean
-        mean += before / (k + 1)
-        self._shown[policy] = k + 1, mean, squares + before * (value - mean)
+        self._shown[policy] = k + 1, mean + before / (k + 1), squares + before**2 * (k / (k + 1))
         if log_weights is not None:
             self.log_weights = log_weights
         self._stale.update(self._shown if len(self.log_weights) > 1 else (policy,))
+
+    @property
+    def shown(self) -> dict[int, tuple[float, float, float]]:
+        """Number, mean and sum of squares around the mean of the outcomes of each policy that was tried."""
+        return dict(self._shown)
 
     def fade(self, keep: float) -> None:
         """Let everything that the task has shown count `keep` of what it did; the type may have changed."""

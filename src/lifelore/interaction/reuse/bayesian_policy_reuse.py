@@ -86,10 +86,11 @@ class BayesianPolicyReuse:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         self.library, self.models = library, models
         self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
-        self.rule: SelectionRule = rule or ExpectedImprovement()
+        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
         self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
+        self._taught = False
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
         self._log_belief: Array = self.algorithm.start(prior)
         self._belief: Array | None = None
@@ -138,6 +139,38 @@ class BayesianPolicyReuse:
         self.algorithm.step_row(self._log_belief)
         self._belief = None
         self.episode += 1
+
+    def teach(self, least: float = 0.95) -> str | None:
+        """Let the library learn from the outcomes of this task, once it has ended and if its type is sure enough.
+
+        Agents at work go on with what they read at their start.
+
+        Parameters
+        ----------
+        least : float
+            Least belief in a type, in (0.5, 1].
+
+        Returns
+        -------
+        str or None
+            The type that learnt; None where no type is believed that much, or nothing is to be learnt.
+
+        Raises
+        ------
+        InputError
+            `least` lies outside its range, or the task has taught before.
+        """
+        if not 0.5 < least <= 1:
+            raise InputError(f"least must lie in (0.5, 1], got {least}")
+        if self._taught:
+            raise InputError("this task has taught the library before; its outcomes count once")
+        type_ = int(self._current().argmax())
+        if self._current()[type_] < least or self.task is None or self.task.outcomes_of_task is None:
+            return None
+        self.library.performance.absorb(type_, self.task.outcomes_of_task)  # pyright: ignore
+        self.library.forget_tables()
+        self._taught = True
+        return self.library.types[type_]
 
     # ---- the belief and its explanation ----------------------------------------------------------------
 

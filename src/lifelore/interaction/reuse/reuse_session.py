@@ -23,7 +23,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
-from lifelore.interaction.selection import RULES, rule_named
+from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 2, "session", "save_session", oldest=1)
 GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
@@ -82,6 +82,7 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
         "episode": agent.episode,
         "surprise": agent.surprise,
         "unexplained": agent.unexplained,
+        "taught": agent._taught,
         "selected": None if agent._selected is None else agent._selected[0],
         "generator": generator_state(agent.generator),
     }
@@ -96,7 +97,7 @@ def session_from_bytes(
     try:
         library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
-        rule = rule_named(header["rule"], **header["settings"])
+        rule = restored_rule(header["rule"], header["settings"])
         generator = generator_from_state(header["generator"])
         # Files of version 1 are older than uncertain models.
         models = header.get("models", "plug-in")
@@ -137,7 +138,7 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
     if agent.task is not None:
         agent.task.restore({name.partition(".")[2]: a for name, a in arrays.items() if name.startswith("task.")})
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
-    agent.surprise = float(header["surprise"])
+    agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:

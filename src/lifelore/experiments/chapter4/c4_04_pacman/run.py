@@ -26,7 +26,7 @@ BPR, BPR_EI, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_more", "bpr_exact"
 """Belief sampling; expected improvement; sampling with models of more samples; with exact means and deviations."""
 REUSERS = {
     BPR: ("learnt", BeliefSampling()),
-    BPR_EI: ("learnt", ExpectedImprovement()),
+    BPR_EI: ("learnt", ExpectedImprovement(of="outcome")),
     BPR_MORE: ("more", BeliefSampling()),
     BPR_EXACT: ("exact", BeliefSampling()),
 }
