@@ -314,6 +314,7 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
     found = open_study(memory, "s")
     assert found.library.to_bytes() == kept.library.to_bytes()
     assert found.contexts["web"].tolist() == [0.1, 0.9]
+    assert found.selection == kept.selection
     for name in ("states", "control", "incumbent", "rule", "explore", "change"):
         assert getattr(found, name) == getattr(kept, name)
 
@@ -322,7 +323,7 @@ def of_earlier_lifelore(study):
     """The record that a Lifelore without signal tables stored."""
     record = study.to_record()
     n = -(-record.about["bytes"] // 8)
-    about = {name: value for name, value in record.about.items() if name != "table"}
+    about = {name: value for name, value in record.about.items() if name not in ("table", "rule_settings")}
     return Record(record.kind, record.key, 1, "newest", record.slots[:n], record.values[:n], about)
 
 
@@ -377,6 +378,20 @@ def test_a_study_of_an_earlier_lifelore_chooses_the_same(tmp_path, rule):
                 one = choose(memory, study, "ann")
                 said += [one, update(memory, study, one["decision"], 1.5 * number)]
     assert said[: len(said) // 2] == said[len(said) // 2 :]
+
+
+def test_a_study_of_an_earlier_lifelore_improves_the_outcome(tmp_path):
+    # The policy of the wide outcomes is the worst; only the improvement of the outcome selects it.
+    library = PolicyLibrary.from_means([[10.0, 6.0, 9.0]], [[1.0, 30.0, 1.0]], policies=POLICIES)
+    study = Study("s", library, dict.fromkeys(POLICIES, "active"), control=0.0, rule="expected-improvement")
+    said = []
+    with open_memory(tmp_path / "new.db") as new, open_memory(tmp_path / "old.db") as old:
+        study.keep(new)
+        old.contribute("reuse s", [of_earlier_lifelore(study)], process="study", seq=0, task={})
+        for memory in (new, old):
+            retire(memory, open_study(memory, "s"), "plain")
+            said.append(choose(memory, open_study(memory, "s"), "ann")["policy"])
+    assert said == ["big", "dark"]
 
 
 @pytest.mark.parametrize(

@@ -7,7 +7,7 @@ fit counts. Nothing of any single user is in here.
 
 import hashlib
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from functools import cached_property, lru_cache
 from typing import Any, NamedTuple, NoReturn
 
@@ -23,7 +23,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import SelectionRule, rule_named
+from lifelore.interaction.selection import SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_study", 1
@@ -72,6 +72,8 @@ class Study:
         What it was learnt from, plain data.
     tables : dict of int to StoredTable
         Signal tables of the active policies, by number of bins, as far as memory has them.
+    rule_settings : dict
+        Settings of the rule by name; its defaults for those left out.
     """
 
     name: str
@@ -86,13 +88,14 @@ class Study:
     models: str = "uncertain"
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, StoredTable] = field(default_factory=dict)
+    rule_settings: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
         _check_share("control", self.control, below_one=True)
         _check_share("explore", self.explore)
         _check_share("change", self.change)
-        rule_named(self.rule)
+        rule_named(self.rule, **self.rule_settings)
         if self.models not in MODELS:
             raise InputError(f"models must be one of {', '.join(MODELS)}, got {self.models!r}")
         if self.incumbent is not None and self.states.get(self.incumbent) != ACTIVE:
@@ -129,7 +132,7 @@ class Study:
     @cached_property
     def selection(self) -> SelectionRule:
         """The selection rule."""
-        return rule_named(self.rule)
+        return rule_named(self.rule, **self.rule_settings)
 
     @cached_property
     def dynamics(self) -> TypeDynamics:
@@ -214,6 +217,7 @@ class Study:
             "control": self.control,
             "incumbent": self.incumbent,
             "rule": self.rule,
+            "rule_settings": asdict(self.selection),  # pyright: ignore[reportArgumentType]
             "explore": self.explore,
             "change": self.change,
             "models": self.models,
@@ -278,9 +282,19 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
     settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
-    # Studies of an earlier Lifelore took their models for the truth.
+    # A study of an earlier Lifelore has no settings of its rule, and took its models for the truth.
+    rule = asdict(restored_rule(about["rule"], about.get("rule_settings", {})))  # pyright: ignore[reportArgumentType]
     models = about.get("models", "plug-in")
-    return Study(name, library, dict(about["states"]), contexts, **settings, models=models, tables=tables)
+    return Study(
+        name,
+        library,
+        dict(about["states"]),
+        contexts,
+        **settings,
+        models=models,
+        tables=tables,
+        rule_settings=rule,
+    )
 
 
 def _packed_cuts(cuts: list[Any]) -> NDArray[np.float64]:

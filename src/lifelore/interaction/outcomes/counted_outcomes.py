@@ -15,6 +15,7 @@ from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
     check_outcome,
     check_type,
+    excess_of_means,
     is_outcome,
     refuse_outcome,
 )
@@ -76,6 +77,10 @@ class CountedOutcomes:
         """The cell of an outcome; None where it has none."""
         cell = int(self._cells(np.array([value], np.float64))[0])
         return None if cell < 0 else cell
+
+    def cells_of(self, values: Array) -> NDArray[np.int64]:
+        """The cells of outcomes (n,), -1 where an outcome has none."""
+        return self._cells(values)
 
     @property
     def spread(self) -> Spread:
@@ -145,6 +150,10 @@ class CountedOutcomes:
     def expected_excess(self, threshold: ArrayLike) -> Array:
         """E[max(U - threshold, 0)] for every pair, exact, (..., n_types, n_policies)."""
         return self._expectation(self._excess(np.asarray(threshold, np.float64)[..., None]))
+
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
 
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""

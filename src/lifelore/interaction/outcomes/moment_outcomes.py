@@ -10,7 +10,13 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, rows_of_samples
+from lifelore.interaction.outcomes.outcome_model import (
+    OutcomeRows,
+    check_outcome,
+    check_type,
+    excess_of_means,
+    rows_of_samples,
+)
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.outcomes.task_normals import TaskNormals, spread_of
@@ -94,6 +100,10 @@ class MomentOutcomes:
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
         raise NotImplementedError
+
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
 
     def batch_likelihood(self) -> BatchLikelihood:
         """Log densities of finite outcomes."""

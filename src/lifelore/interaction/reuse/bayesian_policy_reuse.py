@@ -86,7 +86,7 @@ class BayesianPolicyReuse:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         self.library, self.models = library, models
         self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
-        self.rule: SelectionRule = rule or ExpectedImprovement()
+        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
         self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0

@@ -23,7 +23,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
-from lifelore.interaction.selection import RULES, rule_named
+from lifelore.interaction.selection import RULES, restored_rule
 
 FORMAT = PackedFormat("lifelore policy reuse session", 2, "session", "save_session", oldest=1)
 GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
@@ -97,7 +97,7 @@ def session_from_bytes(
     try:
         library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
-        rule = rule_named(header["rule"], **header["settings"])
+        rule = restored_rule(header["rule"], header["settings"])
         generator = generator_from_state(header["generator"])
         # Files of version 1 are older than uncertain models.
         models = header.get("models", "plug-in")

@@ -29,7 +29,7 @@ BPR_DOUBTING, BPR_IDS_DOUBTING = "bpr_doubting", "bpr_ids_doubting"
 """Sampling, and information-directed selection, with a belief over types and the parameters of their models."""
 REUSERS = {
     BPR: ("learnt", BeliefSampling()),
-    BPR_EI: ("learnt", ExpectedImprovement()),
+    BPR_EI: ("learnt", ExpectedImprovement(of="outcome")),
     BPR_MORE: ("more", BeliefSampling()),
     BPR_EXACT: ("exact", BeliefSampling()),
     BPR_DOUBTING: ("learnt", BeliefSampling()),
