@@ -5,7 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.c4_17_default_rule.measure import default_of, key_of, measure, rows
+from lifelore.experiments.chapter4.c4_17_default_rule.measure import (
+    CANDIDATES,
+    decided_rule,
+    key_of,
+    measure,
+    rows,
+)
 from lifelore.experiments.chapter4.c4_17_default_rule.run import RULES, cells, run_cell
 from lifelore.experiments.chapter4.c4_17_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
@@ -81,8 +87,9 @@ def measured_of(regret, excess):
 
 def test_the_decision():
     regret = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5]
-    assert default_of(measured_of(regret, [0.06, 0.05, 0.0, 0.0, 0.0, 0.0])) == "EI, pay"
-    assert default_of(measured_of(regret, [0.06, 0.06, 0.07, 0.055, 0.2, 0.3])) == "KG"
+    assert decided_rule(measured_of(regret, [0.06, 0.05, 0.0, 0.0, 0.0, 0.0])) == "EI, pay"
+    assert decided_rule(measured_of(regret, [0.06, 0.06, 0.07, 0.055, 0.2, 0.3])) == "KG"
+    assert decided_rule(measured_of(regret, [0.0, 0.2, 0.1, 0.0, 0.0, 0.0]), CANDIDATES) == "IDS"
 
 
 def test_all_rules_meet_the_same_tasks_and_a_run_repeats():

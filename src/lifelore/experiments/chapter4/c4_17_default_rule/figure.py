@@ -49,8 +49,8 @@ def draw(result: Mapping) -> Figure:
             axes.margins(x=0.3)
     n = settings["groups"] * settings["tasks"]
     words = (
-        f"{n} tasks of {settings['episodes']} episodes a world. Stuck: share above that of the least stuck rule of "
-        f"the world; bold where above {100 * MOST_STUCK:.0f} %"
+        f"{n} tasks of {settings['episodes']} episodes a world. Stuck: share above that of the least stuck rule; "
+        f"bold where above {100 * MOST_STUCK:.0f} %"
     )
     figure.suptitle(words, x=0.01, ha="left")
     return figure
