@@ -27,7 +27,7 @@ from lifelore.interaction.reuse.explanation import (
     two_best,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import ExpectedImprovement, SelectionRule
+from lifelore.interaction.selection import SelectionRule, default_rule
 
 Array = NDArray[np.float64]
 
@@ -40,7 +40,7 @@ class BayesianPolicyReuse:
     library : PolicyLibrary
         Not copied: the agent uses what the library's models learn in place.
     rule : SelectionRule, optional
-        `ExpectedImprovement` by default.
+        `InformationDirected` by default, `ExpectedImprovement` where the signals have no table.
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
     dynamics : TypeDynamics, optional
@@ -75,7 +75,7 @@ class BayesianPolicyReuse:
         seed: int | np.random.Generator = 0,
     ) -> None:
         self.library = library
-        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
+        self.rule: SelectionRule = rule or default_rule(library)
         self.algorithm = ReuseAlgorithm(library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0

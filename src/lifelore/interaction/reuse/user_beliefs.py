@@ -16,7 +16,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, TOLERANCES, ReuseAlgorithm, blocks
-from lifelore.interaction.selection import Greedy, SelectionRule, rule_named
+from lifelore.interaction.selection import Greedy, SelectionRule, default_rule, rule_named
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -97,16 +97,17 @@ class UserBeliefs:
     # ---- many users at once ----------------------------------------------------------------------------
 
     def select(
-        self, users: ArrayLike, rule: SelectionRule | str = "sampling", *, episodes_left: float | None = None
+        self, users: ArrayLike, rule: SelectionRule | str | None = None, *, episodes_left: float | None = None
     ) -> Numbers:
         """The number of the policy to run next for each of `users` (k,), (k,).
 
         Parameters
         ----------
-        rule : SelectionRule or str
-            "sampling" and "greedy" run compiled; the other rules score the users block by block.
+        rule : SelectionRule or str, optional
+            By default as for `BayesianPolicyReuse`. "sampling" and "greedy" run compiled and are the fastest; the
+            other rules score the users block by block.
         """
-        users, rule = self._checked_users(users), _rule(rule)
+        users, rule = self._checked_users(users), self._rule(rule)
         chosen = np.empty(len(users), np.int64)
         for at, own in blocks(users):
             belief = self.algorithm.belief(self.log_belief, own)
@@ -142,12 +143,12 @@ class UserBeliefs:
         users: ArrayLike,
         policies: ArrayLike,
         signals: Any,
-        rule: SelectionRule | str = "sampling",
+        rule: SelectionRule | str | None = None,
         *,
         episodes_left: float | None = None,
     ) -> Numbers:
         """`update`, and the policy to run next, (k,), in one pass."""
-        users, policies, rule = self._checked_users(users), self._checked_policies(policies), _rule(rule)
+        users, policies, rule = self._checked_users(users), self._checked_policies(policies), self._rule(rule)
 
         def select(belief: NDArray[Any]) -> Numbers:
             return self.algorithm.select_fast(belief, rule, self.generator, episodes_left)
@@ -161,10 +162,10 @@ class UserBeliefs:
         return belief / belief.sum(axis=1, keepdims=True)
 
     def probabilities(
-        self, users: ArrayLike, rule: SelectionRule | str = "sampling", *, episodes_left: float | None = None
+        self, users: ArrayLike, rule: SelectionRule | str | None = None, *, episodes_left: float | None = None
     ) -> Array:
         """Probability that `select` takes each policy, (k, n_policies); log it beside the selected policy."""
-        users, rule = self._checked_users(users), _rule(rule)
+        users, rule = self._checked_users(users), self._rule(rule)
         if type(rule) is Greedy:
             # As `select` compares them: policies that float32 cannot tell apart are equal.
             return self.algorithm.greedy_shares(self.algorithm.belief(self.log_belief, users))
@@ -173,6 +174,11 @@ class UserBeliefs:
     def reset(self, users: ArrayLike) -> None:
         """Set the beliefs about `users` back to the prior."""
         self.log_belief[self._checked_users(users)] = self.log_prior
+
+    def _rule(self, rule: SelectionRule | str | None) -> SelectionRule:
+        if rule is None:
+            return default_rule(self.library)
+        return rule_named(rule) if isinstance(rule, str) else rule
 
     def _checked_users(self, users: ArrayLike) -> Numbers:
         return _checked(users, self.n_users, "user")
@@ -188,7 +194,3 @@ def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:
     if values.size and not 0 <= values.min() <= values.max() < n:
         raise NotFoundError(f"unknown {what} {values.min() if values.min() < 0 else values.max()}; there are {n}")
     return values.astype(np.int64, copy=False)
-
-
-def _rule(rule: SelectionRule | str) -> SelectionRule:
-    return rule_named(rule) if isinstance(rule, str) else rule
