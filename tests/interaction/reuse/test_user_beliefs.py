@@ -99,14 +99,14 @@ def test_sampling_follows_the_belief():
     users = UserBeliefs(model, 20_000)
     users.update(np.arange(20_000), np.full(20_000, 2), np.full(20_000, 11.0))
     stated = users.probabilities([0], "sampling")[0]
-    for chosen in (users.select(np.arange(20_000)), users.select(np.arange(20_000), BeliefSampling())):
+    for chosen in (users.select(np.arange(20_000), "sampling"), users.select(np.arange(20_000), BeliefSampling())):
         # A share of 20000 has a deviation of at most 0.0035; five of them.
         assert np.bincount(chosen, minlength=N_POLICIES) / 20_000 == pytest.approx(stated, abs=0.018)
 
 
 def test_equal_best_responses_are_sampled_evenly():
     users = UserBeliefs(PolicyLibrary.from_means([[1.0, 1.0, 0.0], [0.0, 1.0, 1.0]], 1.0), 20_000)
-    chosen = np.bincount(users.select(np.arange(20_000)), minlength=3) / 20_000
+    chosen = np.bincount(users.select(np.arange(20_000), "sampling"), minlength=3) / 20_000
     assert chosen == pytest.approx([0.25, 0.5, 0.25], abs=0.018)
     flat = UserBeliefs(PolicyLibrary.from_means(np.eye(4), 1.0), 20_000).select(np.arange(20_000), Greedy())
     assert np.bincount(flat) / 20_000 == pytest.approx(np.full(4, 0.25), abs=0.018)

@@ -19,6 +19,7 @@ from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical")
@@ -51,7 +52,7 @@ class FitSettings:
     types: int | None = None
     control: float = 0.1
     incumbent: str | None = None
-    rule: str = "information-directed"
+    rule: str = DEFAULT_RULE
     explore: float = 0.0
     change: float = 0.0
     models: str = "uncertain"

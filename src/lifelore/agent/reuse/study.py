@@ -23,7 +23,7 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import SelectionRule, restored_rule, rule_named
+from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_study", 1
@@ -82,7 +82,7 @@ class Study:
     contexts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     control: float = 0.1
     incumbent: str | None = None
-    rule: str = "information-directed"
+    rule: str = DEFAULT_RULE
     explore: float = 0.0
     change: float = 0.0
     models: str = "uncertain"

@@ -180,6 +180,11 @@ class PolicyLibrary:
         """The number of a type, by name or number; NotFoundError where there is no such type."""
         return index_of(type_, self.types, "type")
 
+    @property
+    def has_table(self) -> bool:
+        """Whether `table` can list the signals, or bin them."""
+        return all(hasattr(signal, "table") for signal in (self.signal, *getattr(self.signal, "factors", ())))
+
     def table(self, n_bins: int = 8) -> SignalTable:
         """The table of signals from a finite alphabet, computed once for each `n_bins`; see `forget_tables`.
 

@@ -24,7 +24,7 @@ from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, TOLERANCES,
 from lifelore.interaction.reuse.user_choice import UserChoice, checked_mask
 from lifelore.interaction.reuse.user_names import UserNames, are_names
 from lifelore.interaction.reuse.user_outcomes import UserOutcomes
-from lifelore.interaction.selection import Greedy, SelectionRule, rule_named
+from lifelore.interaction.selection import Greedy, SelectionRule, default_rule, rule_named
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -178,7 +178,7 @@ class UserBeliefs:
     def select(
         self,
         users: Users,
-        rule: SelectionRule | str = "sampling",
+        rule: SelectionRule | str | None = None,
         *,
         available: ArrayLike | None = None,
         episodes_left: float | None = None,
@@ -187,14 +187,14 @@ class UserBeliefs:
 
         Parameters
         ----------
-        rule : SelectionRule or str
-            "sampling" and "greedy" run compiled. The other rules score the users block by block; with uncertain
+        rule : SelectionRule or str, optional
+            By default as for `BayesianPolicyReuse`. "sampling" and "greedy" run compiled. The other rules score the users block by block; with uncertain
             models each user by itself, which takes about a millisecond.
         available : (n_policies,) or (k, n_policies) bool, optional
             The policies that can be run now, the same for all or for each of `users`; rules choose as if the
             library had no others.
         """
-        rows, rule = self._checked_users(users), _rule(rule)
+        rows, rule = self._checked_users(users), self._rule(rule)
         mask = checked_mask(available, len(rows), self.library.n_policies)
         chosen = np.empty(len(rows), np.int64)
         for at, own in blocks(rows):
@@ -206,7 +206,7 @@ class UserBeliefs:
         self,
         users: Users,
         k: int,
-        rule: SelectionRule | str = "sampling",
+        rule: SelectionRule | str | None = None,
         *,
         available: ArrayLike | None = None,
         episodes_left: float | None = None,
@@ -220,7 +220,7 @@ class UserBeliefs:
         InputError
             `k` is below 1 or above the number of policies available to a user.
         """
-        rows, rule = self._checked_users(users), _rule(rule)
+        rows, rule = self._checked_users(users), self._rule(rule)
         mask = checked_mask(available, len(rows), self.library.n_policies)
         most = self.library.n_policies if mask is None or not len(rows) else int(mask.sum(axis=1).min())
         if not 1 <= k <= most:
@@ -261,13 +261,13 @@ class UserBeliefs:
         users: Users,
         policies: ArrayLike,
         signals: Any,
-        rule: SelectionRule | str = "sampling",
+        rule: SelectionRule | str | None = None,
         *,
         available: ArrayLike | None = None,
         episodes_left: float | None = None,
     ) -> Numbers:
         """`update`, and the policy to run next, (k,), in one pass."""
-        rows, policies, rule = self._checked_users(users), self._checked_policies(policies), _rule(rule)
+        rows, policies, rule = self._checked_users(users), self._checked_policies(policies), self._rule(rule)
         mask = checked_mask(available, len(rows), self.library.n_policies)
 
         def select(belief: NDArray[Any], at: slice) -> Numbers:
@@ -284,13 +284,13 @@ class UserBeliefs:
     def probabilities(
         self,
         users: Users,
-        rule: SelectionRule | str = "sampling",
+        rule: SelectionRule | str | None = None,
         *,
         available: ArrayLike | None = None,
         episodes_left: float | None = None,
     ) -> Array:
         """Probability that `select` takes each policy, (k, n_policies); log it beside the selected policy."""
-        rows, rule = self._checked_users(users), _rule(rule)
+        rows, rule = self._checked_users(users), self._rule(rule)
         mask = checked_mask(available, len(rows), self.library.n_policies)
         if self.outcomes is None and mask is None:
             if type(rule) is Greedy:
@@ -320,6 +320,11 @@ class UserBeliefs:
             return self.algorithm.select_fast(belief, rule, self.generator, episodes_left)
         return self._chooser.select(belief, rows, rule, mask, self.generator, episodes_left)
 
+    def _rule(self, rule: SelectionRule | str | None) -> SelectionRule:
+        if rule is None:
+            return default_rule(self.library)
+        return rule_named(rule) if isinstance(rule, str) else rule
+
     def _checked_users(self, users: Users) -> Numbers:
         if self.names is None or not are_names(users):
             if self.names is None and are_names(users):
@@ -341,7 +346,3 @@ def _checked(numbers: ArrayLike, n: int, what: str) -> Numbers:
     if values.size and not 0 <= values.min() <= values.max() < n:
         raise NotFoundError(f"unknown {what} {values.min() if values.min() < 0 else values.max()}; there are {n}")
     return values.astype(np.int64, copy=False)
-
-
-def _rule(rule: SelectionRule | str) -> SelectionRule:
-    return rule_named(rule) if isinstance(rule, str) else rule
