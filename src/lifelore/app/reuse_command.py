@@ -72,8 +72,8 @@ def fit(
     ] = "information-directed",
     explore: Annotated[float, Option(help="Share of the other choices that are drawn from all policies.")] = 0.0,
     change: Annotated[
-        float, Option(help="Probability that the type of a user changes between two choices.")
-    ] = 0.0,
+        float, Option(help="Probability that the type of a user is drawn anew between two choices.")
+    ] = 0.002,
     columns: Columns = None,
     separator: Separator = None,
     decimal_comma: DecimalComma = False,

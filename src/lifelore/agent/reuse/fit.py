@@ -18,6 +18,7 @@ from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.memory import Memory
 
@@ -53,7 +54,7 @@ class FitSettings:
     incumbent: str | None = None
     rule: str = "information-directed"
     explore: float = 0.0
-    change: float = 0.0
+    change: float = DEFAULT_HAZARD
     seed: int = 0
 
     def __post_init__(self) -> None:

@@ -18,7 +18,7 @@ from lifelore.agent.reuse.log import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
@@ -55,7 +55,7 @@ class Study:
     explore : float
         Share of the others' choices that are any active policy, in [0, 1].
     change : float
-        Probability that a user's type is another at the next choice, in [0, 1].
+        Probability that a user's type is drawn anew before the next choice, in [0, 1]; at 0 types are static.
     fitted : dict
         What it was learnt from, plain data.
     tables : dict of int to SignalTable
@@ -70,7 +70,7 @@ class Study:
     incumbent: str | None = None
     rule: str = "information-directed"
     explore: float = 0.0
-    change: float = 0.0
+    change: float = DEFAULT_HAZARD
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, SignalTable] = field(default_factory=dict)
 

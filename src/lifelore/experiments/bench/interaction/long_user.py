@@ -52,7 +52,7 @@ def bench_long_user(repeats: int, progress: Progress) -> dict:
 def _study() -> Study:
     means = stream(0, "bench", "long user").normal(0.0, 3.0, (TYPES, POLICIES))
     library = PolicyLibrary.from_means(means, NOISE)
-    return Study("bench", library, dict.fromkeys(library.policies, ACTIVE), control=0.0)
+    return Study("bench", library, dict.fromkeys(library.policies, ACTIVE), control=0.0, change=0.0)
 
 
 def _goes_on(memory: Memory, study: Study, n: int) -> Callable[[], float]:

@@ -26,6 +26,7 @@ from lifelore.experiments.bench.interaction.reuse_peers import (
     mabwiser_ucb1,
 )
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import (
@@ -93,7 +94,8 @@ def _beside_loops(repeats: int, after: Callable[[str], None]) -> Result:
     """One update and one decision of each rule, 68 x 68 x 50, and the same by loops."""
     case = Reserve(SIGNALS)
     case.check()
-    agent, random = BayesianPolicyReuse(case.library), np.random.default_rng(0)
+    agent = BayesianPolicyReuse(case.library, dynamics=TypeDynamics.static())
+    random = np.random.default_rng(0)
     works: dict[str, tuple[Callable, Callable]] = {
         "update": (
             lambda: agent.update(3, 55.0),
@@ -163,7 +165,7 @@ def _beside_peers(repeats: int, after: Callable[[str], None]) -> Result:
 def _methods(case: Reserve) -> dict[str, Callable[[int], Player]]:
     def reuse(rule: SelectionRule) -> Callable[[int], Player]:
         def make(number: int) -> Player:
-            agent = BayesianPolicyReuse(case.library, rule, horizon=HORIZON, seed=number)
+            agent = BayesianPolicyReuse(case.library, rule, None, TypeDynamics.static(), HORIZON, number)
             return agent.select, agent.update
 
         return make
@@ -252,7 +254,8 @@ def _growth(repeats: int, after: Callable[[str], None]) -> Result:
 
 
 def _works(case: LargeReserve) -> dict[str, Callable]:
-    agent, random, n = BayesianPolicyReuse(case.library), np.random.default_rng(0), case.n_signals
+    agent = BayesianPolicyReuse(case.library, dynamics=TypeDynamics.static())
+    random, n = np.random.default_rng(0), case.n_signals
     works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
     rules: dict[str, SelectionRule] = {
         "greedy": Greedy(),
@@ -281,7 +284,7 @@ def _size_goals(label: str, times: Rates) -> list[dict[str, Any]]:
 def _many_users(repeats: int, after: Callable[[str], None]) -> Result:
     """Users in random order: learn from the last outcome and select the next policy, in one pass."""
     case = Reserve(SIGNALS)
-    users = UserBeliefs(case.library, USERS, "f4")
+    users = UserBeliefs(case.library, USERS, "f4", dynamics=TypeDynamics.static())
     random = stream(0, "bench", "reuse", "users")
     contenders = {name: _serving(case, users, name, random) for name in ("sampling", "greedy")}
     if installed(MABWISER):

@@ -17,6 +17,7 @@ from lifelore.experiments.chapter4.c4_04_pacman import pacman_library
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule, greedy
 from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement
@@ -112,7 +113,7 @@ def _moved(settings: Mapping, arena: Arena, policies: Array, known: Mapping, str
 
 def reused(library: PolicyLibrary, rule, returns: Array, stream_of: tuple) -> NDArray[np.int64]:
     """The policies that BPR selects, given the return of each in each episode, (n_policies, n_episodes)."""
-    agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of))
+    agent = BayesianPolicyReuse(library, rule, dynamics=TypeDynamics.static(), seed=stream(*stream_of))
     chosen = np.empty(returns.shape[1], np.int64)
     for episode in range(returns.shape[1]):
         policy = chosen[episode] = agent.select()
