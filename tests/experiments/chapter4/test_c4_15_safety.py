@@ -78,7 +78,7 @@ def test_cells_are_all_games_under_both_normalisations():
     assert settings["games"] == claim_of("C4.11").settings("full")["games"]
     listed = cells(settings)
     assert listed[0] == {"game": GAMES[0], "lot": 0}
-    assert len(listed) == 12 * 2 * settings["lots"] == len({str(cell) for cell in listed})
+    assert len(listed) == settings["lots"] + 23 * settings["grid_lots"] == len({str(cell) for cell in listed})
 
 
 def test_the_worst_type_and_episode_are_found():

@@ -15,6 +15,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
 from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 
 Array = NDArray[np.float64]
 
@@ -156,7 +157,7 @@ def step_counts(
     return counts[:, 0] if n_policies is None else counts
 
 
-def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> Array:
+def step_probs(counts: ArrayLike, pseudo_count: PseudoCount, possible: ArrayLike | None) -> Array:
     """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`.
 
     Parameters
@@ -167,5 +168,6 @@ def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | Non
     counts = np.asarray(counts, np.float64)
     if possible is None:
         return with_pseudo_counts(counts, pseudo_count)
+    pseudo_count = checked_pseudo_count(pseudo_count, counts, possible)
     weights = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
     return with_pseudo_counts(weights, 0.0)

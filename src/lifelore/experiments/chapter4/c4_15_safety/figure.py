@@ -23,8 +23,8 @@ def draw(result: Mapping) -> Figure:
     with house_style():
         games = [row for row in result["rows"] if "met" in row]
         figure = new_figure(11.6, 4.9 + 0.25 * len(games))
-        default, grid = figure.subfigures(2, 1, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
-        by_episode, by_type, naming = default.subplots(1, 3)
+        places = figure.add_gridspec(2, 3, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
+        by_episode, by_type, naming = (figure.add_subplot(places[0, column]) for column in range(3))
         series = {method: {"mean": losses[method].mean(axis=0)} for method in SHOWN}
         draw_curves(by_episode, None, series, looks=lines_of(SHOWN, marker="o", ms=3), legend=False)
         by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
@@ -32,7 +32,7 @@ def draw(result: Mapping) -> Figure:
         draw_ratio_grid(by_type, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
         by_type.set(xlabel="episode", title="safety: BEAT to the static speed")
         _draw_naming(naming, result["rows"][-1])
-        _draw_games(grid.subplots(), games)
+        _draw_games(figure.add_subplot(places[1, :]), games)
     return figure
 
 

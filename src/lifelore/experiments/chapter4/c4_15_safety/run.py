@@ -25,11 +25,12 @@ LAGGING = "BEAT, players who adapt late"
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of players of every game under every normalisation of the loss; the default game comes first."""
+    """Lots of players of every game under every normalisation of the loss; the default comes first, with `lots`."""
     games = [
         list(Setting(*game)._replace(normalisation=own)) for game in settings["games"] for own in NORMALISATIONS
     ]
-    return [{"game": game, "lot": lot} for game in games for lot in range(settings["lots"])]
+    lots = [settings["lots"]] + [settings["grid_lots"]] * (len(games) - 1)
+    return [{"game": game, "lot": lot} for game, own in zip(games, lots, strict=True) for lot in range(own)]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
