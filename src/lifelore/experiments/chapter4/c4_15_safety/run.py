@@ -25,7 +25,7 @@ LAGGING = "BEAT, players who adapt late"
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of players of every game under every normalisation of the loss; the default comes first, with `lots`."""
+    """Lots of players of every game under every normalisation of the loss; the default, with `lots`, is first."""
     games = [
         list(Setting(*game)._replace(normalisation=own)) for game in settings["games"] for own in NORMALISATIONS
     ]
