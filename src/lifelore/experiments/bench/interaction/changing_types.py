@@ -2,8 +2,8 @@
 
 Users of the surveillance world (68 types, 68 policies, noise of deviation 20) play 100 episodes by the rule
 information-directed, with exact models and with models of ten runs a pair. Users of the first kind get another
-type after 50 episodes. All hazards meet the same users and the same noise, so that differences are paired. A user is
-stuck where the mean regret of the last ten episodes is above 5.
+type after 50 episodes. All hazards meet the same users and the same noise, so that differences are paired. A user
+is stuck where the mean regret of the last ten episodes is above 5.
 """
 
 from collections.abc import Iterator
