@@ -11,6 +11,7 @@ import pytest
 from lifelore.agent.reuse.fit import fit
 from lifelore.agent.reuse.one_user import choose, update
 from lifelore.agent.reuse.study import open_study
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.memory import open_memory
 
 
@@ -132,6 +133,11 @@ def test_a_new_fit_says_what_it_sets_anew(reuse, log):
     assert "  incumbent is None, was big until now (--incumbent big keeps it)\n" in words
     assert "  rule is greedy, was information-directed until now (--rule information-directed keeps it)\n" in words
     assert "control" not in words
+    assert again["change"] == DEFAULT_HAZARD
+    assert (
+        "  change is 0.0, was 0.002 until now (--change 0.002 keeps it)\n"
+        in reuse("fit", log, "--change", "0").out
+    )
 
 
 def test_a_context_that_no_log_has_is_said(reuse, tmp_path):

@@ -73,8 +73,8 @@ def fit(
     ] = None,
     explore: Annotated[float, Option(help="Share of the other choices that are drawn from all policies.")] = 0.0,
     change: Annotated[
-        float, Option(help="Probability that the type of a user changes between two choices.")
-    ] = 0.0,
+        float, Option(help="Probability that the type of a user is drawn anew between two choices.")
+    ] = 0.002,
     models: Annotated[
         str,
         Option(help="uncertain: models of few runs learn from each user too. plug-in: estimates are the truth."),

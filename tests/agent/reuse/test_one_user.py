@@ -17,6 +17,7 @@ from lifelore.agent.reuse.study import Study, open_study
 from lifelore.agent.reuse.user_belief import open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import RULES, rule_named
@@ -183,7 +184,7 @@ def test_the_held_out_get_each_policy_alike_or_the_incumbent(memory):
 
 
 def test_a_context_gives_the_prior_and_is_kept(memory):
-    study = study_of(contexts={"web": np.array([0.1, 0.9])})
+    study = study_of(contexts={"web": np.array([0.1, 0.9])}, change=0.0)
     assert choose(memory, study, "ann", context="web")["belief"] == pytest.approx({"reader": 0.1, "skimmer": 0.9})
     assert choose(memory, study, "ann")["belief"] == pytest.approx({"reader": 0.1, "skimmer": 0.9})
     assert choose(memory, study, "bo", context="never heard of")["belief"]["reader"] == pytest.approx(0.6)
@@ -299,7 +300,9 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         assert all(there[decision] is not None for what, decision in told if what == "ended")
         agent = BayesianPolicyReuse(study.library)
         for one in history.decisions:
-            if one.outcome is not None:
+            if one.outcome is None:
+                agent.skip()
+            else:
                 agent.update(one.policy, one.outcome)
         assert np.array_equal(belief_of(memory, study, "ann"), agent.log_belief)
         assert memory.check() == []
@@ -317,6 +320,20 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
     assert found.selection == kept.selection
     for name in ("states", "control", "incumbent", "rule", "explore", "change"):
         assert getattr(found, name) == getattr(kept, name)
+
+
+def test_a_study_of_static_types_stays_so_although_the_default_is_another(memory):
+    """Studies of earlier versions were fitted with a default of 0 and hold that number."""
+    study_of(change=0.0).keep(memory)
+    study = open_study(memory, "s")
+    agent = BayesianPolicyReuse(study.library, dynamics=TypeDynamics.static())
+    for outcome in (8.0, 1.0, 7.0):
+        made = choose(memory, study, "ann")
+        update(memory, study, made["decision"], outcome)
+        agent.update(made["policy"], outcome)
+    assert study.dynamics.kind == "static"
+    assert np.array_equal(belief_of(memory, study, "ann"), agent.log_belief)
+    assert study_of().change == FitSettings().change == DEFAULT_HAZARD == 0.002
 
 
 def of_earlier_lifelore(study):

@@ -27,7 +27,7 @@ def memory(tmp_path):
 @pytest.fixture
 def study():
     library = PolicyLibrary.from_means([[8.0, 2.0], [2.0, 6.0]], 1.0, policies=["x", "y"])
-    return Study("s", library, {"x": "active", "y": "active"}, control=0.5, rule="greedy")
+    return Study("s", library, {"x": "active", "y": "active"}, control=0.5, rule="greedy", change=0.0)
 
 
 def lived(memory, study, users=12, times=3):

@@ -4,14 +4,18 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter4.ball_game.methods import METHODS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
-from lifelore.experiments.chapter4.c4_15_safety.measure import measure, rows, worst_ratio
+from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game, measure, rows, worst_ratio
 from lifelore.experiments.chapter4.c4_15_safety.run import LAGGING, cells, run_cell
+from lifelore.experiments.engine.predicate import IN_PART
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.15")
 
 
-def made(n=30):
+GAMES = (["s-maze 160", 0.5, 3.0, "fixed", "slides"], ["s-maze 160", 0.5, 3.0, "maxima", "slides"])
+
+
+def made(n=30, game=GAMES[0]):
     """BEAT 10 % above the best in the first episode, at it later; the static speed 20 % above it, EXP-3 40 %."""
     generator = np.random.default_rng(0)
     best = 0.5 + generator.normal(0, 0.02, (6, n, 5))
@@ -20,6 +24,7 @@ def made(n=30):
     losses["BEAT"] = best * np.array([1.1, 1, 1, 1, 1])
     losses["BEAT"][2, :, 1] *= 1.5
     return {
+        "game": game,
         "losses": {m: v.tolist() for m, v in losses.items()},
         "needed": [[10] * (n - 1) + [-1]] * 6,
         "right_speed": [[True] * n] * 6,
@@ -43,6 +48,37 @@ def test_measures_by_hand():
     shown = rows({}, [made()])[-1]
     assert shown["named"][0][shown["steps"].index(8)] == 0
     assert shown["named"][0][shown["steps"].index(12)] == pytest.approx(0.967)
+
+
+def test_every_game_is_asked_the_conditions_of_the_default():
+    worse = made(game=GAMES[1])
+    worse["losses"][STATIC] = [[[0.3] * 5] * 30] * 6
+    worse["needed"] = [[-1] * 30] * 6
+    found, alone = measure({}, [made(), worse]), measure({}, [made()])
+    single = [c.measure for c in asked_of_every_game()]
+    assert len(single) == 6
+    assert {f"grid_{name}" for name in single} == {name for name in found if name.startswith("grid_")}
+    assert all(found[name] == alone[name] for name in alone if not name.startswith("grid_"))
+    assert all(alone[f"grid_{name}"].value == 1 for name in single)
+    # In the second game the static speed is better than any other method, and nobody is ever named right.
+    shares = [0.5, 1.0, 0.5, 0.5, 1.0, 0.5]
+    assert [found[f"grid_{name}"].value for name in single] == shares
+    shown = [row for row in rows({}, [made(), worse]) if "met" in row]
+    assert [list(row["met"].values()) for row in shown] == [[True] * 6, [share == 1.0 for share in shares]]
+    assert (
+        CLAIM.predicate.verdict({name: {"value": e.value, "ci95": e.ci95} for name, e in alone.items()}) == "holds"
+    )
+    assert (
+        CLAIM.predicate.verdict({name: {"value": e.value, "ci95": e.ci95} for name, e in found.items()}) == IN_PART
+    )
+
+
+def test_cells_are_all_games_under_both_normalisations():
+    settings = CLAIM.settings("full")
+    assert settings["games"] == claim_of("C4.11").settings("full")["games"]
+    listed = cells(settings)
+    assert listed[0] == {"game": GAMES[0], "lot": 0}
+    assert len(listed) == settings["lots"] + 23 * settings["grid_lots"] == len({str(cell) for cell in listed})
 
 
 def test_the_worst_type_and_episode_are_found():

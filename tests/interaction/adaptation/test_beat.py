@@ -6,6 +6,7 @@ import pytest
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.adaptation.beat import EPSILONS, Adaptation, Beat, epsilon_of
 from lifelore.interaction.adaptation.beat_users import BeatUsers
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
@@ -80,7 +81,8 @@ def test_beat_is_policy_reuse(epsilon):
     for seed in range(5):
         lib, probs, _ = library(seed)
         beat = Beat(lib, epsilon=epsilon, seed=np.random.default_rng(seed))
-        reuse = BayesianPolicyReuse(lib, EpsilonGreedy(epsilon), seed=np.random.default_rng(seed))
+        generator = np.random.default_rng(seed)
+        reuse = BayesianPolicyReuse(lib, EpsilonGreedy(epsilon), dynamics=TypeDynamics.static(), seed=generator)
         world, state = np.random.default_rng(100 + seed), 0
         for _ in range(400):
             chosen = beat.select()

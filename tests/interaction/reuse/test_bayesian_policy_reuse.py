@@ -17,6 +17,7 @@ from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 INF = math.inf
+STATIC = TypeDynamics.static()
 
 
 def coin_library(**options) -> PolicyLibrary:
@@ -35,7 +36,7 @@ def grid_library(n: int = 8, deviation: float = 1.0) -> PolicyLibrary:
 
 
 def test_two_episodes_by_hand():
-    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy())
+    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy(), dynamics=STATIC)
     assert agent.select() == 0
     agent.update("left", 1)
     assert agent.belief == pytest.approx(np.array([0.12, 0.32]) / 0.44)
@@ -49,7 +50,7 @@ def test_two_episodes_by_hand():
 
 
 def test_what_it_says_for_itself():
-    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy())
+    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), Greedy(), dynamics=STATIC)
     assert agent.explain().selected is None
     assert agent.explain().evidence == {"a": [], "b": []}
     agent.update("left", 1)
@@ -77,7 +78,8 @@ def test_a_single_policy_has_no_runner_up():
 
 def test_an_unexplained_signal_keeps_the_belief_and_raises_the_surprise():
     probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]]])
-    agent = BayesianPolicyReuse(PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=CategorySignal(probs)))
+    library = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=CategorySignal(probs))
+    agent = BayesianPolicyReuse(library, dynamics=STATIC)
     agent.update(0, 0)
     before, surprise = agent.log_belief, agent.surprise
     agent.update(0, 2)
@@ -95,7 +97,7 @@ def test_late_signals_in_any_order_lead_to_the_same_belief(order, seed):
     random = np.random.default_rng(seed)
     library = grid_library()
     signals = [(int(random.integers(8)), float(random.normal(-3, 3))) for _ in range(10)]
-    at_once, late = BayesianPolicyReuse(library), BayesianPolicyReuse(library)
+    at_once, late = (BayesianPolicyReuse(library, dynamics=STATIC) for _ in range(2))
     for policy, signal in signals:
         at_once.select()
         at_once.update(policy, signal)
@@ -147,6 +149,14 @@ def test_types_that_change_take_their_step_after_each_signal():
     agent = BayesianPolicyReuse(coin_library(), dynamics=changing)
     agent.update(0, 0)
     assert agent.belief == pytest.approx([0.77, 0.23])
+
+
+def test_types_may_change_unless_they_are_static():
+    agent = BayesianPolicyReuse(coin_library(prior=[0.6, 0.4]), prior=[1.0, 0.0])
+    assert (agent.dynamics.kind, agent.dynamics.rate) == ("hazard", 0.002)
+    assert agent.dynamics.law == pytest.approx([0.6, 0.4])
+    agent.skip()
+    assert agent.belief == pytest.approx([0.9992, 0.0008])
 
 
 def test_what_is_given_out_cannot_change_the_agent():
@@ -207,7 +217,8 @@ def test_a_model_that_answers_wrongly_is_named(answer, message):
 
 def test_an_own_likelihood_serves_as_a_signal():
     signal = LikelihoodSignal(lambda policy, words: [len(words) * -1.0, -INF if "no" in words else -2.0], 2)
-    agent = BayesianPolicyReuse(PolicyLibrary.from_means(np.eye(2), 1.0, signal=signal), Greedy())
+    library = PolicyLibrary.from_means(np.eye(2), 1.0, signal=signal)
+    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
     agent.update(0, ["yes"])
     assert agent.belief == pytest.approx(np.exp([-1, -2]) / np.exp([-1, -2]).sum())
     agent.update(0, ["no"])

@@ -50,7 +50,7 @@ def same_bits(one, other) -> bool:
 @pytest.mark.parametrize("hazard", [0.0, 0.1])
 def test_an_episode_is_that_of_the_printed_algorithm(kind, hazard):
     model, random = library(kind), np.random.default_rng(1)
-    dynamics = TypeDynamics.hazard(hazard, model.prior) if hazard else None
+    dynamics = TypeDynamics.hazard(hazard, model.prior) if hazard else TypeDynamics.static()
     algorithm = ReuseAlgorithm(model, dynamics)
     log_belief, belief = algorithm.start(), model.prior
     for signal in drawn(kind, random, 6).tolist():
@@ -95,7 +95,9 @@ def test_many_rows_have_the_bits_of_single_rows_and_of_the_plain_rule(kind, haza
         assert same_bits(evidence, [log_evidence for _, log_evidence in of_plain])
         assert same_bits(together, one_by_one)
         assert same_bits(together, without)
-        assert same_bits(together, naive)
+        # The step of a hazard alone, from logarithms to logarithms, rounds otherwise than both steps in one pass.
+        assert together == pytest.approx(naive, rel=1e-12, abs=1e-15 if hazard else 0)
+        assert hazard or same_bits(together, naive)
 
 
 @pytest.mark.parametrize("name", RULES)
@@ -144,7 +146,7 @@ def test_an_episode_without_a_signal_is_a_step_of_the_dynamics():
     agent.skip()
     assert agent.belief == pytest.approx(0.2 * model.prior + 0.8 * np.eye(N_TYPES)[2])
     assert (agent.episode, agent.surprise) == (1, 0.0)
-    static = BayesianPolicyReuse(model)
+    static = BayesianPolicyReuse(model, dynamics=TypeDynamics.static())
     static.skip()
     assert same_bits(static.log_belief, log_prior(model.prior))
 

@@ -23,6 +23,7 @@ from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
 KERNELS_RUN = Path(__file__).with_name("user_kernels_run.py")
 N_TYPES, N_POLICIES = 9, 6
+STATIC = TypeDynamics.static()
 TOLERANCE = {"f8": 1e-12, "f4": 1e-5}
 FLOOR = 1e-6
 """Above this, float32 beliefs also hold to 1e-4 of themselves."""
@@ -55,10 +56,13 @@ def drawn(model: PolicyLibrary, random: np.random.Generator, n: int):
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["return", "category", "own", "student-t", "histogram"])
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
-def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
+@pytest.mark.parametrize("hazard", [0.0, 0.002, 1e-36, 1.0])
+def test_a_batch_agrees_with_one_agent_a_user(kind, dtype, hazard):
+    """Users come twice in a batch; a hazard of 1e-36 is too small for the linear step of float32."""
     model, random = library(kind), np.random.default_rng(0)
-    users = UserBeliefs(model, 40, dtype, models="plug-in")
-    agents = [BayesianPolicyReuse(model, models="plug-in") for _ in range(40)]
+    dynamics = TypeDynamics.hazard(hazard, model.prior)
+    users = UserBeliefs(model, 40, dtype, dynamics=dynamics, models="plug-in")
+    agents = [BayesianPolicyReuse(model, dynamics=dynamics, models="plug-in") for _ in range(40)]
     for _ in range(15):
         who, policies = random.integers(0, 40, 60), random.integers(0, N_POLICIES, 60)
         signals = drawn(model, random, 60)
@@ -74,7 +78,7 @@ def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
         assert found == pytest.approx(one_by_one, abs=TOLERANCE[dtype])
         above = one_by_one > FLOOR
         assert found[above] == pytest.approx(one_by_one[above], rel=10 * TOLERANCE[dtype])
-    assert (users.log_belief == -np.inf).any() == (kind == "category")
+    assert (users.log_belief == -np.inf).any() == (kind == "category" and not hazard)
 
 
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
@@ -133,7 +137,7 @@ def test_a_user_may_come_twice_across_and_within_blocks():
 
 def test_what_float32_reads_as_zero_it_does_not_forget():
     model = PolicyLibrary.from_means([[0.0, 0.0], [20.0, 0.0]], 1.0)
-    users = UserBeliefs(model, 1)
+    users = UserBeliefs(model, 1, dynamics=STATIC)
     for _ in range(3):
         users.update([0], [0], [0.0])
     # Each signal weighs 200 nats: far below the least float32, and still three signals the other way bring it
@@ -159,6 +163,28 @@ def test_read_beliefs_hold_no_subnormals():
 
 
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_a_hazard_steps_where_no_type_explains_the_signal_and_spares_impossible_types(dtype):
+    probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]], [[0.5, 0.5, 0.0]]])
+    model = PolicyLibrary.from_means(np.eye(3, 1), 1.0, signal=CategorySignal(probs), prior=[0.5, 0.5, 0.0])
+    dynamics = TypeDynamics.hazard(0.1, model.prior)
+    users = UserBeliefs(model, 2, dtype, dynamics=dynamics)
+    assert users.update([0, 1], [0, 0], [0, 2]).tolist() == [pytest.approx(np.log(0.75)), -np.inf]
+    assert users.belief([0])[0] == pytest.approx([0.9 * 2 / 3 + 0.05, 0.9 / 3 + 0.05, 0.0], rel=1e-6)
+    assert users.belief([1])[0] == pytest.approx([0.5, 0.5, 0.0], rel=1e-6)
+    # A signal of the second type alone, then none: 0.9 * 1 + 0.05, and from there 0.9 * 0.95 + 0.05.
+    users.update([0], [0], [1])
+    assert users.belief([0])[0] == pytest.approx([0.05, 0.95, 0.0], rel=1e-6)
+    users.update([0], [0], [2])
+    assert users.belief([0])[0] == pytest.approx([0.095, 0.905, 0.0], rel=1e-6)
+    # A belief in a type that the prior excludes stays in the logarithm however small it is.
+    users = UserBeliefs(
+        PolicyLibrary.from_means([[0.0], [40.0]], 1.0), 1, dtype, dynamics=TypeDynamics.hazard(0.1, [1.0, 0.0])
+    )
+    users.update([0], [0], [0.0])
+    assert users.log_belief[0, 1] == pytest.approx(-800 + np.log(0.9), rel=1e-6)
+
+
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_a_hundred_thousand_hostile_signals_leave_beliefs(dtype):
     random = np.random.default_rng(0)
     model = PolicyLibrary.from_means(random.normal(size=(7, 4)), 1e-3)
@@ -180,7 +206,7 @@ def test_unexplained_signals_keep_the_belief_to_the_bit():
     probs = np.array([[[1.0, 0.0, 0.0]], [[0.5, 0.5, 0.0]]])
     model = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=CategorySignal(probs))
     for dtype in ("f4", "f8"):
-        users = UserBeliefs(model, 2, dtype)
+        users = UserBeliefs(model, 2, dtype, dynamics=STATIC)
         users.update([0, 1], [0, 0], [0, 1])
         before = users.log_belief.copy()
         assert users.update([0, 1], [0, 0], [2, 2]).tolist() == [-np.inf, -np.inf]
@@ -197,8 +223,9 @@ def test_types_that_change_and_forgotten_users():
         agent.update(1, signal)
         assert chosen[0] == chosen[1] == agent.expected_utility().argmax()
     assert users.belief([4, 2]) == pytest.approx(np.array([agent.belief] * 2), abs=1e-12)
-    with pytest.raises(InputError, match="distinct where types change"):
-        users.update([1, 1], [0, 0], [1.0, 2.0])
+    moving = UserBeliefs(model, 5, dynamics=TypeDynamics.transitions(np.eye(N_TYPES)))
+    with pytest.raises(InputError, match="distinct where types change by a matrix"):
+        moving.update([1, 1], [0, 0], [1.0, 2.0])
     users.reset([4])
     assert users.belief([4])[0] == pytest.approx(model.prior)
     assert users.belief([2])[0] != pytest.approx(model.prior)
@@ -373,7 +400,8 @@ def test_evidence_below_the_range_of_numbers_is_not_that_of_the_impossible():
     said = {0: [-1.7e308, 0.0], 1: [-1.7e308, -np.inf]}
     signal = LikelihoodSignal(lambda policy, x: said[int(x)], 2)
     model = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=signal)
-    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model, models="plug-in")
+    users = UserBeliefs(model, 1, "f8", dynamics=STATIC)
+    agent = BayesianPolicyReuse(model, dynamics=STATIC, models="plug-in")
     for x in (0, 1):
         evidence = users.update([0], [0], [x])
         agent.update(0, x)

@@ -53,13 +53,15 @@ def all_arrays() -> dict[str, np.ndarray]:
             (library, lambda: random.normal(size=20)),
             (spoken, lambda: random.integers(0, 4, 20)),
         ):
-            users = UserBeliefs(model, 9, dtype, seed=4)
-            for rule in ("sampling", "greedy", "sampling", "greedy"):
-                who, policies = random.integers(0, 9, 20), random.integers(0, 5, 20)
-                name = f"{dtype} {type(model.signal).__name__} {rule} {len(out)}"
-                out[name] = users.update_and_select(who, policies, draw(), rule)
-                out[f"{name} logs"] = users.log_belief.copy()
-                out[f"{name} selected"] = users.select(np.arange(9), rule)
+            for hazard in (0.0, 0.002, 1e-36):
+                dynamics = TypeDynamics.hazard(hazard, model.prior)
+                users = UserBeliefs(model, 9, dtype, dynamics=dynamics, seed=4)
+                for rule in ("sampling", "greedy", "sampling", "greedy"):
+                    who, policies = random.integers(0, 9, 20), random.integers(0, 5, 20)
+                    name = f"{dtype} {type(model.signal).__name__} {hazard} {rule} {len(out)}"
+                    out[name] = users.update_and_select(who, policies, draw(), rule)
+                    out[f"{name} logs"] = users.log_belief.copy()
+                    out[f"{name} selected"] = users.select(np.arange(9), rule)
     return out
 
 

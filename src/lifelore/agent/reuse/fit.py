@@ -18,6 +18,7 @@ from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
@@ -54,7 +55,7 @@ class FitSettings:
     incumbent: str | None = None
     rule: str = DEFAULT_RULE
     explore: float = 0.0
-    change: float = 0.0
+    change: float = DEFAULT_HAZARD
     models: str = "uncertain"
     seed: int = 0
 

@@ -18,7 +18,7 @@ from lifelore.agent.reuse.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
@@ -65,7 +65,7 @@ class Study:
     explore : float
         Share of the others' choices that are any active policy, in [0, 1].
     change : float
-        Probability that a user's type is another at the next choice, in [0, 1].
+        Probability that a user's type is drawn anew before the next choice, in [0, 1]; at 0 types are static.
     models : {"uncertain", "plug-in"}
         As for `BayesianPolicyReuse`.
     fitted : dict
@@ -84,7 +84,7 @@ class Study:
     incumbent: str | None = None
     rule: str = DEFAULT_RULE
     explore: float = 0.0
-    change: float = 0.0
+    change: float = DEFAULT_HAZARD
     models: str = "uncertain"
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, StoredTable] = field(default_factory=dict)

@@ -6,6 +6,7 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.library_from_log import TypedRows, library_of, model_of
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.core.errors import InputError
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.user_types import user_types
 from lifelore.interaction.outcomes.outcome_families import UserRows
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -46,7 +47,7 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     if waiting:
         library, _ = library_of(log, named, model)
         for own in waiting.values():
-            agent = BayesianPolicyReuse(library, models="plug-in")
+            agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static(), models="plug-in")
             for row in own:
                 policy = log.policy.names[log.policy.codes[row]]
                 if policy in library.policies:

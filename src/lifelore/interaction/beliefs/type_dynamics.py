@@ -2,7 +2,7 @@
 
 With a hazard h, a new type is drawn from the prior with probability h before each episode:
 β ← (1 - h) β + h G₀. Any h from 0.002 to 0.1 divides the mean regret of types that switch once in 50 episodes by
-four. The thesis assumes static types, h = 0.
+four. The default is a hazard of `DEFAULT_HAZARD`. The thesis assumes static types, h = 0.
 """
 
 from dataclasses import dataclass
@@ -13,8 +13,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import SUM_TOLERANCE, log_prior
+from lifelore.interaction.beliefs.hazard import HazardTerms
 
 Array = NDArray[np.float64]
+DEFAULT_HAZARD = 0.002
+"""Default probability per episode of a new type; `lifelore bench changing_types` compares others."""
 ROWS_AT_ONCE = 1 << 20
 """Size of the largest temporary array when many beliefs take a step of a matrix; more is no faster."""
 
@@ -96,6 +99,13 @@ class TypeDynamics:
     def n_types(self) -> int | None:
         """Number of types that the dynamics are for; None where it does not matter."""
         return None if self.law is None else self.law.shape[-1]
+
+    def hazard_terms(self, dtype: str = "f8") -> HazardTerms | None:
+        """The terms of `hazard_rule` and its kernels; None where the dynamics are no hazard above 0."""
+        if self.kind != "hazard" or not self.rate:
+            return None
+        assert self.law is not None
+        return HazardTerms.of(self.rate, self.law, dtype)
 
     def step(self, log_belief: Array) -> Array:
         """The belief before the next episode, (..., n_types) to the same, normalised."""

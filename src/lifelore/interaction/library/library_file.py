@@ -18,6 +18,7 @@ from lifelore.core.protocols import SignalModel
 from lifelore.interaction.outcomes.outcome_kinds import KINDS as OUTCOMES
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
+from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
@@ -26,7 +27,15 @@ from lifelore.interaction.signals.transition_signal import TransitionSignal
 FORMAT = PackedFormat("lifelore policy library", 1, "policy library", "save")
 SIGNALS: dict[str, Any] = {
     kind.kind: kind
-    for kind in (ReturnSignal, CategorySignal, RewardSignal, TransitionSignal, StepRewardSignal, JointSignal)
+    for kind in (
+        ReturnSignal,
+        CategorySignal,
+        OrderedNormalSignal,
+        RewardSignal,
+        TransitionSignal,
+        StepRewardSignal,
+        JointSignal,
+    )
 }
 """The signal models that a file can hold, by name."""
 DEEPEST = 8

@@ -12,6 +12,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.log_probability import checked_distributions, checked_weight
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows, rows_of_samples
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount
 
 Array = NDArray[np.float64]
 
@@ -56,15 +57,18 @@ class CategoricalOutcomes(CountedOutcomes):
         super().__init__(counts, 0.0 if count is None else 0.5, count is None)
 
     @classmethod
-    def from_samples(cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
+    def from_samples(
+        cls, samples: ArrayLike, values: ArrayLike | None = None, pseudo_count: PseudoCount = 0.5
+    ) -> Self:
         """The model fitted to `samples` (n_types, n_policies, n), NaN where missing.
 
         Parameters
         ----------
         values : (n_values,) float, optional
             All possible values; by default the values of the samples.
-        pseudo_count : float
-            Added to every value of every pair, ≥ 0.
+        pseudo_count : float or "held-out"
+            Added to every value of every pair, ≥ 0; "held-out" chooses it by held-out likelihood, see
+            `outcomes.pseudo_counts`.
 
         Raises
         ------
@@ -74,7 +78,9 @@ class CategoricalOutcomes(CountedOutcomes):
         return cls.from_rows(rows_of_samples(samples), values, pseudo_count)
 
     @classmethod
-    def from_rows(cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: float = 0.5) -> Self:
+    def from_rows(
+        cls, rows: OutcomeRows, values: ArrayLike | None = None, pseudo_count: PseudoCount = 0.5
+    ) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
         known = _distinct(rows.values) if values is None else np.sort(np.array(values, np.float64))
         return cls._fitted(known, known.size, rows, pseudo_count)

@@ -20,6 +20,7 @@ from lifelore.interaction.outcomes.outcome_model import (
     refuse_outcome,
 )
 from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.outcomes.task_counts import TaskCounts
 
@@ -238,13 +239,13 @@ class CountedOutcomes:
         return model
 
     @classmethod
-    def _fitted(cls, cells: Array, n_cells: int, rows: OutcomeRows, pseudo_count: float) -> Self:
+    def _fitted(cls, cells: Array, n_cells: int, rows: OutcomeRows, pseudo_count: PseudoCount) -> Self:
         """The model fitted to rows of outcomes."""
-        if not (pseudo_count >= 0 and np.isfinite(pseudo_count)):
-            raise InputError(f"pseudo_count must be at least 0 and finite, got {pseudo_count}")
         model = cls.__new__(cls)
         model._place(cells, n_cells)
-        return cls.of(cells, model._counted(rows, n_cells) + pseudo_count, pseudo_count)
+        counts = model._counted(rows, n_cells)
+        number = checked_pseudo_count(pseudo_count, counts)
+        return cls.of(cells, counts + number, number)
 
     def _counted(self, rows: OutcomeRows, n_cells: int) -> Array:
         """Number of outcomes in each cell, (n_policies, n_types, n_cells)."""

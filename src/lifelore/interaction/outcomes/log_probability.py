@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 
 Array = NDArray[np.float64]
 
@@ -41,7 +42,7 @@ def checked_weight(count: float | None) -> float:
     return float(count)
 
 
-def with_pseudo_counts(counts: ArrayLike, pseudo_count: float) -> Array:
+def with_pseudo_counts(counts: ArrayLike, pseudo_count: PseudoCount) -> Array:
     """Distributions along the last axis from counts, `pseudo_count` added to each; uniform where all are 0.
 
     Raises
@@ -52,8 +53,6 @@ def with_pseudo_counts(counts: ArrayLike, pseudo_count: float) -> Array:
     counts = np.asarray(counts, np.float64)
     if not counts.size or not ((counts >= 0).all() and np.isfinite(counts).all()):
         raise InputError("counts must be at least 0 and finite, at least one of them")
-    if not (pseudo_count >= 0 and np.isfinite(pseudo_count)):
-        raise InputError(f"pseudo_count must be at least 0 and finite, got {pseudo_count}")
-    weights = counts + pseudo_count
+    weights = counts + checked_pseudo_count(pseudo_count, counts)
     totals = weights.sum(axis=-1, keepdims=True)
     return np.divide(weights, totals, out=np.full_like(weights, 1 / counts.shape[-1]), where=totals > 0)

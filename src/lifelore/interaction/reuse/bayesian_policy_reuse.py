@@ -47,7 +47,8 @@ class BayesianPolicyReuse:
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
     dynamics : TypeDynamics, optional
-        Static by default. Otherwise each `update` is also the step between two episodes, and their order matters.
+        By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
+        Each `update` is also the step between two episodes, and their order matters unless types are static.
     horizon : int, optional
         Number of episodes K, at least 1; the knowledge gradient weighs information by the episodes left.
     seed : int or numpy generator

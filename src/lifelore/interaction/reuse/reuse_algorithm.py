@@ -22,7 +22,8 @@ from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.bayes_rule import bayes_rule
 from lifelore.interaction.beliefs.belief import ROW_COST, log_prior
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.beliefs.hazard import hazard_rule
+from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.outcomes.batch_likelihood import batch_likelihood
@@ -52,7 +53,7 @@ class ReuseAlgorithm:
     library : PolicyLibrary
         Not copied. Call `refresh` after its models have learnt in place.
     dynamics : TypeDynamics, optional
-        Static by default.
+        By default a hazard of `DEFAULT_HAZARD` that draws from the library's prior; the thesis's types are static.
     dtype : {"f8", "f4"}
         Precision of the log beliefs. float32 is faster and needs half the memory; see `UserBeliefs` for its error.
     least : float
@@ -76,10 +77,11 @@ class ReuseAlgorithm:
     ) -> None:
         self.library, self.least = library, least
         self.dtype: Precision = dtype
-        self.dynamics = dynamics or TypeDynamics.static()
+        self.dynamics = dynamics or TypeDynamics.hazard(DEFAULT_HAZARD, library.prior)
         if self.dynamics.n_types not in (None, library.n_types):
             raise InputError(f"dynamics are for {self.dynamics.n_types} types, the library has {library.n_types}")
-        self._changing = self.dynamics.kind != "static"
+        self._hazard = self.dynamics.hazard_terms(dtype)
+        self._moving = self.dynamics.kind == "transitions"
         self._rows_updated, self._compiled = 0, False
         self.refresh()
 
@@ -186,7 +188,7 @@ class ReuseAlgorithm:
         log_beliefs : (n_users, n_types) float of `dtype`
             Updated in place.
         users, policies : (k,) int64
-            A user may come twice where types are static.
+            A user may come twice, except where the dynamics are a matrix of transitions.
         signals : sequence of length k
             Numbers for returns, category numbers for categories.
         select : callable, optional
@@ -215,8 +217,8 @@ class ReuseAlgorithm:
             )
         if outcomes is not None and self.dynamics.kind == "hazard" and self.dynamics.rate:
             return self._update_changing(log_beliefs, users, policies, signals, select, outcomes)
-        if self._changing and len(np.unique(users)) < len(users):
-            raise InputError("users must be distinct where types change between episodes; update them in turn")
+        if self._moving and len(np.unique(users)) < len(users):
+            raise InputError("users must be distinct where types change by a matrix; update them in turn")
         log_evidence, chosen = np.empty(len(users)), np.empty(len(users) if select else 0, np.int64)
         work = np.empty((min(BLOCK, len(users)), self.library.n_types))
         linear = np.empty_like(work, np.float32) if self.dtype == "f4" else None
@@ -226,14 +228,12 @@ class ReuseAlgorithm:
                 self._likelihood.write(policies[at], signals[at], work[:here])
             else:
                 outcomes.write(own, policies[at], signals[at], work[:here])
-            if linear is None:
-                (_loaded or _load()).bayes_users(log_beliefs, own, work[:here], log_evidence[at])
-            else:
-                _user_kernels().bayes_users_f4(log_beliefs, own, work[:here], linear[:here], log_evidence[at])
-            if self._changing:
+            found = None if linear is None else linear[:here]
+            self._update_block(log_beliefs, own, work[:here], found, log_evidence[at])
+            if self._moving:
                 log_beliefs[own] = self.dynamics.step(log_beliefs[own].astype(np.float64))
             if select is not None:
-                known = linear is not None and not self._changing
+                known = linear is not None and not self._moving
                 chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own), at)  # pyright: ignore
         return log_evidence, chosen
 
@@ -262,6 +262,26 @@ class ReuseAlgorithm:
             if select is not None:
                 chosen[at] = select(self.belief(log_beliefs, own), at)
         return log_evidence, chosen
+
+    def _update_block(
+        self,
+        log_beliefs: NDArray[Any],
+        users: Numbers,
+        log_likelihood: Array,
+        linear: NDArray[Any] | None,
+        log_evidence: Array,
+    ) -> None:
+        """Bayes' rule for a block of users and the step of a hazard, if there is one; arrays as in the kernels."""
+        rows = (log_beliefs, users, log_likelihood)
+        if linear is not None:
+            if self._hazard is None:
+                _user_kernels().bayes_users_f4(*rows, linear, log_evidence)
+            else:
+                _hazard_user_kernels().hazard_users_f4(*rows, linear, log_evidence, self._hazard)
+        elif self._hazard is None:
+            (_loaded or _load()).bayes_users(*rows, log_evidence)
+        else:
+            _hazard_kernels().hazard_users(*rows, log_evidence, self._hazard)
 
     def update_row(
         self, log_belief: Array, policy: int, signal: Any, outcome: float | None = None
@@ -295,23 +315,38 @@ class ReuseAlgorithm:
         compiled = self._compiled or self._starts_compiler()
         if isinstance(self.library, TaskLibrary):
             log_likelihood, log_evidence = learn(self.library, log_belief, policy, signal, outcome, self.dynamics)
+            if self._hazard is not None:
+                self.step_row(log_belief)
         elif compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
             log_likelihood = np.empty(len(log_belief))
-            log_evidence = (_loaded or _load()).normal_row(log_belief, policy, signal, *normals, log_likelihood)
+            row = (log_belief, policy, signal, *normals, log_likelihood)
+            if self._hazard is None:
+                log_evidence = (_loaded or _load()).normal_row(*row)
+            else:
+                log_evidence = _hazard_kernels().hazard_normal_row(*row, self._hazard)
         else:
             log_likelihood = self._log_likelihood(policy, signal)
-            if compiled:
-                log_evidence = (_loaded or _load()).bayes_row(log_belief, log_likelihood)
-            else:
-                log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
+            log_evidence = self._learn_row(log_belief, log_likelihood, compiled)
         if log_evidence != log_evidence:
             raise InputError(
                 f"signal model {type(self.library.signal).__name__} gave NaN or infinity as a log likelihood for "
                 f"policy {self.library.policies[policy]!r}; minus infinity is allowed, they are not"
             )
-        if self._changing:
+        if self._moving:
             self.step_row(log_belief)
         return log_likelihood, log_evidence
+
+    def _learn_row(self, log_belief: Array, log_likelihood: Array, compiled: bool) -> float:
+        """Bayes' rule for a log belief in place, and the step of a hazard, if there is one; the log evidence."""
+        if compiled:
+            if self._hazard is None:
+                return (_loaded or _load()).bayes_row(log_belief, log_likelihood)
+            return _hazard_kernels().hazard_row(log_belief, log_likelihood, self._hazard)
+        if self._hazard is None:
+            log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
+        else:
+            log_belief[:], log_evidence = hazard_rule(log_belief, log_likelihood, self._hazard)
+        return log_evidence
 
     def step_row(self, log_belief: Array) -> None:
         """The dynamics' step of a log belief (n_types,) alone, in place: an episode without a signal."""
@@ -409,6 +444,20 @@ def _load() -> Any:
 
     _loaded = belief_kernels
     return belief_kernels
+
+
+@cache
+def _hazard_kernels() -> ModuleType:
+    from lifelore.interaction.beliefs import hazard_kernels
+
+    return hazard_kernels
+
+
+@cache
+def _hazard_user_kernels() -> ModuleType:
+    from lifelore.interaction.reuse import hazard_user_kernels
+
+    return hazard_user_kernels
 
 
 @cache

@@ -45,7 +45,8 @@ class UserBeliefs:
     prior : (n_types,) float, optional
         The library's by default.
     dynamics : TypeDynamics, optional
-        Static by default. Otherwise each `update` is also the step between two episodes.
+        By default a hazard of 0.002 that draws from the library's prior; `TypeDynamics.static()` as in the thesis.
+        Each `update` is also the step between two episodes.
     models : {"uncertain", "plug-in"}
         As in `BayesianPolicyReuse`. Uncertain models need returns as signals; other signals are plug-in.
     spread : float, optional

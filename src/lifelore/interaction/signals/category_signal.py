@@ -18,6 +18,7 @@ from lifelore.interaction.outcomes.dirichlet import spread_of_counts
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
 from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.signals.task_categories import TaskCategories
 
@@ -71,7 +72,7 @@ class CategorySignal:
         cls,
         samples: ArrayLike,
         n_categories: int | None = None,
-        pseudo_count: float = 0.5,
+        pseudo_count: PseudoCount = 0.5,
         categories: Sequence[Hashable] | None = None,
     ) -> Self:
         """The model fitted to category numbers `samples` (n_types, n_policies, n), NaN where missing.
@@ -80,8 +81,9 @@ class CategorySignal:
         ----------
         n_categories : int, optional
             By default the number of `categories`, or else the largest sample plus 1.
-        pseudo_count : float
+        pseudo_count : float or "held-out"
             Added to every category of every pair, ≥ 0; at 0, a category never seen excludes a type for ever.
+            "held-out" chooses it by held-out likelihood, see `outcomes.pseudo_counts`.
 
         Raises
         ------
@@ -93,10 +95,9 @@ class CategorySignal:
         number = rows.values.astype(np.int64)
         if (number != rows.values).any() or number.min() < 0 or number.max() >= n:
             raise InputError(f"samples must be category numbers 0 to {n - 1}")
-        if not (pseudo_count >= 0 and np.isfinite(pseudo_count)):
-            raise InputError(f"pseudo_count must be at least 0, got {pseudo_count}")
         size = rows.shape[0] * rows.shape[1] * n
-        counts = np.bincount(rows.pair * n + number, minlength=size).reshape(*rows.shape, n) + pseudo_count
+        counted = np.bincount(rows.pair * n + number, minlength=size).reshape(*rows.shape, n)
+        counts = counted + checked_pseudo_count(pseudo_count, counted)
         totals = counts.sum(axis=2)
         return cls(counts / totals[:, :, None], categories, totals)
 

@@ -15,6 +15,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
 from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.pseudo_counts import PseudoCount, checked_pseudo_count
 from lifelore.interaction.signals.step_checks import check_steps
 from lifelore.interaction.signals.task_steps import TaskSteps
 
@@ -186,7 +187,7 @@ def step_counts(
     return counts[:, 0] if n_policies is None else counts
 
 
-def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> tuple[Array, Array]:
+def step_probs(counts: ArrayLike, pseudo_count: PseudoCount, possible: ArrayLike | None) -> tuple[Array, Array]:
     """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`; row sums.
 
     A row without any count is uniform and counts as one step.
@@ -198,8 +199,10 @@ def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | Non
     """
     counts = np.asarray(counts, np.float64)
     if possible is not None:
+        pseudo_count = checked_pseudo_count(pseudo_count, counts, possible)
         counts = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
         pseudo_count = 0.0
+    pseudo_count = checked_pseudo_count(pseudo_count, counts)
     probs = with_pseudo_counts(counts, pseudo_count)
     totals = (counts + pseudo_count).sum(axis=-1)
     return probs, np.where(totals > 0, totals, 1.0)

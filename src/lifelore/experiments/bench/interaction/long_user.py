@@ -64,9 +64,8 @@ def bench_long_user(repeats: int, progress: Progress) -> dict:
 def _study() -> Study:
     means = stream(0, "bench", "long user").normal(0.0, 3.0, (TYPES, POLICIES))
     library = PolicyLibrary.from_means(means, NOISE)
-    return Study(
-        "bench", library, dict.fromkeys(library.policies, ACTIVE), control=0.0, rule="information-directed"
-    )
+    active = dict.fromkeys(library.policies, ACTIVE)
+    return Study("bench", library, active, control=0.0, rule="information-directed", change=0.0)
 
 
 def _statements(memory: Memory, study: Study) -> float:

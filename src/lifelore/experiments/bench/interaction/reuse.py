@@ -27,6 +27,7 @@ from lifelore.experiments.bench.interaction.reuse_peers import (
 )
 from lifelore.experiments.bench.interaction.reuse_users import bench_users
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import (
@@ -105,7 +106,8 @@ def _beside_loops(repeats: int, after: Callable[[str], None]) -> Result:
     """One update and one decision of each rule, 68 x 68 x 50, and the same by loops."""
     case = Reserve(SIGNALS)
     case.check()
-    agent, random = BayesianPolicyReuse(case.library), np.random.default_rng(0)
+    agent = BayesianPolicyReuse(case.library, dynamics=TypeDynamics.static())
+    random = np.random.default_rng(0)
     works: dict[str, tuple[Callable, Callable]] = {
         "update": (
             lambda: agent.update(3, 55.0),
@@ -133,7 +135,7 @@ def _learnt(case: Reserve, size: str, repeats: int, after: Callable[[str], None]
     """The same update and decisions with models learnt from samples, where no two types are alike."""
     library, random = case.learnt(), np.random.default_rng(0)
     library.table(SIGNALS)
-    agent = BayesianPolicyReuse(library, models="plug-in")
+    agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static(), models="plug-in")
     works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
     works |= {name: _decision(library, rule, case.flat, random) for name, rule in case.rules().items()}
     labels = {name: f"{name}, {size}, learnt models" for name in works}
@@ -171,7 +173,7 @@ def _uncertain(repeats: int, after: Callable[[str], None]) -> Result:
 
 def _reuse(library: Any, rule: SelectionRule, models: Any = "plug-in") -> Callable[[int], Player]:
     def make(number: int) -> Player:
-        agent = BayesianPolicyReuse(library, rule, horizon=HORIZON, seed=number, models=models)
+        agent = BayesianPolicyReuse(library, rule, None, TypeDynamics.static(), HORIZON, number, models)
         return agent.select, agent.update
 
     return make
@@ -298,7 +300,8 @@ def _growth(repeats: int, after: Callable[[str], None]) -> Result:
 
 
 def _works(case: LargeReserve) -> dict[str, Callable]:
-    agent, random, n = BayesianPolicyReuse(case.library), np.random.default_rng(0), case.n_signals
+    agent = BayesianPolicyReuse(case.library, dynamics=TypeDynamics.static())
+    random, n = np.random.default_rng(0), case.n_signals
     works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
     rules: dict[str, SelectionRule] = {
         "greedy": Greedy(),
@@ -332,7 +335,8 @@ def _screened(repeats: int, after: Callable[[str], None]) -> Result:
     rule, losses = KnowledgeGradient(n_bins=n_signals), []
     for task in range(CHECKED):
         random = stream(0, "bench", "reuse", "screened", task)
-        agent, type_ = BayesianPolicyReuse(library, rule, horizon=HORIZON, seed=task), int(random.integers(size))
+        agent = BayesianPolicyReuse(library, rule, None, TypeDynamics.static(), HORIZON, task)
+        type_ = int(random.integers(size))
         for episode in range(max(EPISODES_BEFORE) + 1):
             quick = rule.scores(library, agent.belief, episodes_left=agent.episodes_left)
             policy = int(quick.argmax())
@@ -357,7 +361,7 @@ def _screened(repeats: int, after: Callable[[str], None]) -> Result:
 def _many_users(repeats: int, after: Callable[[str], None]) -> Result:
     """Users in random order: learn from the last outcome and select the next policy, in one pass."""
     case = Reserve(SIGNALS)
-    users = UserBeliefs(case.library, USERS, "f4", models="plug-in")
+    users = UserBeliefs(case.library, USERS, "f4", dynamics=TypeDynamics.static(), models="plug-in")
     random = stream(0, "bench", "reuse", "users")
     contenders = {name: _serving(case, users, name, random) for name in ("sampling", "greedy")}
     if installed(MABWISER):

@@ -9,6 +9,7 @@ from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.experiments.bench.interaction import reuse_loops as loops
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
@@ -94,7 +95,7 @@ class Reserve:
                 raise LifeloreError(
                     f"{name} must select what its loops select, got others: no ratio means anything"
                 )
-        agent = BayesianPolicyReuse(self.library)
+        agent = BayesianPolicyReuse(self.library, dynamics=TypeDynamics.static())
         agent.update(3, 55.0)
         if not np.allclose(agent.belief, loops.updated(self.flat, self.mean, self.deviation, 3, 55.0)):
             raise LifeloreError("an update must be the loop's, got another: the ratio means nothing")

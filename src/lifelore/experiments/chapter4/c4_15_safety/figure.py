@@ -1,13 +1,16 @@
-"""Loss by episode, loss by type against the best static speed, and how soon the type is named for good."""
+"""Loss by episode, loss by type against the best static speed, how soon types are named; then all games."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.experiments.chapter4.ball_game.methods import BEAT, STATIC
+from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game
 from lifelore.experiments.chapter4.reuse.looks import draw_ratio_grid, legend_below, lines_of, size_lines
+from lifelore.experiments.engine.predicate import Condition
 from lifelore.figures.curves import draw_curves
+from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
 SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, "BEAT, ε as printed", BEAT, "best speed of each type")
@@ -18,8 +21,10 @@ def draw(result: Mapping) -> Figure:
     ratios = losses[BEAT] / losses[STATIC]
     episodes = range(1, ratios.shape[1] + 1)
     with house_style():
-        figure = new_figure(11.6, 3.9)
-        by_episode, by_type, naming = figure.subplots(1, 3)
+        games = [row for row in result["rows"] if "met" in row]
+        figure = new_figure(11.6, 4.9 + 0.25 * len(games))
+        places = figure.add_gridspec(2, 3, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
+        by_episode, by_type, naming = (figure.add_subplot(places[0, column]) for column in range(3))
         series = {method: {"mean": losses[method].mean(axis=0)} for method in SHOWN}
         draw_curves(by_episode, None, series, looks=lines_of(SHOWN, marker="o", ms=3), legend=False)
         by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
@@ -27,7 +32,25 @@ def draw(result: Mapping) -> Figure:
         draw_ratio_grid(by_type, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
         by_type.set(xlabel="episode", title="safety: BEAT to the static speed")
         _draw_naming(naming, result["rows"][-1])
+        _draw_games(figure.add_subplot(places[1, :]), games)
     return figure
+
+
+def _draw_games(axes: Axes, games: Sequence[Mapping]) -> None:
+    """Each game's numbers as shares of their bounds, bold where the condition is met."""
+    asked = asked_of_every_game()
+    shares = [[_of_bound(row[c.measure]["value"], c) for c in asked] for row in games]
+    met = [[row["met"][c.measure] for c in asked] for row in games]
+    look = {"neutral": 1.0, "spread": 1.35, "good": "low", "ratio": True, "words": "{:.2f}".format}
+    draw_heat_grid(axes, shares, met, [row["words"] for row in games], [c.name for c in asked], **look)
+    axes.set_title("every game: the number divided by its bound, at most 1 asked (bold: met)", loc="right")
+
+
+def _of_bound(value: float, condition: Condition) -> float:
+    """How far a number is from its bound: below 1 where it is on the side asked for."""
+    bound = float(condition.bound)  # pyright: ignore[reportArgumentType]
+    share = value / bound if condition.op.startswith("<") else bound / value if value > 0 else np.inf
+    return max(share, 0.01)
 
 
 def _draw_naming(axes: Axes, row: Mapping) -> None:

@@ -1,4 +1,7 @@
-"""C4.15: BEAT's losses as ratios to the static speed's and EXP-3's, its regret, and the steps to name the type."""
+"""C4.15: BEAT's losses as ratios to the static speed's and EXP-3's, its regret, and the steps to name the type.
+
+The default game comes first. In every other game and normalisation of the loss, the same conditions are asked.
+"""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,10 +10,17 @@ from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.ball_game.ball_game import SIZES
+from lifelore.experiments.chapter4.ball_game.games import Setting
 from lifelore.experiments.chapter4.ball_game.methods import BEATS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
 from lifelore.experiments.chapter4.c4_15_safety.run import LAGGING
+from lifelore.experiments.chapter4.reuse.many_tasks import plain
+from lifelore.experiments.engine.estimates import share_of
+from lifelore.experiments.engine.predicate import Condition
+from lifelore.experiments.engine.registry import claim_of
 
 KEYS = {"BEAT": "", "BEAT, ε as printed": "_printed"}
+GRID = "grid_"
+"""How names of measures begin that are shares of the games."""
 STEPS = [1, 2, 3, 5, 8, 12, 20, 30, 45, 65, 100, 150, 220, 330, 500]
 
 
@@ -31,7 +41,34 @@ def worst_ratio(mine: NDArray[np.float64], theirs: NDArray[np.float64]) -> tuple
     return ratio_estimate(mine[type_, :, episode], theirs[type_, :, episode]), [int(type_), int(episode)]
 
 
+def by_game(results: Sequence[Mapping]) -> dict[tuple, list[Mapping]]:
+    """The lots of each game under each normalisation, in order."""
+    games: dict[tuple, list[Mapping]] = {}
+    for result in results:
+        games.setdefault(tuple(result["game"]), []).append(result)
+    return games
+
+
+def asked_of_every_game() -> list[Condition]:
+    """The conditions of ``claim.toml`` on a single game; the others ask for a share of the games."""
+    return [c for c in claim_of("C4.15").predicate.conditions if not c.measure.startswith(GRID)]
+
+
+def answers(found: Mapping[str, Estimate]) -> dict[str, bool]:
+    """Whether each condition on a single game is met, by its measure; False where its number is missing."""
+    numbers = {name: {"value": one.value, "ci95": one.ci95} for name, one in found.items()}
+    return {c.measure: bool(c.met(numbers)) for c in asked_of_every_game()}
+
+
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The numbers of the default game, and the share of games that meet each condition."""
+    games = [measure_game(lots) for lots in by_game(results).values()]
+    met = [answers(found) for found in games]
+    return games[0] | {GRID + name: share_of([one[name] for one in met]) for name in met[0]}
+
+
+def measure_game(results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The numbers of a single game, from its lots."""
     others = {"static": losses_of(results, STATIC), "exp3": losses_of(results, PRINTED_EXP3)}
     static = others["static"]
     found: dict[str, Estimate] = {}
@@ -75,10 +112,22 @@ def median_steps(steps: NDArray[np.int64]) -> Estimate:
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Mean loss by type and episode of each method, and the share of players named right by each step."""
+    """By game, the conditions' numbers and whether each is met; then, of the default game, mean loss by type and
+    episode of each method, and the share of players named right by each step."""
+    games = by_game(results)
+    found = [_game_row(game, lots) for game, lots in games.items()]
+    default = next(iter(games.values()))
     methods = (STATIC, ORACLE, *BEATS, LAGGING, PRINTED_EXP3, TUNED_EXP3)
-    losses = {method: losses_of(results, method).mean(axis=1) for method in methods}
-    found: list[dict] = [{"method": m, "loss": np.round(mean, 4).tolist()} for m, mean in losses.items()]
-    needed, length = joined(results, "needed"), float(joined(results, "lengths").mean())
+    losses = {method: losses_of(default, method).mean(axis=1) for method in methods}
+    found += [{"method": m, "loss": np.round(mean, 4).tolist()} for m, mean in losses.items()]
+    needed, length = joined(default, "needed"), float(joined(default, "lengths").mean())
     shares = [[float(((row >= 0) & (row < s)).mean()) for s in STEPS] for row in needed]
     return [*found, {"steps": STEPS, "named": np.round(shares, 3).tolist(), "length": length}]
+
+
+def _game_row(game: tuple, lots: Sequence[Mapping]) -> dict:
+    found = measure_game(lots)
+    met = answers(found)
+    return {"game": list(game), "words": Setting(*game).words, "met": met} | plain(
+        {name: found[name] for name in met}
+    )

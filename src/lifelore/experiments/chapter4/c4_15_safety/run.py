@@ -1,11 +1,14 @@
-"""C4.15: losses and naming of types by type and episode, on as many players of every type. Thesis: §4.8.5.2."""
+"""C4.15: losses and naming of types by type and episode, on as many players of every type in every game.
+
+Thesis: §4.8.5.2.
+"""
 
 from collections.abc import Mapping
 
 import numpy as np
 
 from lifelore.core.streams import stream
-from lifelore.experiments.chapter4.ball_game.games import Setting
+from lifelore.experiments.chapter4.ball_game.games import NORMALISATIONS, Setting
 from lifelore.experiments.chapter4.ball_game.games import check_games as check
 from lifelore.experiments.chapter4.ball_game.methods import (
     NamedTypes,
@@ -22,8 +25,12 @@ LAGGING = "BEAT, players who adapt late"
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of players of the first game."""
-    return [{"game": list(settings["games"][0]), "lot": lot} for lot in range(settings["lots"])]
+    """Lots of players of every game under every normalisation of the loss; the default, with `lots`, is first."""
+    games = [
+        list(Setting(*game)._replace(normalisation=own)) for game in settings["games"] for own in NORMALISATIONS
+    ]
+    lots = [settings["lots"]] + [settings["grid_lots"]] * (len(games) - 1)
+    return [{"game": game, "lot": lot} for game, own in zip(games, lots, strict=True) for lot in range(own)]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -15,6 +15,7 @@ from lifelore.experiments.chapter4.ball_game.games import check_games as check
 from lifelore.experiments.chapter4.ball_game.methods import EPISODES
 from lifelore.experiments.chapter4.ball_game.play import Trained, train
 from lifelore.interaction.adaptation.beat import Beat, Exploration, epsilon_of
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
@@ -40,7 +41,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     for kind, user in product(range(game.n_types), range(settings["users"])):
         name = (setting.words, cell["epsilon"], kind, user)
         beat = Beat(library, epsilon=epsilon, seed=stream(seed, "C4.16", *name))
-        reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), seed=stream(seed, "C4.16", *name))
+        generator = stream(seed, "C4.16", *name)
+        reuse = BayesianPolicyReuse(library, EpsilonGreedy(0.0), dynamics=TypeDynamics.static(), seed=generator)
         sessions.append(_session(game, kind, beat, reuse, epsilon, stream(seed, "C4.16", "world", *name)))
     return {**cell, "sessions": sessions}
 

@@ -55,12 +55,12 @@ def play_rule(
     generator: np.random.Generator,
     first: int | None = None,
 ) -> Played:
-    """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once.
+    """Bayesian policy reuse (Alg. 7, 8) on `n_tasks` tasks at once; types are static, as in the thesis.
 
     `generator` serves the rule and the choice among equals. `first`, if given, is the policy of the first episode,
     in place of the rule's choice.
     """
-    reuse = ReuseAlgorithm(library, least=LEAST_SCORED)
+    reuse = ReuseAlgorithm(library, TypeDynamics.static(), least=LEAST_SCORED)
     log_belief, every = np.tile(reuse.start(), (n_tasks, 1)), np.arange(n_tasks)
     policies = np.empty((n_tasks, n_episodes), np.int64)
     entropies = np.empty((n_tasks, n_episodes + 1))
