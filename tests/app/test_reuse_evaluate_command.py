@@ -24,6 +24,7 @@ COLUMNS = ("--columns", "user=visitor,policy=banner,outcome=clicked", "--probabi
 ESTIMATE = r"-?[\d.e-]+ \(-?[\d.e-]+ to -?[\d.e-]+\)"
 
 
+@pytest.mark.slow
 def test_in_words(ask, log, tmp_path):
     said = ask("reuse", "evaluate", log, *COLUMNS, "--out", tmp_path / "out").out
     first, left, header, big, dark, *rest = said.splitlines()
@@ -36,6 +37,7 @@ def test_in_words(ask, log, tmp_path):
     assert (tmp_path / "out" / "evaluation.png").exists()
 
 
+@pytest.mark.slow
 def test_all_estimators_and_a_rule(ask, log):
     said = ask("reuse", "evaluate", log, *COLUMNS, "--estimator", "all", "--rule", "sampling", "--types", "2").out
     assert re.search(r"target +ips +self-normalised +doubly-robust +effective users +largest weight\n", said)

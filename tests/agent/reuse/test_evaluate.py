@@ -1,6 +1,8 @@
 """`reuse evaluate`: off-policy estimates from logs, by hand and in simulation, and what a log cannot tell."""
 
 import csv
+import shutil
+import time
 
 import numpy as np
 import pytest
@@ -80,6 +82,7 @@ def test_the_logs_own_probabilities_give_the_mean_of_the_log(log, tmp_path):
         assert target["estimates"][name]["gain"]["value"] == pytest.approx(0, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_rule_that_knows_types_beats_every_single_policy(log):
     document = evaluate([log], EvaluateSettings(policies=POLICIES, rules=("sampling",), types=2))
     found = by_name(document)
@@ -95,6 +98,7 @@ def test_a_rule_that_knows_types_beats_every_single_policy(log):
     assert target["weights"]["effective_users"] < rule["weights"]["effective_users"]
 
 
+@pytest.mark.slow
 def test_a_rule_is_judged_without_the_user_it_learns_from(tmp_path):
     """Outcomes are coins: a library that saw the user's own outcomes would look better than chance."""
     generator = np.random.default_rng(1)
@@ -110,6 +114,7 @@ def test_a_rule_is_judged_without_the_user_it_learns_from(tmp_path):
         assert low < 0.5 < high
 
 
+@pytest.mark.slow
 def test_the_library_model_is_more_precise_where_users_come_back(tmp_path):
     path = simulated(tmp_path / "long.csv", n_users=120, n_decisions=12, seed=3)
     errors = {
@@ -209,6 +214,7 @@ def served(tmp_path_factory):
     return folder
 
 
+@pytest.mark.slow
 def test_of_a_studys_log_the_control_group_is_read(served):
     document = evaluate([served / "decisions.csv"])
     assert document["group"] == "control"
@@ -223,6 +229,7 @@ def test_of_a_studys_log_the_control_group_is_read(served):
         evaluate([served / "decisions.csv"], EvaluateSettings(group="men"))
 
 
+@pytest.mark.slow
 def test_a_study_is_replayed_on_users_whom_it_does_not_know(served):
     with open_memory(served / "m.db") as memory:
         settings = EvaluateSettings(study="default", first=2)
@@ -232,13 +239,24 @@ def test_a_study_is_replayed_on_users_whom_it_does_not_know(served):
         own = evaluate(
             [served / "decisions.csv"], EvaluateSettings(study="default", group="personal"), memory=memory
         )
-        with pytest.raises(InputError, match="all users of the log have a past in study 'default'"):
+        with pytest.raises(InputError, match="study 'default' was fitted to all users of the log or knows"):
             evaluate([served / "log.csv"], EvaluateSettings(study="default"), memory=memory)
     # Its own choices were replayed with the probabilities that they had: every weight is 1.
     (target,) = own["targets"]
     assert target["weights"]["largest"] == pytest.approx(1)
     assert target["weights"]["mean"] == pytest.approx(1)
     assert target["estimates"]["ips"]["value"] == pytest.approx(own["logged"]["value"])
+
+
+@pytest.mark.slow
+def test_a_study_is_not_judged_on_decisions_that_a_later_fit_may_have_read(served, tmp_path, monkeypatch):
+    shutil.copy(served / "m.db", tmp_path / "m.db")
+    now = time.time()
+    monkeypatch.setattr("lifelore.agent.reuse.fit.time.time", lambda: now + 10)
+    with open_memory(tmp_path / "m.db") as memory:
+        fit([served / "log.csv", served / "decisions.csv"], memory, FitSettings(types=2, control=0.4))
+        with pytest.raises(InputError, match="was fitted to all users of the log or knows their past"):
+            evaluate([served / "decisions.csv"], EvaluateSettings(study="default"), memory=memory)
 
 
 def test_a_study_needs_its_memory(log):
@@ -318,6 +336,7 @@ def test_one_user_is_too_few(tmp_path):
         evaluate([path])
 
 
+@pytest.mark.slow
 def test_the_folder_gets_document_and_picture(log, tmp_path):
     evaluate([log], out=tmp_path / "out")
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"evaluation.json", "evaluation.png"}

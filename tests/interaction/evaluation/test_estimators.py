@@ -132,7 +132,7 @@ def test_against_the_open_bandit_pipeline(seed):
     assert found.value == pytest.approx(expected, rel=1e-12)
 
 
-@settings(deadline=None, max_examples=50)
+@settings(deadline=None, max_examples=20)
 @given(seed=st.integers(0, 2**31), shift=st.floats(-10, 10), scale=st.floats(0.1, 10))
 def test_estimates_move_with_their_outcomes(seed, shift, scale):
     """Self-normalised and, with a model that moves along, doubly robust values are those of moved outcomes."""

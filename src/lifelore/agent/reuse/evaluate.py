@@ -12,8 +12,13 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.reuse.cross_fitted import cross_fitted_choices, expected_by_library, expected_by_means
-from lifelore.agent.reuse.history import user_key
+from lifelore.agent.reuse.cross_fitted import (
+    choices_of_rule,
+    expected_by_library,
+    expected_by_means,
+    studies_of_others,
+)
+from lifelore.agent.reuse.history import histories, user_key
 from lifelore.agent.reuse.log_format import LogFormat
 from lifelore.agent.reuse.logged_decisions import CERTAIN, LoggedDecisions, read_decisions
 from lifelore.agent.reuse.past import read_past
@@ -167,18 +172,24 @@ def evaluate(
 
 
 def _of_strangers(decisions: LoggedDecisions, memory: Memory, study: Study) -> tuple[LoggedDecisions, int]:
-    """The decisions for users without a past in the study, and the number of the others.
+    """The decisions for users whom the study does not know, and the number of the others.
 
     The library has learnt from the outcomes of the users of the fit, so they cannot judge it; a user with a past
-    does not start as a stranger.
+    does not start as a stranger. Users with a decision before the fit may have been in its logs.
     """
-    past = read_past(memory, study.name).users
-    new = np.array([user_key(study.name, user) not in past for user in decisions.log.user.names])
+    fitted_at = study.fitted.get("time", np.inf)
+    earlier = {
+        history.key
+        for history in histories(memory, study)
+        if any(decision.chosen < fitted_at for decision in history.decisions)
+    }
+    known = earlier | set(read_past(memory, study.name).users)
+    new = np.array([user_key(study.name, user) not in known for user in decisions.log.user.names])
     rows = np.flatnonzero(new[decisions.log.user.codes])
     if not rows.size:
         raise InputError(
-            f"all users of the log have a past in study '{study.name}', so the log cannot judge it; give a log of "
-            "other users, or --rule, which learns without the users that it is judged on"
+            f"study '{study.name}' was fitted to all users of the log or knows their past, so the log cannot "
+            "judge it; give a log of other users, or --rule, which learns without the users that it is judged on"
         )
     return decisions.take(rows), len(decisions.log) - len(rows)
 
@@ -189,14 +200,17 @@ def _targets(
     log = decisions.log
     folds = user_folds(log.user.codes, stream(settings.seed, "reuse evaluate", "folds"))
     model = expected_by_means(log, folds)
+    studies = []
+    if settings.rules or settings.model == "library":
+        studies = studies_of_others(log, folds, settings.types, settings.seed)
     if settings.model == "library":
-        model = expected_by_library(log, folds, model, settings.types, settings.seed)
+        model = expected_by_library(log, folds, studies, model)
     named = settings.policies or settings.tables or settings.rules or study
     singles = settings.policies if named else log.policy.names
     targets = [single_policy(log, name, model) for name in singles]
     targets += [table_policy(log, path, model) for path in settings.tables]
     for rule in settings.rules:
-        choices = cross_fitted_choices(log, folds, rule, settings.explore, settings.types, settings.seed)
+        choices = choices_of_rule(log, folds, studies, rule, settings.explore)
         targets.append(replayed_policy(log, rule, "rule", choices, model))
     if study is not None:
         choices = replayed_choices(study, log, np.arange(len(log)))
