@@ -31,8 +31,8 @@ def test_in_words(ask, log, tmp_path):
     assert re.fullmatch(rf"240 decisions for 60 users; mean outcome of the log {ESTIMATE}", first)
     assert left == "  1 lines without an outcome left out"
     assert header.split("  ")[1:2] == ["target"]
-    assert re.fullmatch(rf"  big +{ESTIMATE} +{ESTIMATE} +\d+\.\d +2", big)
-    assert re.fullmatch(rf"  dark +{ESTIMATE} +{ESTIMATE} +\d+\.\d +2", dark)
+    assert re.fullmatch(rf"  big +{ESTIMATE} +{ESTIMATE} +\d+\.\d +2 +100%", big)
+    assert re.fullmatch(rf"  dark +{ESTIMATE} +{ESTIMATE} +\d+\.\d +2 +100%", dark)
     assert rest == [f"evaluation.json and evaluation.png written to {tmp_path / 'out'}"]
     assert (tmp_path / "out" / "evaluation.png").exists()
 
@@ -40,7 +40,9 @@ def test_in_words(ask, log, tmp_path):
 @pytest.mark.slow
 def test_all_estimators_and_a_rule(ask, log):
     said = ask("reuse", "evaluate", log, *COLUMNS, "--estimator", "all", "--rule", "sampling", "--types", "2").out
-    assert re.search(r"target +ips +self-normalised +doubly-robust +effective users +largest weight\n", said)
+    assert re.search(
+        r"target +ips +self-normalised +doubly-robust +effective users +largest weight +support\n", said
+    )
     assert re.search(rf"  sampling, next decision +{ESTIMATE} +{ESTIMATE} +{ESTIMATE} ", said)
     assert "big" not in said
     whole = ask("reuse", "evaluate", log, *COLUMNS, "--rule", "greedy", "--types", "2", "--first", "2").out

@@ -151,13 +151,8 @@ def _print(document: dict[str, Any], estimators: tuple[str, ...]) -> None:
 def _rows(document: dict[str, Any], estimators: tuple[str, ...]) -> list[list[str]]:
     """Header and one row a target, the best first."""
     alone = len(estimators) == 1
-    header = [
-        "target",
-        *estimators,
-        *(["gain over the log"] if alone else []),
-        "effective users",
-        "largest weight",
-    ]
+    header = ["target", *estimators, *(["gain over the log"] if alone else [])]
+    header += ["effective users", "largest weight", "support"]
 
     def value(target: dict[str, Any]) -> float:
         found = target["estimates"][estimators[-1]]
@@ -169,7 +164,8 @@ def _rows(document: dict[str, Any], estimators: tuple[str, ...]) -> list[list[st
         cells = [_name(target, document), *map(_estimate, found)]
         cells += [_estimate(found[0] and found[0]["gain"])] if alone else []
         weights = target["weights"]
-        rows.append([*cells, f"{weights['effective_users']:.1f}", f"{weights['largest']:.3g}"])
+        cells += [f"{weights['effective_users']:.1f}", f"{weights['largest']:.3g}", f"{target['support']:.0%}"]
+        rows.append(cells)
     return rows
 
 
