@@ -72,7 +72,9 @@ def test_where_outcomes_are_0_or_1_expected_improvement_is_greedy():
     performance = CategoricalOutcomes([0, 1], np.stack([1 - probs, probs], axis=2))
     library = PolicyLibrary(performance)
     for belief in np.random.default_rng(1).dirichlet(np.ones(4), 20):
-        greedy, improving = (rule.scores(library, belief) for rule in (Greedy(), ExpectedImprovement()))
+        greedy, improving = (
+            rule.scores(library, belief) for rule in (Greedy(), ExpectedImprovement(of="outcome"))
+        )
         assert np.argsort(greedy).tolist() == np.argsort(improving).tolist()
 
 

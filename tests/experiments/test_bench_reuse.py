@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.core.errors import LifeloreError
 from lifelore.experiments.bench import BENCHES
-from lifelore.experiments.bench.interaction import reuse, reuse_loops
+from lifelore.experiments.bench.interaction import reuse, reuse_loops, reuse_users
 from lifelore.experiments.bench.interaction.reuse import bench_reuse
 from lifelore.experiments.bench.interaction.reuse_case import HORIZON, LargeReserve, Reserve
 from lifelore.experiments.bench.interaction.reuse_peers import (
@@ -33,10 +33,14 @@ def short(monkeypatch):
     """Sizes at which the whole benchmark takes seconds, and no outside program."""
     monkeypatch.setattr(reuse, "SIGNALS", 6)
     monkeypatch.setattr(reuse, "SIZES", ((12, 5), (16, 5)))
-    monkeypatch.setattr(reuse, "DENSE_GRADIENT", 12)
+    monkeypatch.setattr(reuse, "SCREENED", (16, 5))
+    monkeypatch.setattr(reuse, "CHECKED", 2)
+    monkeypatch.setattr(reuse, "EPISODES_BEFORE", (0, 2))
     monkeypatch.setattr(reuse, "USERS", 3000)
     monkeypatch.setattr(reuse, "AT_ONCE", 1000)
     monkeypatch.setattr(reuse, "TASKS", 1)
+    monkeypatch.setattr(reuse_users, "USERS", 3000)
+    monkeypatch.setattr(reuse_users, "AT_ONCE", 1000)
     monkeypatch.setattr(reuse_loops, "POINTS", 4)
     monkeypatch.setattr(reuse, "installed", lambda name: False)
 
@@ -54,7 +58,7 @@ def test_loops_give_the_rules_own_scores(monkeypatch):
     scores = KnowledgeGradient(n_bins=6, mass=1.0).scores(library, belief, episodes_left=HORIZON)
     assert case.looped("knowledge gradient") == pytest.approx(scores, rel=1e-9)
     monkeypatch.setattr(reuse_loops, "POINTS", 10)
-    scores = ExpectedImprovement().scores(library, belief)
+    scores = ExpectedImprovement(of="outcome").scores(library, belief)
     assert case.looped("expected improvement") == pytest.approx(scores, rel=0.03, abs=0.03 * scores.max())
     assert flat is library.prior
 
@@ -80,7 +84,7 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     names = [line["name"] for line in result["rows"]]
     assert len(names) == len(set(names))
     assert [done for done, _, _ in told] == sorted(done for done, _, _ in told)
-    assert told[-1][:2] == (4, 4)
+    assert told[-1][:2] == (7, 7)
     empty = {line["name"] for line in result["rows"] if line["value"] is None}
     assert all("MABWiser" in name or "BoTorch" in name for name in empty)
     assert len(empty) == 7
@@ -91,10 +95,10 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     assert undecided == {goal["name"] for goal in result["goals"] if goal["measured"] is None}
     assert len(undecided) == 5
     assert all("MABWiser" in name or "BoTorch" in name for name in undecided)
-    assert len(result["goals"]) == 16
+    assert len(result["goals"]) == 28
     assert sum("settled belief" in name for name in names) == 9
-    assert sum("knowledge gradient, flat" in name for name in names) == 1
-    assert sum("learnt models" in name for name in names) == 4 + 8
+    assert sum("knowledge gradient, flat" in name for name in names) == 3
+    assert sum("learnt models" in name for name in names) == 5 + 9 + 4
     assert {line["name"]: line["value"] for line in result["rows"]}["memory a user"] == 272
 
 

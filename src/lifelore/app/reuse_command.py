@@ -74,6 +74,10 @@ def fit(
     change: Annotated[
         float, Option(help="Probability that the type of a user changes between two choices.")
     ] = 0.0,
+    models: Annotated[
+        str,
+        Option(help="uncertain: models of few runs learn from each user too. plug-in: estimates are the truth."),
+    ] = "uncertain",
     columns: Columns = None,
     separator: Separator = None,
     decimal_comma: DecimalComma = False,
@@ -94,7 +98,7 @@ def fit(
     from lifelore.app.console import print_json
     from lifelore.memory import open_memory
 
-    settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, seed)
+    settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, models, seed)
     form = log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
@@ -164,7 +168,7 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
-    from lifelore.agent.reuse.log import read_outcome
+    from lifelore.agent.reuse.log_columns import read_outcome
     from lifelore.agent.reuse.one_user import update as updated
 
     value = read_outcome(outcome)

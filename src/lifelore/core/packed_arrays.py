@@ -38,6 +38,8 @@ class PackedFormat:
         For error messages: "action prior", and the function that writes one.
     largest : int
         Largest size in bytes after unpacking, so that no file fills the memory.
+    oldest : int, optional
+        Oldest version that the caller can read; by default only `version`.
     """
 
     name: str
@@ -45,6 +47,7 @@ class PackedFormat:
     what: str
     writer: str
     largest: int = 2**33
+    oldest: int | None = None
 
     def pack(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
         """The archive's bytes, compressed; see `write`."""
@@ -91,10 +94,9 @@ class PackedFormat:
                 raise ValueError("another kind of file")
         except UNREADABLE as error:
             raise self.damaged(where, error) from None
-        if header.get("version") != self.version:
-            raise InputError(
-                f"{where} has version {header.get('version')}, this Lifelore reads {self.version}; update it"
-            )
+        version, oldest = header.get("version"), self.oldest or self.version
+        if not (isinstance(version, int) and oldest <= version <= self.version):
+            raise InputError(f"{where} has version {version}, this Lifelore reads {self.version}; update it")
         return header, arrays
 
     def damaged(self, where: str, error: Exception) -> InputError:

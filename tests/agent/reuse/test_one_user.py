@@ -32,6 +32,13 @@ def study_of(name="s", **settings):
     return Study(name, library, dict.fromkeys(POLICIES, "active"), **settings)
 
 
+def learnt_study(model="categorical", **settings):
+    """A study whose library has seen eight outcomes a pair."""
+    samples = np.random.default_rng(0).integers(0, 2, (3, len(POLICIES), 8))
+    library = PolicyLibrary.from_samples(samples, model=model, policies=POLICIES)
+    return Study("s", library, dict.fromkeys(POLICIES, "active"), **settings)
+
+
 @pytest.fixture
 def memory(tmp_path):
     with open_memory(tmp_path / "m.db") as opened:
@@ -307,6 +314,7 @@ def test_a_study_comes_back_bit_for_bit_also_after_a_larger_one(memory):
     found = open_study(memory, "s")
     assert found.library.to_bytes() == kept.library.to_bytes()
     assert found.contexts["web"].tolist() == [0.1, 0.9]
+    assert found.selection == kept.selection
     for name in ("states", "control", "incumbent", "rule", "explore", "change"):
         assert getattr(found, name) == getattr(kept, name)
 
@@ -315,7 +323,7 @@ def of_earlier_lifelore(study):
     """The record that a Lifelore without signal tables stored."""
     record = study.to_record()
     n = -(-record.about["bytes"] // 8)
-    about = {name: value for name, value in record.about.items() if name != "table"}
+    about = {name: value for name, value in record.about.items() if name not in ("table", "rule_settings")}
     return Record(record.kind, record.key, 1, "newest", record.slots[:n], record.values[:n], about)
 
 
@@ -324,12 +332,28 @@ def test_the_signal_table_of_the_policies_in_use_comes_back_bit_for_bit(memory, 
     study_of(rule=rule).keep(memory)
     first = open_study(memory, "s")
     assert list(first.tables) == [8]
-    assert first.choice_of.table(8) is first.tables[8]
+    assert first.choice_of.table(8) is first.tables[8].table
     retire(memory, first, "dark")
     for study in (first, open_study(memory, "s")):
         made = study.library.take(policies=[POLICIES.index(policy) for policy in study.active]).table(8)
-        assert study.tables[8].probs.tobytes() == made.probs.tobytes()
-        assert study.tables[8].conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+        assert study.tables[8].table.probs.tobytes() == made.probs.tobytes()
+        assert study.tables[8].table.conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+
+
+@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+def test_the_table_and_bins_of_uncertain_models_come_back_bit_for_bit(memory, model):
+    study = learnt_study(model, rule="information-directed")
+    study.keep(memory)
+    table, cuts = study.library.task_table(8)
+    stored = open_study(memory, "s").tables[8]
+    assert stored.table.probs.tobytes() == table.probs.tobytes()
+    assert stored.cuts is not None
+    assert all(np.array_equal(*pair) for pair in zip(stored.cuts, cuts, strict=True))
+    said = []
+    for one in (study, open_study(memory, "s")):
+        update(memory, one, choose(memory, one, "ann", seed=1)["decision"], 1.0)
+        said.append({key: choose(memory, one, "ben", seed=1)[key] for key in ("belief", "expected")})
+    assert said[0] == said[1]
 
 
 def test_a_rule_that_reads_no_table_stores_none_nor_is_a_large_one_stored(memory, monkeypatch):
@@ -354,6 +378,20 @@ def test_a_study_of_an_earlier_lifelore_chooses_the_same(tmp_path, rule):
                 one = choose(memory, study, "ann")
                 said += [one, update(memory, study, one["decision"], 1.5 * number)]
     assert said[: len(said) // 2] == said[len(said) // 2 :]
+
+
+def test_a_study_of_an_earlier_lifelore_improves_the_outcome(tmp_path):
+    # The policy of the wide outcomes is the worst; only the improvement of the outcome selects it.
+    library = PolicyLibrary.from_means([[10.0, 6.0, 9.0]], [[1.0, 30.0, 1.0]], policies=POLICIES)
+    study = Study("s", library, dict.fromkeys(POLICIES, "active"), control=0.0, rule="expected-improvement")
+    said = []
+    with open_memory(tmp_path / "new.db") as new, open_memory(tmp_path / "old.db") as old:
+        study.keep(new)
+        old.contribute("reuse s", [of_earlier_lifelore(study)], process="study", seq=0, task={})
+        for memory in (new, old):
+            retire(memory, open_study(memory, "s"), "plain")
+            said.append(choose(memory, open_study(memory, "s"), "ann")["policy"])
+    assert said == ["big", "dark"]
 
 
 @pytest.mark.parametrize(
@@ -422,3 +460,40 @@ def test_the_log_of_the_fit_can_be_read_by_it(memory, tmp_path):
     report(memory, study, log=tmp_path / "decisions.csv")
     log = read_log([tmp_path / "decisions.csv"])
     assert (log.users, log.outcomes.tolist(), log.pending) == (["ann"] * 2 + ["bo"] * 2, [8.0, 2.5] * 2, 2)
+
+
+def test_models_of_few_runs_learn_from_the_user_in_the_order_of_decisions(memory):
+    """A late outcome changes the belief to that of an agent that saw all outcomes in order, parameters too."""
+    study = learnt_study()
+    study.keep(memory)
+    made = [choose(memory, study, "ann") for _ in range(6)]
+    outcomes = [1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+    for number in (0, 3, 1, 5, 2, 4):
+        update(memory, study, made[number]["decision"], outcomes[number])
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
+    for one, outcome in zip(made, outcomes, strict=True):
+        agent.update(one["policy"], outcome)
+    head = open_belief(memory, study, user_key("s", "ann")).state.head
+    assert np.array_equal(head.log_belief, agent.log_belief)
+    assert agent.task is not None
+    assert {name: array.tolist() for name, array in head.task.items()} == {
+        name: array.tolist() for name, array in agent.task.state().items()
+    }
+    answer = choose(memory, study, "ann")
+    assert answer["expected"] == pytest.approx(dict(zip(POLICIES, agent.expected_utility(), strict=True)))
+
+
+def test_a_study_with_plug_in_models_takes_them_for_the_truth(memory):
+    study = learnt_study(models="plug-in")
+    study.keep(memory)
+    study = open_study(memory, "s")
+    assert study.models == "plug-in"
+    made = choose(memory, study, "ann")
+    update(memory, study, made["decision"], 1.0)
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
+    agent.update(made["policy"], 1.0)
+    head = open_belief(memory, study, user_key("s", "ann")).state.head
+    assert np.array_equal(head.log_belief, agent.log_belief)
+    assert not head.task
+    with pytest.raises(InputError, match="models must be one of"):
+        learnt_study(models="exact")

@@ -48,10 +48,11 @@ def test_sizes_and_shapes(name):
         model.density(1.0),
         model.exceedance(1.0),
         model.expected_excess(1.0),
+        model.expected_mean_excess(1.0),
     ):
         assert found.shape == SHAPE
     batch = np.array([[0.0, 1.0, 2.5, 3.0], [-1.0, 0.5, 9.0, 2.0]])
-    for query in (model.density, model.exceedance, model.expected_excess):
+    for query in (model.density, model.exceedance, model.expected_excess, model.expected_mean_excess):
         found = query(batch)
         assert found.shape == (2, 4, *SHAPE)
         for place in np.ndindex(batch.shape):
@@ -126,6 +127,16 @@ def test_excess_and_exceedance_agree_with_integration(name, threshold):
         )
         assert model.expected_excess(threshold)[pair] == pytest.approx(excess, rel=3e-6, abs=1e-7)
         assert model.exceedance(threshold)[pair] == pytest.approx(above, rel=1e-6, abs=1e-7)
+
+
+@every_model
+def test_excess_of_means_that_are_taken_as_exact(name):
+    model = models()[name]
+    for threshold in (-9.0, 0.3, 4.0, 50.0):
+        by_hand = [[max(mean - threshold, 0.0) for mean in row] for row in model.mean.tolist()]
+        assert model.expected_mean_excess(threshold).tolist() == by_hand
+    # Noise can only add to it (Jensen).
+    assert (model.expected_excess(1.0) >= model.expected_mean_excess(1.0) - 1e-12).all()
 
 
 @every_model

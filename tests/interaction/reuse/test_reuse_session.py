@@ -10,7 +10,7 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session, save_session, session_bytes, session_from_bytes
-from lifelore.interaction.selection import RULES, Greedy, KnowledgeGradient, rule_named
+from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, KnowledgeGradient, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 
@@ -102,10 +102,24 @@ def repacked(content: bytes, change) -> bytes:
     return stream.getvalue()
 
 
+def test_a_session_of_an_earlier_lifelore_improves_the_outcome():
+    noise = np.random.default_rng(0).uniform(0.5, 20, (6, 6))
+    place = np.arange(6)
+    model = PolicyLibrary.from_means(-np.abs(place[:, None] - place).astype(float), noise)
+    agent = BayesianPolicyReuse(model, ExpectedImprovement(of="outcome"), seed=5)
+    played(agent, 3)
+    earlier = repacked(session_bytes(agent), lambda header, _: header["settings"].pop("of"))
+    loaded = session_from_bytes(earlier)
+    assert loaded.rule == ExpectedImprovement(of="outcome")
+    by_pay = session_from_bytes(session_bytes(BayesianPolicyReuse(model, ExpectedImprovement(), seed=5)))
+    assert by_pay.rule == ExpectedImprovement(of="pay")
+    assert played(loaded, 12) == played(agent, 12)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 1"),
+        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 2"),
         (lambda h, a: h.update(format="else"), "another kind of file"),
         (lambda h, a: h.update(rule="best"), "rule must be one of"),
         (lambda h, a: h.update(settings={"wish": 1}), "wish"),

@@ -57,8 +57,8 @@ def drawn(model: PolicyLibrary, random: np.random.Generator, n: int):
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
     model, random = library(kind), np.random.default_rng(0)
-    users = UserBeliefs(model, 40, dtype)
-    agents = [BayesianPolicyReuse(model) for _ in range(40)]
+    users = UserBeliefs(model, 40, dtype, models="plug-in")
+    agents = [BayesianPolicyReuse(model, models="plug-in") for _ in range(40)]
     for _ in range(15):
         who, policies = random.integers(0, 40, 60), random.integers(0, N_POLICIES, 60)
         signals = drawn(model, random, 60)
@@ -124,7 +124,7 @@ def test_a_user_may_come_twice_across_and_within_blocks():
     policies, signals = random.integers(0, N_POLICIES, n), drawn(model, random, n)
     users = UserBeliefs(model, 3, "f8")
     users.update(np.ones(n, int), policies, signals)
-    agent = BayesianPolicyReuse(model)
+    agent = BayesianPolicyReuse(model, models="plug-in")
     for policy, signal in zip(policies.tolist(), signals.tolist(), strict=True):
         agent.update(policy, signal)
     assert users.log_belief[1] == pytest.approx(agent.log_belief, rel=1e-9, abs=1e-9)
@@ -206,12 +206,12 @@ def test_types_that_change_and_forgotten_users():
 
 def test_a_library_that_learns_is_taken_anew():
     model = PolicyLibrary.from_means([[0.0, 1.0], [1.0, 0.0]], 1.0, count=10)
-    users = UserBeliefs(model, 1, "f8")
+    users = UserBeliefs(model, 1, "f8", models="plug-in")
     for _ in range(2000):
         model.observe(0, 0, 9.0)
     users.refresh()
     users.update([0], [0], [9.0])
-    agent = BayesianPolicyReuse(model)
+    agent = BayesianPolicyReuse(model, models="plug-in")
     agent.update(0, 9.0)
     assert users.belief([0])[0] == pytest.approx(agent.belief, abs=1e-12)
     assert users.select([0], "greedy").tolist() == [agent.expected_utility().argmax()]
@@ -330,10 +330,10 @@ def test_categories_and_models_that_answer_wrongly_are_refused():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"n_users": 0}, "n_users must be at least 1"),
-        ({"n_users": 2, "dtype": "f2"}, "dtype must be"),
-        ({"n_users": 2, "prior": [0.5, 0.5]}, r"prior must be \(9,\)"),
-        ({"n_users": 2, "dynamics": TypeDynamics.hazard(0.1, [0.5, 0.5])}, "dynamics are for 2 types"),
+        ({"users": 0}, "users must be at least 1"),
+        ({"users": 2, "dtype": "f2"}, "dtype must be"),
+        ({"users": 2, "prior": [0.5, 0.5]}, r"prior must be \(9,\)"),
+        ({"users": 2, "dynamics": TypeDynamics.hazard(0.1, [0.5, 0.5])}, "dynamics are for 2 types"),
     ],
 )
 def test_settings_that_break_their_rule_are_refused(options, message):
@@ -373,7 +373,7 @@ def test_evidence_below_the_range_of_numbers_is_not_that_of_the_impossible():
     said = {0: [-1.7e308, 0.0], 1: [-1.7e308, -np.inf]}
     signal = LikelihoodSignal(lambda policy, x: said[int(x)], 2)
     model = PolicyLibrary.from_means([[0.0], [1.0]], 1.0, signal=signal)
-    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model)
+    users, agent = UserBeliefs(model, 1, "f8"), BayesianPolicyReuse(model, models="plug-in")
     for x in (0, 1):
         evidence = users.update([0], [0], [x])
         agent.update(0, x)

@@ -113,6 +113,18 @@ def expected_improvement(belief, mean, deviation):
     return found
 
 
+def mean_improvement(belief, mean):
+    """How much the mean pays exceed the best utility, weighted by the belief; the utilities where none does."""
+    now = utilities(belief, mean)
+    best = max(now)
+    gained = [
+        sum(b * max(row[policy] - best, 0.0) for b, row in zip(belief, mean, strict=True))
+        for policy in range(len(mean[0]))
+    ]
+    every = [value for row in mean for value in row]
+    return gained if max(gained) > 1e-9 * (max(every) - min(every)) else now
+
+
 def probability_above(belief, mean, deviation, target):
     return [
         sum(

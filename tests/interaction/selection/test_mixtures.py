@@ -39,11 +39,12 @@ def test_mixtures(seed, n_kept, kind):
     kept = np.sort(random.permutation(13)[:n_kept])
     share = random.dirichlet(np.ones(n_kept)).astype(kind)
     classes = random.integers(0, 4, (3, 13)).astype(np.int32)
-    mixed = np.empty((3, 5), kind)
-    information_kernels.mixtures(share, kept, probs, mixed)
-    assert same_bits(mixtures.mixtures(share, kept, probs), mixed)
-    information_kernels.class_mixtures(share, kept, classes, probs, mixed)
-    assert same_bits(mixtures.class_mixtures(share, kept, classes, probs), mixed)
+    policies = random.permutation(3)[: random.integers(1, 4)]
+    mixed = np.empty((len(policies), 5), kind)
+    information_kernels.mixtures(share, kept, policies, probs, mixed)
+    assert same_bits(mixtures.mixtures(share, kept, policies, probs), mixed)
+    information_kernels.class_mixtures(share, kept, classes, policies, probs, mixed)
+    assert same_bits(mixtures.class_mixtures(share, kept, classes, policies, probs), mixed)
 
 
 WITHOUT = """

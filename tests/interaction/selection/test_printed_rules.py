@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 
 from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import (
     BeliefEntropy,
     ExpectedImprovement,
@@ -68,8 +69,25 @@ def test_printed_expected_improvement_does_not_see_how_much_is_gained():
     printed = ExpectedImprovement("thesis").scores(library, certain)
     assert printed[0] == pytest.approx(0.5)
     assert printed[0] > printed[2]
-    meant = ExpectedImprovement().scores(library, certain)
+    meant = ExpectedImprovement(of="outcome").scores(library, certain)
     assert meant[2] > 100 * meant[0]
+
+
+def test_improvement_of_the_outcome_plays_the_wide_policy_for_ever():
+    # One known type, so that nothing is left to learn: A pays 10 with deviation 1, B pays 6 with deviation 30.
+    library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], policies=["A", "B"])
+    outcome, pay = (BayesianPolicyReuse(library, ExpectedImprovement(of=of), seed=0) for of in ("outcome", "pay"))
+    random, chosen = np.random.default_rng(0), {"outcome": [], "pay": []}
+    for _ in range(50):
+        for name, agent in (("outcome", outcome), ("pay", pay)):
+            policy = agent.select()
+            chosen[name].append(library.policies[policy])
+            agent.update(policy, random.normal([10.0, 6.0][policy], [1.0, 30.0][policy]))
+    assert chosen == {"outcome": ["B"] * 50, "pay": ["A"] * 50}
+    # z = (6 − 10) / 30: 30 (z Φ(z) + φ(z)) = 10.07 for B, 1 / √(2π) for A.
+    assert ExpectedImprovement(of="outcome").scores(library, np.ones(1)) == pytest.approx(
+        [0.3989, 10.0745], abs=1e-4
+    )
 
 
 @settings(deadline=None, max_examples=30)

@@ -41,6 +41,7 @@ EVERY_RULE = [
     *(rule() for rule in RULES.values()),
     BeliefEntropy(variant="thesis"),
     ExpectedImprovement("thesis"),
+    ExpectedImprovement(of="outcome"),
     KnowledgeGradient("thesis"),
     KnowledgeGradient(candidates="all", mass=1.0),
     ProbabilityOfImprovement(variant="thesis"),
@@ -80,7 +81,8 @@ def test_every_rule_agrees_with_its_plain_twin(seed):
     b = belief.tolist()
     now = naive.utilities(b, mean)
     assert Greedy().scores(library, belief) == pytest.approx(now)
-    assert ExpectedImprovement().scores(library, belief) == pytest.approx(
+    assert ExpectedImprovement().scores(library, belief) == pytest.approx(naive.mean_improvement(b, mean))
+    assert ExpectedImprovement(of="outcome").scores(library, belief) == pytest.approx(
         naive.expected_improvement(b, mean, deviation), rel=1e-6, abs=1e-7
     )
     top = max(max(row) for weight, row in zip(b, mean, strict=True) if weight > 0)
@@ -91,8 +93,9 @@ def test_every_rule_agrees_with_its_plain_twin(seed):
     scores = BeliefEntropy(kappa=40.0, mass=1.0).scores(library, belief)
     assert scores - 40 * entropy(belief) == pytest.approx(naive.belief_entropy(b, mean, laws, 40.0))
     gained = np.array(naive.knowledge_gain(b, mean, laws))
-    scores = KnowledgeGradient(mass=1.0, candidates="all").scores(library, belief, episodes_left=7)
-    assert scores == pytest.approx(now + 7 * gained, abs=1e-9)
+    for candidates in ("auto", "all"):
+        scores = KnowledgeGradient(mass=1.0, candidates=candidates).scores(library, belief, episodes_left=7)
+        assert scores == pytest.approx(now + 7 * gained, abs=1e-9)
     ratio = naive.information_ratio(b, mean, laws)
     assert InformationDirected(mass=1.0).scores(library, belief) ** 2 == pytest.approx(ratio, rel=1e-5)
 
@@ -132,16 +135,16 @@ def test_expected_entropy_two_ways(seed, n_types, n_signals):
 def test_the_kernels_by_hand():
     probs = np.array([[[1.0, 0.0], [0.5, 0.5]], [[0.0, 1.0], [0.25, 0.75]]])
     mixed = np.empty((2, 2))
-    mixtures(np.array([0.2, 0.8]), np.array([0, 1]), probs, mixed)
+    mixtures(np.array([0.2, 0.8]), np.array([0, 1]), np.array([0, 1]), probs, mixed)
     assert mixed == pytest.approx(np.array([[0.6, 0.4], [0.2, 0.8]]))
-    mixtures(np.array([1.0]), np.array([1]), probs, mixed)
+    mixtures(np.array([1.0]), np.array([1]), np.array([0, 1]), probs, mixed)
     assert mixed == pytest.approx(probs[:, 1])
     best = np.empty(2)
     # Two candidates worth 1 on their own type: the larger joint of each signal, summed.
     alone, both = np.array([[0, 1], [0, 1]], np.int32), np.array([2, 2])
-    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), alone, both, probs, best)
+    best_after_signals(np.diag([0.2, 0.8]), np.array([0, 1]), alone, both, np.array([0, 1]), probs, best)
     assert best == pytest.approx([max(0.2, 0.4) + 0.4, max(0.0, 0.2) + max(0.2, 0.6)])
-    best_after_signals(np.array([[0.0, 3.0]]), np.array([1]), alone, both, probs, best)
+    best_after_signals(np.array([[0.0, 3.0]]), np.array([1]), alone, both, np.array([0, 1]), probs, best)
     assert best == pytest.approx([3.0, 3.0])
 
 
@@ -187,10 +190,10 @@ def test_mixtures_of_any_number_of_types(seed, n_kept):
     random = np.random.default_rng(seed)
     probs, kept = random.dirichlet(np.ones(5), (3, 13)), np.sort(random.permutation(13)[:n_kept])
     share, mixed = random.dirichlet(np.ones(n_kept)), np.empty((3, 5))
-    mixtures(share, kept, probs, mixed)
+    mixtures(share, kept, np.arange(3), probs, mixed)
     assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
     apart = np.tile(np.arange(13, dtype=np.int32), (3, 1))
-    class_mixtures(share, kept, apart, probs, mixed)
+    class_mixtures(share, kept, apart, np.arange(3), probs, mixed)
     assert mixed == pytest.approx(np.einsum("t,pts->ps", share, probs[:, kept]))
 
 
@@ -209,6 +212,48 @@ def test_the_knowledge_gradient_pays_for_a_perfect_signal():
     assert mutual_information(flat, library.table()) == pytest.approx([0.0, 0.0, math.log(2)])
 
 
+def test_improvement_of_the_pay_by_hand():
+    # Now policy 0 is best, with 8. It pays 2 more on type 0; policy 1 pays 12 more on type 1.
+    library = PolicyLibrary.from_means([[10.0, 0.0], [2.0, 20.0]], [[1.0, 500.0], [30.0, 7.0]])
+    belief = np.array([0.75, 0.25])
+    assert ExpectedImprovement().scores(library, belief).tolist() == [1.5, 3.0]
+    # Noise changes nothing of it, unlike of the improvement of the outcome.
+    loud = PolicyLibrary.from_means(library.performance.mean, 1e4)
+    assert ExpectedImprovement().scores(loud, belief).tolist() == [1.5, 3.0]
+    assert ExpectedImprovement(of="outcome").scores(loud, belief).min() > 1e3
+
+
+@pytest.mark.parametrize("noise", [1.0, 1e3])
+def test_without_an_improvement_of_the_pay_selection_is_greedy(noise):
+    mean = np.array([[3.0, 7.0, 7.0, 1.0], [7.0, 7.0, 2.0, 0.0], [90.0, 5.0, 0.0, 90.0]])
+    library = PolicyLibrary.from_means(mean, noise * np.arange(1, 13.0).reshape(3, 4))
+    rule = ExpectedImprovement()
+    # A certain type; two types with one best policy; a better type that is all but ruled out.
+    none = np.array([[1.0, 0, 0], [0, 1.0, 0], [0.4, 0.6, 0], [1 - 1e-12, 0, 1e-12]])
+    some = np.array([0.5, 0.0, 0.5])
+    rows = np.stack([none[0], some, none[1], some, none[2], none[3]])
+    shares = rule.probabilities(library, rows)
+    assert np.array_equal(shares[[0, 2, 4, 5]], Greedy().probabilities(library, none))
+    assert shares[0].tolist() == [0, 0.5, 0.5, 0]
+    assert shares[4].tolist() == [0, 1, 0, 0]
+    for row, share in zip(rows, shares, strict=True):
+        assert np.array_equal(rule.probabilities(library, row), share)
+    # Where a pay can improve, the score is the improvement: here policies 0 and 3 on type 2 alone.
+    best = 0.5 * 3 + 0.5 * 90
+    assert rule.scores(library, some).tolist() == [0.5 * (90 - best), 0, 0, 0.5 * (90 - best)]
+
+
+@settings(deadline=None, max_examples=40)
+@given(st.integers(0, 2**32 - 1), st.integers(1, 6))
+def test_a_known_type_gets_its_best_policy_whatever_the_noise(seed, n_types):
+    random = np.random.default_rng(seed)
+    mean = random.normal(scale=10, size=(n_types, 5)) + random.choice([0.0, 1e6])
+    library = PolicyLibrary.from_means(mean, np.exp(random.normal(scale=3, size=mean.shape)))
+    for type_ in range(n_types):
+        shares = ExpectedImprovement().probabilities(library, np.eye(n_types)[type_])
+        assert shares[mean[type_].argmax()] == 1
+
+
 def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
     # Three types, each with a policy of its own, and one that is good on all. The last tells type 0 from the
     # others.
@@ -221,6 +266,24 @@ def test_a_policy_that_is_second_best_everywhere_is_seen_with_all_candidates():
     assert knowledge_gain(belief, mean, table)[4] == pytest.approx(0.98 * 10 + 0.02 * 8 - 9.8)
     assert knowledge_gain(belief, mean, table, candidates="responses")[4] == pytest.approx(0.02 * 5)
     assert responses(mean, belief).tolist() == [0, 1, 2]
+
+
+def test_small_libraries_consider_all_policies_and_large_ones_the_best_responses(monkeypatch):
+    # Types, policies, signals: 7 · 9² · 6 products.
+    wrong = 0
+    for seed in range(60):
+        library, belief = problem(seed, 7, 9, 6)
+        mean, table = library.performance.mean, library.table()
+        exact = np.array(naive.knowledge_gain(belief.tolist(), mean.tolist(), table.probs.tolist()))
+        own = responses(mean[belief > 0], belief[belief > 0]).tolist()
+        shortcut = naive.knowledge_gain(belief.tolist(), mean.tolist(), table.probs.tolist(), own)
+        monkeypatch.setattr("lifelore.interaction.selection.knowledge_gradient.LARGEST_EXACT", 7 * 9**2 * 6)
+        assert knowledge_gain(belief, mean, table, 1.0, "auto") == pytest.approx(exact, abs=1e-9)
+        monkeypatch.setattr("lifelore.interaction.selection.knowledge_gradient.LARGEST_EXACT", 7 * 9**2 * 6 - 1)
+        assert knowledge_gain(belief, mean, table, 1.0, "auto") == pytest.approx(shortcut, abs=1e-9)
+        wrong += bool((np.abs(exact - shortcut) > 1e-6).any())
+    # The shortcut leaves out policies that are second best on many types: in most of these libraries some score.
+    assert wrong > 10
 
 
 def test_epsilon_greedy_and_sampling_select_as_often_as_they_say():
@@ -382,6 +445,7 @@ def test_a_flat_belief_over_symmetric_types_ties_all_policies():
     [
         (lambda: EpsilonGreedy(1.2), "epsilon must lie in"),
         (lambda: ExpectedImprovement("printed"), "variant must be"),
+        (lambda: ExpectedImprovement(of="reward"), "of must be 'pay'"),
         (lambda: ProbabilityOfImprovement(target=math.nan), "target must be finite"),
         (lambda: ProbabilityOfImprovement(margin=0.0), "margin must be positive"),
         (lambda: BeliefEntropy(kappa=-1.0), "kappa must be at least 0"),

@@ -51,7 +51,9 @@ def choices_of_rule(
     log: ReuseLog, folds: Numbers, studies: Sequence[Study], rule: str, explore: float
 ) -> ReplayedChoices:
     """The choices of a rule, each by the library of the user's part; `explore` of them from all policies."""
-    return _replayed(log, folds, [replace(study, rule=rule, explore=explore) for study in studies])
+    return _replayed(
+        log, folds, [replace(study, rule=rule, rule_settings={}, explore=explore) for study in studies]
+    )
 
 
 def _replayed(log: ReuseLog, folds: Numbers, studies: Sequence[Study]) -> ReplayedChoices:

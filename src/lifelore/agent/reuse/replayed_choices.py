@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.agent.reuse.one_user import policy_odds
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_state import learn
+from lifelore.agent.reuse.user_state import Checkpoint, WorkingBelief
 from lifelore.interaction.beliefs.belief import expected_utility
 
 Array = NDArray[np.float64]
@@ -18,7 +18,7 @@ class ReplayedChoices(NamedTuple):
     """What a study believes and would do before each logged decision.
 
     expected : (n, n_policies) float64
-        Expected outcome of each policy of the log; NaN where the study's library does not know it.
+        Expected outcome of each policy of the log; NaN where the study does not choose from it.
     probabilities : (n, n_policies) float64
         With which the study would choose each policy of the log.
     unknown : (n,) float64
@@ -42,25 +42,25 @@ def replayed_choices(study: Study, log: ReuseLog, rows: NDArray[np.int64]) -> Re
         user's next decision.
     """
     place = {policy: number for number, policy in enumerate(log.policy.names)}
-    known = [(number, place[policy]) for number, policy in enumerate(study.library.policies) if policy in place]
-    from_library, to_log = np.array(known, np.int64).reshape(-1, 2).T
     shape = len(rows), len(log.policy.names)
     expected, probabilities, unknown = np.full(shape, np.nan), np.zeros(shape), np.zeros(len(rows))
-    beliefs: dict[int, Array] = {}
+    beliefs: dict[int, WorkingBelief] = {}
     policies, outcomes = log.policy.codes[rows].tolist(), log.outcomes[rows].tolist()
-    mean = study.library.performance.mean[:, from_library]
     for number, user in enumerate(log.user.codes[rows].tolist()):
         if user not in beliefs:
-            beliefs[user] = study.algorithm.start(study.prior_of(_context(log, user)))
-        belief = study.algorithm.belief(beliefs[user])
-        expected[number, to_log] = expected_utility(belief, mean)
-        odds = policy_odds(study, belief)
-        for policy, probability in zip(odds.policies, odds.probs.tolist(), strict=True):
+            prior = study.algorithm.start(study.prior_of(_context(log, user)))
+            beliefs[user] = WorkingBelief(study, Checkpoint(0, prior, 0.0))
+        now = beliefs[user].checkpoint(number)
+        belief, library = study.algorithm.belief(now.log_belief), study.choice_for(now.task)
+        odds = policy_odds(study, library, belief)
+        utility = expected_utility(belief, library.performance.mean)
+        for policy, probability, value in zip(odds.policies, odds.probs, utility, strict=True):
             if policy in place:
                 probabilities[number, place[policy]] = probability
+                expected[number, place[policy]] = value
             else:
                 unknown[number] += probability
-        learn(study, beliefs[user], log.policy.names[policies[number]], outcomes[number])
+        beliefs[user].learn(log.policy.names[policies[number]], outcomes[number])
     return ReplayedChoices(expected, probabilities, unknown)
 
 

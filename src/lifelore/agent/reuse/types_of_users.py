@@ -46,7 +46,7 @@ def _with_guessed(log: ReuseLog, named: TypedRows, model: str) -> TypedRows:
     if waiting:
         library, _ = library_of(log, named, model)
         for own in waiting.values():
-            agent = BayesianPolicyReuse(library)
+            agent = BayesianPolicyReuse(library, models="plug-in")
             for row in own:
                 policy = log.policy.names[log.policy.codes[row]]
                 if policy in library.policies:

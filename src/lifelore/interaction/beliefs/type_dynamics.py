@@ -105,6 +105,18 @@ class TypeDynamics:
         # Rounding may leave the belief of a certain type a last bit above 1.
         return np.minimum(stepped, 0.0)
 
+    def changed_share(self, log_belief: Array) -> Array | None:
+        """P(the type has just changed | it is now this type) after a `step`, (n_types,); None where it never does.
+
+        For transitions, whose changes the belief follows by itself, None too.
+        """
+        if self.kind != "hazard" or not self.rate:
+            return None
+        assert self.law is not None
+        with np.errstate(divide="ignore", invalid="ignore"):
+            share = np.exp(np.log(self.rate) + np.log(self.law) - log_belief)
+        return np.clip(np.nan_to_num(share), 0.0, 1.0)
+
     def _hazarded(self, log_belief: Array) -> Array:
         assert self.law is not None
         with np.errstate(divide="ignore"):

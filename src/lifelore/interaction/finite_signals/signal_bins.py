@@ -42,12 +42,19 @@ def informative_table(outcomes: _Outcomes, n_bins: int) -> SignalTable:
     """
     check_bins(n_bins)
     n_types, n_policies = outcomes.mean.shape
-    probs = np.zeros((n_policies, n_types, n_bins))
+    probs = np.empty((n_policies, n_types, n_bins))
     for policy in range(n_policies):
-        below = outcomes.cumulative(policy, informative_cuts(outcomes, policy, n_bins))
-        found = np.diff(below, axis=1, prepend=0.0, append=1.0)
-        probs[policy, :, : found.shape[1]] = np.maximum(found, 0.0)
+        probs[policy] = bin_probs(outcomes, policy, informative_cuts(outcomes, policy, n_bins), n_bins)
     return SignalTable(probs, copy=False)
+
+
+def bin_probs(outcomes: _Outcomes, policy: int, cuts: Array, n_bins: int) -> Array:
+    """P(bin | type) of a policy's outcomes between rising cuts, (n_types, n_bins); 0 in unused bins."""
+    below = outcomes.cumulative(policy, cuts)
+    found = np.diff(below, axis=1, prepend=0.0, append=1.0)
+    probs = np.zeros((len(found), n_bins))
+    probs[:, : found.shape[1]] = np.maximum(found, 0.0)
+    return probs
 
 
 def informative_cuts(outcomes: _Outcomes, policy: int, n_bins: int) -> Array:
@@ -58,7 +65,7 @@ def informative_cuts(outcomes: _Outcomes, policy: int, n_bins: int) -> Array:
     cuts = _fine_cuts(outcomes.mean[some, policy], outcomes.deviation[some, policy])
     below = outcomes.cumulative(policy, cuts, some)
     fine = np.maximum(np.diff(below, axis=1, prepend=0.0, append=1.0), 0.0)
-    return cuts[_ends(fine, n_bins)[:-1] - 1]
+    return cuts[joined_ends_of(fine, n_bins)[:-1] - 1]
 
 
 def check_bins(n_bins: int) -> None:
@@ -69,11 +76,15 @@ def check_bins(n_bins: int) -> None:
 
 def joined_bins(fine: Array, n_bins: int) -> Array:
     """`fine` (n_types, n) with neighbours joined until at most `n_bins` columns are left; rows keep their sums."""
-    ends = _ends(fine, n_bins)
+    return joined_to(fine, joined_ends_of(fine, n_bins))
+
+
+def joined_to(fine: Array, ends: NDArray[np.int64]) -> Array:
+    """`fine` (n_types, n) with the columns up to each of `ends` summed."""
     return np.add.reduceat(fine, np.concatenate([[0], ends[:-1]]), axis=1)
 
 
-def _ends(fine: Array, n_bins: int) -> NDArray[np.int64]:
+def joined_ends_of(fine: Array, n_bins: int) -> NDArray[np.int64]:
     """One past the last column of each joined bin."""
     if fine.shape[1] <= n_bins:
         return np.arange(1, fine.shape[1] + 1)

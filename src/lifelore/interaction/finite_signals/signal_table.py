@@ -32,6 +32,8 @@ class SignalTable:
         Entries below 1e-9 are 0, rows sum to 1.
     conditional_entropy : (n_policies, n_types) float
         H(signal | type, policy) in nats.
+    replaced : list of int
+        Policies in the order in which their rows were replaced. Arrays computed from the table follow it.
 
     Raises
     ------
@@ -54,6 +56,7 @@ class SignalTable:
                 f"probs must be (n_policies, n_types, n_signals) numbers, none of them 0, got {self.probs.shape}"
             )
         self.conditional_entropy: NDArray[Any] = np.empty(self.probs.shape[:2], kind)
+        self.replaced: list[int] = []
         # One policy at a time: a thousand types and policies leave no room for temporaries of the table's size.
         for policy, rows in enumerate(self.probs):
             _clean(rows, policy)
@@ -76,6 +79,20 @@ class SignalTable:
         for policy, rows in enumerate(probs):
             table.conditional_entropy[policy] = 0 - _times_log(rows).sum(axis=1)
         return table
+
+    def copy(self) -> Self:
+        """A table of its own with the same numbers."""
+        table = type(self).__new__(type(self))
+        table.probs, table.conditional_entropy = self.probs.copy(), self.conditional_entropy.copy()
+        table.replaced = []
+        return table
+
+    def replace(self, policy: int, rows: NDArray[Any]) -> None:
+        """Put other rows (n_types, n_signals) in place of a policy's; types that were alike must stay so."""
+        self.probs[policy] = rows
+        _clean(self.probs[policy], policy)
+        self.conditional_entropy[policy] = 0 - _times_log(self.probs[policy]).sum(axis=1)
+        self.replaced.append(policy)
 
     @property
     def n_policies(self) -> int:

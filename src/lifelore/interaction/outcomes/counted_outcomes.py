@@ -10,14 +10,18 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
+from lifelore.interaction.outcomes.dirichlet import spread_of_counts
 from lifelore.interaction.outcomes.outcome_model import (
     OutcomeRows,
     check_outcome,
     check_type,
+    excess_of_means,
     is_outcome,
     refuse_outcome,
 )
 from lifelore.interaction.outcomes.outcome_moments import chosen_of, rows_of_more
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.outcomes.task_counts import TaskCounts
 
 Array = NDArray[np.float64]
 
@@ -39,16 +43,13 @@ class CountedOutcomes:
     pseudo_count: float
     exact: bool
 
-    def __init__(self, counts: Array, pseudo_count: float, exact: bool) -> None:
+    def __init__(self, counts: Array, pseudo_count: float, exact: bool, spread: Spread | None = None) -> None:
         self.counts, self.pseudo_count, self.exact = counts, pseudo_count, exact
+        self._spread = spread
         self.totals: Array = np.ascontiguousarray(counts.sum(axis=2))
         if not ((counts >= 0).all() and np.isfinite(self.totals).all() and (self.totals > 0).all()):
             raise InputError("counts must be at least 0 and finite, with a positive one for every type and policy")
-        self.mean: Array = self._row_by_row(self._means())
-        # Squares around the middle of the cells: squares of large numbers would lose their differences.
-        middle = 0.5 * (self._means()[0] + self._means()[-1])
-        square = self._row_by_row(self._variances() + (self._means() - middle) ** 2)
-        self.deviation: Array = np.sqrt(np.maximum(square - (self.mean - middle) ** 2, 0.0))
+        self.mean, self.deviation = self._moments(slice(None))
 
     @property
     def n_types(self) -> int:
@@ -61,6 +62,45 @@ class CountedOutcomes:
     @property
     def n_cells(self) -> int:
         return self.counts.shape[2]
+
+    @property
+    def cell_means(self) -> Array:
+        """Mean outcome within each cell, (n_cells,)."""
+        return self._means()
+
+    @property
+    def cell_sizes(self) -> Array:
+        """Divisors that turn probabilities of cells into densities, (n_cells,)."""
+        return self._sizes()
+
+    def cell_of(self, value: float) -> int | None:
+        """The cell of an outcome; None where it has none."""
+        cell = int(self._cells(np.array([value], np.float64))[0])
+        return None if cell < 0 else cell
+
+    def cells_of(self, values: Array) -> NDArray[np.int64]:
+        """The cells of outcomes (n,), -1 where an outcome has none."""
+        return self._cells(values)
+
+    @property
+    def spread(self) -> Spread:
+        """How much the tasks of a type differ; estimated at the first call where it is not given."""
+        if self._spread is None:
+            self._spread = Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
+        return self._spread
+
+    @spread.setter
+    def spread(self, spread: Spread) -> None:
+        self._spread = spread
+
+    def for_task(self) -> TaskCounts | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly."""
+        return None if self.exact else TaskCounts(self, self.spread)
+
+    def replace(self, policy: int, counts: Array) -> None:
+        """Put other counts (n_types, n_cells) in the place of a policy's."""
+        self.counts[policy], self.totals[policy] = counts, counts.sum(axis=1)
+        self.mean[:, policy : policy + 1], self.deviation[:, policy : policy + 1] = self._moments([policy])
 
     @property
     def probs(self) -> Array:
@@ -111,6 +151,10 @@ class CountedOutcomes:
         """E[max(U - threshold, 0)] for every pair, exact, (..., n_types, n_policies)."""
         return self._expectation(self._excess(np.asarray(threshold, np.float64)[..., None]))
 
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
+
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
         below = 1 - self._above(values[:, None])
@@ -142,6 +186,14 @@ class CountedOutcomes:
         self.totals[policy, type_] = self.counts[policy, type_].sum()
         self._renew(type_, policy)
 
+    def absorb(self, type_: int, task: TaskCounts) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, counts in task.shown.items():
+            self.counts[policy, type_] += counts
+            self.totals[policy, type_] = self.counts[policy, type_].sum()
+            self._renew(type_, policy)
+
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
         return self._with(rows_of_more(samples, self.n_policies, 0), axis=1)
@@ -158,6 +210,8 @@ class CountedOutcomes:
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """Counts, cells and settings by name."""
         settings = {"pseudo_count": np.array(self.pseudo_count), "exact": np.array(self.exact)}
+        if self._spread is not None:
+            settings["spread"] = np.array(self._spread)
         return {"counts": self.counts, "cells": self._where(), **settings}
 
     @classmethod
@@ -170,14 +224,17 @@ class CountedOutcomes:
             raise InputError(f"an outcome model needs the array {error}") from None
         if counts.ndim != 3 or not counts.size:
             raise InputError(f"counts must be (n_policies, n_types, n_cells), got {counts.shape}")
-        return cls.of(cells, counts, pseudo_count, exact)
+        spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
+        return cls.of(cells, counts, pseudo_count, exact, spread)
 
     @classmethod
-    def of(cls, cells: Array, counts: Array, pseudo_count: float, exact: bool = False) -> Self:
+    def of(
+        cls, cells: Array, counts: Array, pseudo_count: float, exact: bool = False, spread: Spread | None = None
+    ) -> Self:
         """The model with these cells and counts, not copied."""
         model = cls.__new__(cls)
         model._place(cells, counts.shape[2])
-        CountedOutcomes.__init__(model, counts, pseudo_count, exact)
+        CountedOutcomes.__init__(model, counts, pseudo_count, exact, spread)
         return model
 
     @classmethod
@@ -207,17 +264,25 @@ class CountedOutcomes:
         return self._like(np.concatenate([self.counts, new], axis=axis))
 
     def _like(self, counts: Array) -> Self:
-        return self.of(self._where(), counts, self.pseudo_count, self.exact)
+        return self.of(self._where(), counts, self.pseudo_count, self.exact, self._spread)
 
     def _expectation(self, of_cells: Array) -> Array:
         """Expectation of a number of each cell, (..., n_cells) to (..., n_types, n_policies)."""
         found = np.tensordot(of_cells, self.counts, axes=([-1], [2])) / self.totals
         return np.ascontiguousarray(np.swapaxes(found, -1, -2))
 
-    def _row_by_row(self, of_cells: Array) -> Array:
+    def _moments(self, policies: Any) -> tuple[Array, Array]:
+        """Mean and deviation of the pairs of some policies."""
+        mean = self._row_by_row(self._means(), policies)
+        # Squares around the middle of the cells: squares of large numbers would lose their differences.
+        middle = 0.5 * (self._means()[0] + self._means()[-1])
+        square = self._row_by_row(self._variances() + (self._means() - middle) ** 2, policies)
+        return mean, np.sqrt(np.maximum(square - (mean - middle) ** 2, 0.0))
+
+    def _row_by_row(self, of_cells: Array, policies: Any) -> Array:
         """`_expectation` of (n_cells,) whose bits for a pair do not depend on the other pairs."""
-        sums = np.stack([(rows * of_cells).sum(axis=1) for rows in self.counts])
-        return np.ascontiguousarray((sums / self.totals).T)
+        sums = np.stack([(rows * of_cells).sum(axis=1) for rows in self.counts[policies]])
+        return np.ascontiguousarray((sums / self.totals[policies]).T)
 
     def _renew(self, type_: int, policy: int) -> None:
         pair = self.take([type_], [policy])

@@ -9,9 +9,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, NormalLikelihood, Normals
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes, ndtr
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.outcome_moments import known_moments
+from lifelore.interaction.outcomes.special_functions import ndtr
 
 Array = NDArray[np.float64]
 

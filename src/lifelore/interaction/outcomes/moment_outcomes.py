@@ -1,7 +1,6 @@
-"""Base of outcome models by mean and variance, and the distribution functions of the normal and of Student's t."""
+"""Base of outcome models by mean and variance."""
 
 from collections.abc import Sequence
-from functools import cache
 from typing import Any, Self
 
 import numpy as np
@@ -11,8 +10,16 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_table
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
-from lifelore.interaction.outcomes.outcome_model import OutcomeRows, check_outcome, check_type, rows_of_samples
+from lifelore.interaction.outcomes.outcome_model import (
+    OutcomeRows,
+    check_outcome,
+    check_type,
+    excess_of_means,
+    rows_of_samples,
+)
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments, moments
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.outcomes.task_normals import TaskNormals, spread_of
 
 Array = NDArray[np.float64]
 
@@ -73,9 +80,30 @@ class MomentOutcomes:
     def n_policies(self) -> int:
         return self.mean.shape[1]
 
+    @property
+    def spread(self) -> Spread:
+        """How much the tasks of a type differ; estimated at the first call where it is not given."""
+        if self.moments.spread is None:
+            self.moments.spread = spread_of(self.moments)
+        return self.moments.spread
+
+    @spread.setter
+    def spread(self, spread: Spread) -> None:
+        self.moments.spread = spread
+
+    def for_task(self) -> TaskNormals | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly."""
+        if np.isinf(self.moments.count).all() and not self.spread.values.any():
+            return None
+        return TaskNormals(self.moments, self.spread)
+
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
         raise NotImplementedError
+
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """max(mean - threshold, 0) for every pair, (..., n_types, n_policies): the means are taken as exact."""
+        return excess_of_means(self.mean, threshold)
 
     def batch_likelihood(self) -> BatchLikelihood:
         """Log densities of finite outcomes."""
@@ -103,6 +131,14 @@ class MomentOutcomes:
         check_outcome(policy, value, self.n_policies)
         self.moments.observe(type_, policy, value)
         self._renew(type_, policy)
+
+    def absorb(self, type_: int, task: TaskNormals) -> None:
+        """Learn from all outcomes of a task whose type has become known, in place."""
+        check_type(type_, self.n_types)
+        for policy, (count, mean, squares) in task.shown.items():
+            if count > 0:
+                self.moments.absorb(type_, policy, count, mean, squares)
+                self._renew(type_, policy)
 
     def with_type(self, samples: ArrayLike) -> Self:
         """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
@@ -139,28 +175,3 @@ class MomentOutcomes:
     def _renew(self, type_: int, policy: int) -> None:
         """Compute the derived arrays again for a pair."""
         raise NotImplementedError
-
-
-# SciPy is imported at the first call: a choice by stored tables needs none of these functions.
-
-
-def ndtr(z: Any) -> Any:
-    """Distribution function of the standard normal."""
-    return _special().ndtr(z)
-
-
-def stdtr(freedom: Any, t: Any) -> Any:
-    """Distribution function of Student's t."""
-    return _special().stdtr(freedom, t)
-
-
-def gammaln(x: Any) -> Any:
-    """Logarithm of the gamma function's absolute value."""
-    return _special().gammaln(x)
-
-
-@cache
-def _special() -> Any:
-    from scipy import special
-
-    return special

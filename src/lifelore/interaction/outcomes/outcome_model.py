@@ -73,6 +73,13 @@ class OutcomeModel(Protocol):
         """E[max(U - threshold, 0)] for every pair; a batch (...,) of thresholds gives (..., T, P)."""
         ...
 
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """E[max(m - threshold, 0)] of the mean pay m of every pair under what is unknown about it, (..., T, P).
+
+        A model that takes its means as exact returns max(mean - threshold, 0).
+        """
+        ...
+
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (T, n)."""
         ...
@@ -207,6 +214,12 @@ def is_outcome(policy: Any, value: Any, n_policies: int) -> bool:
         return known and isinstance(policy, int | np.integer)
     except (TypeError, ValueError):
         return False
+
+
+def excess_of_means(mean: Array, threshold: ArrayLike) -> Array:
+    """max(mean - threshold, 0) of exact means (T, P), (..., T, P) for a batch (...,) of thresholds."""
+    excess = mean - over_pairs(threshold)
+    return np.maximum(excess, 0.0, out=excess)
 
 
 def over_pairs(values: ArrayLike) -> Any:

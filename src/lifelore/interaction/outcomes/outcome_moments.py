@@ -21,6 +21,7 @@ from lifelore.interaction.outcomes.outcome_model import (
     checked_rows,
     rows_of_samples,
 )
+from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,7 @@ class OutcomeMoments:
     freedom : degrees of freedom behind the variance, shrinkage included
     pooled : variance from which a new pair starts
     shrinkage : samples that the pooled variance counts as
+    spread : spread of the tasks of a type; None until `MomentOutcomes.spread` estimates it
     """
 
     mean: Array
@@ -45,6 +47,7 @@ class OutcomeMoments:
     freedom: Array
     pooled: float
     shrinkage: float
+    spread: Spread | None = None
 
     def observe(self, type_: int, policy: int, value: float) -> None:
         """Learn from another outcome, in place."""
@@ -60,6 +63,18 @@ class OutcomeMoments:
         self.mean[pair] += before / self.count[pair]
         square = before * (value - self.mean[pair])
         self.variance[pair] += (square - self.variance[pair]) / self.freedom[pair]
+
+    def absorb(self, type_: int, policy: int, count: float, mean: float, squares: float) -> None:
+        """Learn from `count` outcomes at once, by their mean and sum of squares around it, in place."""
+        pair = type_, policy
+        if np.isinf(self.count[pair]):
+            raise InputError(f"type {type_} with policy {policy} is known exactly and learns nothing")
+        known, apart = self.count[pair], mean - self.mean[pair]
+        total = known + count
+        gained = squares + known * count / total * apart**2
+        self.variance[pair] = (self.freedom[pair] * self.variance[pair] + gained) / (self.freedom[pair] + count)
+        self.mean[pair] += count / total * apart
+        self.count[pair], self.freedom[pair] = total, self.freedom[pair] + count
 
     def joined(self, other: "OutcomeMoments", axis: int) -> "OutcomeMoments":
         """With the types (axis 0) or policies (axis 1) of `other` after these."""
@@ -77,15 +92,17 @@ class OutcomeMoments:
         return self._with([field[chosen] for field in self._fields()])
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
-        """All fields by name."""
-        return {name: np.array(value) for name, value in vars(self).items()}
+        """All fields by name; the spread only where it is known."""
+        arrays = {name: np.array(value) for name, value in vars(self).items() if name != "spread"}
+        return arrays if self.spread is None else arrays | {"spread": np.array(self.spread)}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "OutcomeMoments":
         """The moments of `to_arrays`; InputError where the arrays are no moments."""
         fields = [np.array(arrays[name], np.float64) for name in ("mean", "variance", "count", "freedom")]
         mean, variance, count, freedom = fields
-        found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]))
+        spread = Spread.of_array(arrays["spread"]) if "spread" in arrays else None
+        found = cls(mean, variance, count, freedom, float(arrays["pooled"]), float(arrays["shrinkage"]), spread)
         if found.mean.ndim != 2 or not found.mean.size or any(field.shape != found.mean.shape for field in fields):
             raise InputError(f"mean, variance, count and freedom must share one shape, got {found.mean.shape}")
         good = (np.abs(mean) <= LARGEST) & (variance >= LEAST_DEVIATION**2) & (variance <= LARGEST**2)
@@ -95,7 +112,7 @@ class OutcomeMoments:
 
     def _with(self, fields: list[Array]) -> "OutcomeMoments":
         mean, variance, count, freedom = fields
-        return OutcomeMoments(mean, variance, count, freedom, self.pooled, self.shrinkage)
+        return OutcomeMoments(mean, variance, count, freedom, self.pooled, self.shrinkage, self.spread)
 
     def _fields(self) -> tuple[Array, Array, Array, Array]:
         return self.mean, self.variance, self.count, self.freedom

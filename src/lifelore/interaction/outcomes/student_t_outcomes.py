@@ -11,9 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes, gammaln, stdtr
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.outcome_moments import known_moments
+from lifelore.interaction.outcomes.special_functions import gammaln, stdtr
 
 Array = NDArray[np.float64]
 

@@ -8,7 +8,7 @@ signal is from. Signals may come late, in any order, or not at all. Thesis: §4.
 """
 
 from collections import deque
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -18,6 +18,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.explanation import (
     MAX_EVIDENCE,
     Evidence,
@@ -30,6 +31,7 @@ from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import ExpectedImprovement, SelectionRule
 
 Array = NDArray[np.float64]
+Models = Literal["uncertain", "plug-in"]
 
 
 class BayesianPolicyReuse:
@@ -38,7 +40,8 @@ class BayesianPolicyReuse:
     Parameters
     ----------
     library : PolicyLibrary
-        Not copied: the agent uses what the library's models learn in place.
+        Not copied. With plug-in models the agent uses what the library's models learn in place; with uncertain
+        models it reads them once, at its start.
     rule : SelectionRule, optional
         `ExpectedImprovement` by default.
     prior : (n_types,) float, optional
@@ -49,6 +52,10 @@ class BayesianPolicyReuse:
         Number of episodes K, at least 1; the knowledge gradient weighs information by the episodes left.
     seed : int or numpy generator
         For rules that draw, and for the choice among equal policies.
+    models : {"uncertain", "plug-in"}
+        Whether a model learnt from a finite number of runs is known to be uncertain: the belief is then over types
+        and the parameters of their models, and each signal teaches both. "plug-in" takes estimates for the truth,
+        as the thesis does. Exact models are the same under both.
 
     Raises
     ------
@@ -73,12 +80,17 @@ class BayesianPolicyReuse:
         dynamics: TypeDynamics | None = None,
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
+        models: Models = "uncertain",
     ) -> None:
-        self.library = library
-        self.rule: SelectionRule = rule or ExpectedImprovement()
-        self.algorithm = ReuseAlgorithm(library, dynamics)
+        if models not in ("uncertain", "plug-in"):
+            raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
+        self.library, self.models = library, models
+        self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
+        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
+        self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
+        self._taught = False
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
         self._log_belief: Array = self.algorithm.start(prior)
         self._belief: Array | None = None
@@ -94,10 +106,18 @@ class BayesianPolicyReuse:
         self._selected = self.algorithm.select(self._current(), self.rule, self.generator, self.episodes_left)
         return self._selected[0]
 
-    def update(self, policy: int | str, signal: Any) -> None:
+    def update(self, policy: int | str, signal: Any, outcome: float | None = None) -> None:
         """Learn from the signal of a policy.
 
         A signal that no type explains leaves the belief as it is and raises the surprise.
+
+        Parameters
+        ----------
+        policy : int or str
+        signal
+            As the library's signal model takes it.
+        outcome : float, optional
+            The return, where the signal is another one: it teaches how well the policy does in this task.
 
         Raises
         ------
@@ -107,7 +127,7 @@ class BayesianPolicyReuse:
             The signal model cannot have made the signal, or gave NaN or infinity. The belief stays as it was.
         """
         index = self.library.index_of_policy(policy)
-        log_likelihood, log_evidence = self.algorithm.update_row(self._log_belief, index, signal)
+        log_likelihood, log_evidence = self.algorithm.update_row(self._log_belief, index, signal, outcome)
         self._evidence.append(Evidence(index, log_likelihood, log_evidence))
         self.surprise += surprise_of(log_evidence)
         self.unexplained += log_evidence == -np.inf
@@ -119,6 +139,38 @@ class BayesianPolicyReuse:
         self.algorithm.step_row(self._log_belief)
         self._belief = None
         self.episode += 1
+
+    def teach(self, least: float = 0.95) -> str | None:
+        """Let the library learn from the outcomes of this task, once it has ended and if its type is sure enough.
+
+        Agents at work go on with what they read at their start.
+
+        Parameters
+        ----------
+        least : float
+            Least belief in a type, in (0.5, 1].
+
+        Returns
+        -------
+        str or None
+            The type that learnt; None where no type is believed that much, or nothing is to be learnt.
+
+        Raises
+        ------
+        InputError
+            `least` lies outside its range, or the task has taught before.
+        """
+        if not 0.5 < least <= 1:
+            raise InputError(f"least must lie in (0.5, 1], got {least}")
+        if self._taught:
+            raise InputError("this task has taught the library before; its outcomes count once")
+        type_ = int(self._current().argmax())
+        if self._current()[type_] < least or self.task is None or self.task.outcomes_of_task is None:
+            return None
+        self.library.performance.absorb(type_, self.task.outcomes_of_task)  # pyright: ignore
+        self.library.forget_tables()
+        self._taught = True
+        return self.library.types[type_]
 
     # ---- the belief and its explanation ----------------------------------------------------------------
 
@@ -144,11 +196,11 @@ class BayesianPolicyReuse:
 
     def expected_utility(self) -> Array:
         """Ũ(π) under the belief, (n_policies,)."""
-        return expected_utility(self._current(), self.library.performance.mean)
+        return expected_utility(self._current(), self._known.performance.mean)
 
     def probabilities(self) -> Array:
         """Probability that `select` takes each policy, (n_policies,), sums to 1."""
-        return self.rule.probabilities(self.library, self._current(), episodes_left=self.episodes_left)
+        return self.rule.probabilities(self._known, self._current(), episodes_left=self.episodes_left)
 
     def explain(self) -> Explanation:
         """The evidence of the last signals for each type, and the selected policy beside the runner-up."""
@@ -172,6 +224,10 @@ class BayesianPolicyReuse:
             surprise=float(self.surprise),
             unexplained=int(self.unexplained),
         )
+
+    @property
+    def _known(self) -> PolicyLibrary:
+        return self.task or self.library
 
     def _current(self) -> Array:
         if self._belief is None:

@@ -1,10 +1,11 @@
 """The file format of a `BayesianPolicyReuse` agent, one npz file; a restored agent continues bit for bit.
 
-about            uint8, UTF-8 JSON: format, version, rule, dynamics, horizon, counters, random generator
+about            uint8, UTF-8 JSON: format, version, rule, dynamics, models, horizon, counters, random generator
 library          uint8, the library's own file (`library_file`)
 log_belief       (n_types,) float64
 law              the dynamics' prior or matrix, where they have one
 scores           (n_policies,) float64 of the last selection, if any
+task.*           what the task has shown, where models are uncertain
 log_likelihood   (n, n_types) float64 of the last signals; evidence_policy and log_evidence (n,) beside it
 """
 
@@ -22,9 +23,9 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
-from lifelore.interaction.selection import RULES, rule_named
+from lifelore.interaction.selection import RULES, restored_rule
 
-FORMAT = PackedFormat("lifelore policy reuse session", 1, "session", "save_session")
+FORMAT = PackedFormat("lifelore policy reuse session", 2, "session", "save_session", oldest=1)
 GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
 """Bit generators of NumPy that a file may name."""
 
@@ -76,10 +77,12 @@ def session_bytes(agent: BayesianPolicyReuse) -> bytes:
         "settings": asdict(agent.rule),  # pyright: ignore[reportArgumentType]
         "dynamics": agent.dynamics.kind,
         "rate": agent.dynamics.rate,
+        "models": agent.models,
         "horizon": agent.horizon,
         "episode": agent.episode,
         "surprise": agent.surprise,
         "unexplained": agent.unexplained,
+        "taught": agent._taught,
         "selected": None if agent._selected is None else agent._selected[0],
         "generator": generator_state(agent.generator),
     }
@@ -94,9 +97,11 @@ def session_from_bytes(
     try:
         library = PolicyLibrary.from_bytes(arrays["library"].tobytes(), f"the library in {where}", signal)
         dynamics = TypeDynamics(header["dynamics"], header["rate"], arrays.get("law"))
-        rule = rule_named(header["rule"], **header["settings"])
+        rule = restored_rule(header["rule"], header["settings"])
         generator = generator_from_state(header["generator"])
-        agent = BayesianPolicyReuse(library, rule, None, dynamics, header["horizon"], generator)
+        # Files of version 1 are older than uncertain models.
+        models = header.get("models", "plug-in")
+        agent = BayesianPolicyReuse(library, rule, None, dynamics, header["horizon"], generator, models)
         _restore(agent, header, arrays)
     except InputError:
         raise
@@ -116,6 +121,8 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
     }
     if agent.dynamics.law is not None:
         arrays["law"] = agent.dynamics.law
+    if agent.task is not None:
+        arrays |= {f"task.{name}": array for name, array in agent.task.state().items()}
     if agent._selected is not None:
         arrays["scores"] = agent._selected[1]
     return arrays
@@ -127,9 +134,11 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
         raise ValueError(f"log_belief has shape {log_belief.shape}")
     if not ((log_belief <= 0).all() and abs(np.exp(log_belief).sum() - 1) < 1e-9):
         raise ValueError("log_belief is no belief")
-    agent._log_belief = log_belief
+    agent._log_belief[:] = log_belief
+    if agent.task is not None:
+        agent.task.restore({name.partition(".")[2]: a for name, a in arrays.items() if name.startswith("task.")})
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
-    agent.surprise = float(header["surprise"])
+    agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:

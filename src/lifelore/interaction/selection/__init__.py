@@ -1,9 +1,13 @@
 """Selection rules: which policy to run next under a belief over types (thesis §4.5).
 
 Read in this order: `rule` (the interface), `choice` and `ties` (the best score), a file for each rule, then what
-the rules that look ahead share: `support`, `type_classes`, `information`. `belief_program` computes the exact
+the rules that look ahead share: `support`, `type_classes`, `information`. How they decide quickly: `exact_best`,
+`derived_arrays`, `signal_rows`, `information_bounds`, `knowledge_bounds`. `belief_program` computes the exact
 optimum.
 """
+
+from collections.abc import Mapping
+from typing import Any
 
 from lifelore.core.errors import NotFoundError
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
@@ -32,10 +36,16 @@ RULES: dict[str, type] = {
 }
 """Every rule by the name that sessions and the command line use."""
 
+BEFORE: dict[str, dict[str, Any]] = {
+    "expected-improvement": {"of": "outcome"},
+    "knowledge-gradient": {"candidates": "responses"},
+}
+"""Settings that rules had before they could be chosen or before their defaults changed, for files without them."""
+
 __all__ = [
     "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule", "choose",
-    "rule_named", "tied_shares",
+    "restored_rule", "rule_named", "tied_shares",
 ]  # fmt: skip
 
 
@@ -50,3 +60,14 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
+
+
+def restored_rule(name: str, settings: Mapping[str, Any]) -> SelectionRule:
+    """The rule that was saved with these settings; a setting that is missing has the value that it had then.
+
+    Examples
+    --------
+    >>> restored_rule("expected-improvement", {"variant": "standard"})
+    ExpectedImprovement(variant='standard', of='outcome')
+    """
+    return rule_named(name, **{**BEFORE.get(name, {}), **settings})

@@ -14,7 +14,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.information import mutual_information
+from lifelore.interaction.selection.information_bounds import scores_by_information
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks
 from lifelore.interaction.selection.support import MASS, check_mass
 
@@ -52,13 +52,19 @@ class BeliefEntropy(Deterministic):
             raise InputError(f"kappa must be at least 0, got {self.kappa}")
 
     def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Expected utilities plus κ times the information, (..., n_policies)."""
+        """Expected utilities plus κ times the information, (..., n_policies); see `scores_by_information`."""
         mean, table = library.performance.mean, library.table(self.n_bins)
-        kappa = float(np.ptp(mean)) if self.kappa is None else self.kappa
+        kappa = (
+            float(np.maximum.reduce(mean, axis=None) - np.minimum.reduce(mean, axis=None))
+            if self.kappa is None
+            else self.kappa
+        )
         utility = expected_utility(belief, mean)
         if self.variant == "thesis":
             return utility - kappa * _printed_entropy(printed_posterior(belief, table))
-        return utility + kappa * mutual_information(belief, table, self.mass)
+        return scores_by_information(
+            belief, table, self.mass, lambda information, some: utility[..., some] + kappa * information
+        )
 
 
 def printed_posterior(belief: Array, table: SignalTable) -> Array:

@@ -1,47 +1,81 @@
-"""Expected improvement: expected excess of a policy's utility over the best expected utility. Thesis: §4.5.2.1.
+"""Expected improvement of a policy's mean pay, or of its outcome, on the best expected utility. Thesis: §4.5.2.1.
 
-The thesis integrates the density from Uᵗ upwards. That is the *probability* of improvement on Uᵗ and ignores its
-size. `variant="thesis"` is as printed; on a fifth of the surveillance tasks it selects a policy of wide outcomes
-for ever.
+A single outcome exceeds Uᵗ by chance however well its mean is known. The outcome form thus never stops selecting
+a policy of wide outcomes: with a single known type, A = 10 ± 1 and B = 6 ± 30, it selects B for ever. The mean pay
+exceeds Uᵗ only where something is left to learn.
+
+The thesis integrates the density from Uᵗ upwards. That is the *probability* that an outcome improves on Uᵗ and
+ignores its size. `variant="thesis"` is as printed; on a fifth of the surveillance tasks it selects a policy of
+wide outcomes for ever.
 """
 
 from dataclasses import dataclass
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Literal
 
+import numpy as np
+
+from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.rule import Array, Deterministic, Variant, check_variant, in_blocks, weighted
+from lifelore.interaction.selection.ties import TOLERANCE
+
+Improving = Literal["pay", "outcome"]
 
 
 @dataclass(frozen=True)
 class ExpectedImprovement(Deterministic):
-    """Σ β(τ) E[max(U − Uᵗ, 0) | τ, π] with Uᵗ = max Ũ, or as printed Σ β(τ) (1 − F(Uᵗ | τ, π)).
+    """Σ β(τ) E[max(m(τ, π) − Uᵗ, 0)] with the mean pay m and Uᵗ = max Ũ; or of the outcome U in place of m.
+
+    Where no mean pay exceeds Uᵗ by more than a billionth of the range of mean pays, weighted by the belief, the
+    scores are the expected utilities Ũ, so that selection is greedy.
 
     Parameters
     ----------
     variant : {"standard", "thesis"}
+        As printed it is Σ β(τ) P(U > Uᵗ | τ, π), whatever `of` is.
+    of : {"pay", "outcome"}
+        What improves: the expected pay of a policy, or a single outcome with its noise.
 
     Raises
     ------
     InputError
-        There is no such variant.
+        There is no such variant, or `of` is neither of the two.
+
+    Examples
+    --------
+    >>> library = PolicyLibrary.from_means([[10.0, 6.0]], [[1.0, 30.0]], policies=["A", "B"])
+    >>> ExpectedImprovement().probabilities(library, library.prior).tolist()
+    [1.0, 0.0]
+    >>> ExpectedImprovement(of="outcome").probabilities(library, library.prior).tolist()
+    [0.0, 1.0]
     """
 
     variant: Variant = "standard"
+    of: Improving = "pay"
     name: ClassVar[str] = "expected-improvement"
 
     def __post_init__(self) -> None:
         check_variant(self.variant)
+        if self.of not in ("pay", "outcome"):
+            raise InputError(f"of must be 'pay' (the expected pay) or 'outcome', got {self.of!r}")
 
     def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
         """Expected improvements (as printed: their probabilities), (..., n_policies)."""
         model = library.performance
+        of_pay = self.of == "pay" and self.variant == "standard"
+        least = TOLERANCE * float(np.ptp(model.mean)) if of_pay else 0.0
 
         def scored(belief: Array) -> Array:
-            best = expected_utility(belief, model.mean).max(axis=-1)
+            expected = expected_utility(belief, model.mean)
+            best = expected.max(axis=-1)
             best = float(best) if belief.ndim == 1 else best
-            return weighted(
-                belief, model.exceedance(best) if self.variant == "thesis" else model.expected_excess(best)
-            )
+            if self.variant == "thesis":
+                return weighted(belief, model.exceedance(best))
+            if not of_pay:
+                return weighted(belief, model.expected_excess(best))
+            improvement = weighted(belief, model.expected_mean_excess(best))
+            some = improvement.max(axis=-1, keepdims=True) > least
+            return np.where(some, improvement, expected)
 
         return in_blocks(belief, model.n_types * model.n_policies, scored)

@@ -14,7 +14,9 @@ from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.selection.mixtures import class_mixtures, mixtures
 from lifelore.interaction.selection.rule import in_blocks
 from lifelore.interaction.selection.support import supported_types, truncated
-from lifelore.interaction.selection.type_classes import TypeClasses, type_classes
+from lifelore.interaction.selection.type_classes import type_classes
+
+Ints = NDArray[np.int64]
 
 _TINY = np.float32(1e-37)
 
@@ -31,7 +33,11 @@ def mutual_information(belief: Array, table: SignalTable, mass: float = 1.0) -> 
     """
 
     def scored(belief: Array) -> Array:
-        return _of_one(belief, table, mass) if belief.ndim == 1 else _of_many(belief, table, mass)
+        if belief.ndim > 1:
+            return _of_many(belief, table, mass)
+        support, share = supported_types(belief, mass)
+        noise = expected_noise(support, share, table)
+        return information_of(None, support, share, noise, table)
 
     return in_blocks(belief, table.n_policies * table.n_signals, scored)
 
@@ -41,33 +47,61 @@ def expected_entropy(belief: Array, table: SignalTable, mass: float = 1.0) -> Ar
     return entropy(belief)[..., None] - mutual_information(belief, table, mass)
 
 
-def _of_one(belief: Array, table: SignalTable, mass: float) -> Array:
-    support, share = supported_types(belief, mass)
+def expected_noise(support: Ints, share: Array, table: SignalTable) -> Array:
+    """Σ β H(F), the part of the signals' entropy that tells nothing of the type, (n_policies,) nats."""
+    if 2 * len(support) > table.n_types and not type_classes(table).few:
+        return table.conditional_entropy @ spread_out(support, share, table.n_types)
+    return table.conditional_entropy[:, support] @ share
+
+
+def spread_out(support: Ints, share: Array, n_types: int) -> Array:
+    """The shares of all types, (n_types,), 0 outside the support."""
+    if len(support) == n_types:
+        return share
+    whole = np.zeros(n_types)
+    whole[support] = share
+    return whole
+
+
+def information_of(policies: Ints | None, support: Ints, share: Array, noise: Array, table: SignalTable) -> Array:
+    """I(π) of some policies in the precision of the table, (n,) nats.
+
+    Parameters
+    ----------
+    policies : (n,) int64, or None for all
+    support, share : (k,) int64 and float64
+        As `supported_types` gives them.
+    noise : (n_policies,) float
+        As `expected_noise` gives it.
+    table : SignalTable
+    """
     law, classes = table.probs, type_classes(table)
-    if 2 * len(support) > len(belief) and not classes.few:
+    if 2 * len(support) > table.n_types and not classes.few:
         # Reading all rows in order is as fast as picking most rows.
-        whole = np.zeros(len(belief))
-        whole[support] = share
-        mixed = np.matmul(whole.astype(law.dtype, copy=False), law)
-        return _difference(mixed, table.conditional_entropy @ whole)
+        whole = spread_out(support, share, table.n_types).astype(law.dtype, copy=False)
+        if policies is None:
+            return _difference(np.matmul(whole, law), noise)
+        return _difference(np.array([np.matmul(whole, law[policy]) for policy in policies]), noise[policies])
+    policies = np.arange(table.n_policies) if policies is None else policies
     weights = share.astype(law.dtype, copy=False)
-    if kernel_pays(len(support) * table.n_policies * table.n_signals):
-        mixed = _compiled_mixtures(weights, support, law, classes)
+    if kernel_pays(len(support) * len(policies) * table.n_signals):
+        mixed = _compiled_mixtures(weights, support, policies, table)
     elif classes.few:
-        mixed = class_mixtures(weights, support, classes.of_type, law)
+        mixed = class_mixtures(weights, support, classes.of_type, policies, law)
     else:
-        mixed = mixtures(weights, support, law)
-    return _difference(mixed, table.conditional_entropy[:, support] @ share)
+        mixed = mixtures(weights, support, policies, law)
+    return _difference(mixed, noise[policies])
 
 
-def _compiled_mixtures(weights: Array, support: NDArray[np.int64], law: Array, classes: TypeClasses) -> Array:
+def _compiled_mixtures(weights: Array, support: Ints, policies: Ints, table: SignalTable) -> Array:
     from lifelore.interaction.selection import information_kernels
 
-    mixed = np.empty((law.shape[0], law.shape[2]), law.dtype)
+    law, classes = table.probs, type_classes(table)
+    mixed = np.empty((len(policies), table.n_signals), law.dtype)
     if classes.few:
-        information_kernels.class_mixtures(weights, support, classes.of_type, law, mixed)
+        information_kernels.class_mixtures(weights, support, classes.of_type, policies, law, mixed)
     else:
-        information_kernels.mixtures(weights, support, law, mixed)
+        information_kernels.mixtures(weights, support, policies, law, mixed)
     return mixed
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.selection.information import mutual_information
+from lifelore.interaction.selection.information_bounds import scores_by_information
 from lifelore.interaction.selection.rule import Array, Deterministic
 from lifelore.interaction.selection.support import MASS, check_mass
 
@@ -44,8 +44,13 @@ class InformationDirected(Deterministic):
         check_mass(self.mass)
 
     def scores(self, library: PolicyLibrary, belief: Array, **_: Any) -> Array:
-        """Minus the root of the information ratio, (..., n_policies)."""
+        """Minus the root of the information ratio, (..., n_policies); see `scores_by_information`."""
         mean = library.performance.mean
         lost = (np.asarray(belief) @ mean.max(axis=1))[..., None] - expected_utility(belief, mean)
-        information = mutual_information(belief, library.table(self.n_bins), self.mass)
-        return -np.maximum(lost, 0.0) / np.sqrt(np.maximum(information, LEAST_INFORMATION))
+        lost = np.maximum(lost, 0.0)
+
+        def scored(information: Array, some: Any) -> Array:
+            return -lost[..., some] / np.sqrt(np.maximum(information, LEAST_INFORMATION))
+
+        # Where there is little to learn, a small error of the information is a large error of the ratio.
+        return scores_by_information(belief, library.table(self.n_bins), self.mass, scored, always=True)

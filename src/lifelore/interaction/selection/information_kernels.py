@@ -22,17 +22,18 @@ def least_kept(belief, mass):
 
 
 @kernel
-def mixtures(share, support, probs, mixed):
-    """Σ share F(signal | type, policy) over the types of a support.
+def mixtures(share, support, policies, probs, mixed):
+    """Σ share F(signal | type, policy) over the types of a support, for some policies.
 
     share, support : (k,) float64 and int64
+    policies : (n,) int64
     probs : (n_policies, n_types, n_signals)
-    mixed : (n_policies, n_signals) float64, written
+    mixed : (n, n_signals) float64, written
     """
     n, n_signals = support.shape[0], probs.shape[2]
     fours = n - n % 4
-    for policy in range(probs.shape[0]):
-        row = mixed[policy]
+    for place in range(policies.shape[0]):
+        policy, row = policies[place], mixed[place]
         row[:] = 0.0
         # Four types at a time: the row of sums is read and written a quarter as often.
         for i in range(0, fours, 4):
@@ -48,13 +49,14 @@ def mixtures(share, support, probs, mixed):
 
 
 @kernel
-def class_mixtures(share, support, classes, probs, mixed):
+def class_mixtures(share, support, classes, policies, probs, mixed):
     """`mixtures` with the shares of types of one class (n_policies, n_types) summed first."""
     n_signals = probs.shape[2]
     weights = np.empty(support.shape[0], probs.dtype)
     shown = np.empty(support.shape[0], np.int64)
     slots = np.empty(probs.shape[1], np.int64)
-    for policy in range(probs.shape[0]):
+    for place in range(policies.shape[0]):
+        policy = policies[place]
         own = classes[policy]
         slots[:] = -1
         n = 0
@@ -67,7 +69,7 @@ def class_mixtures(share, support, classes, probs, mixed):
                 n += 1
             else:
                 weights[slot] += share[i]
-        row = mixed[policy]
+        row = mixed[place]
         row[:] = 0.0
         for j in range(n):
             weight, law = weights[j], probs[policy, shown[j]]
@@ -76,15 +78,16 @@ def class_mixtures(share, support, classes, probs, mixed):
 
 
 @kernel
-def best_after_signals(weighted, support, classes, number, probs, best):
+def best_after_signals(weighted, support, classes, number, policies, probs, best):
     """Σ over signals of the largest of Σ weighted F(signal | type, policy) over the types of a support.
 
     weighted : (k, n_candidates), the belief times the mean of each candidate on each type of the support
     support : (k,) int64
     classes, number : (n_policies, n_types) int32 and (n_policies,) int64, types whose laws are equal, as
         in `TypeClasses`
+    policies : (n,) int64
     probs : (n_policies, n_types, n_signals), of the dtype of `weighted`
-    best : (n_policies,) float64, written
+    best : (n,) float64, written
     """
     n_types, n_signals, n_candidates = probs.shape[1], probs.shape[2], weighted.shape[1]
     after = np.empty((n_candidates, n_signals), probs.dtype)
@@ -94,7 +97,8 @@ def best_after_signals(weighted, support, classes, number, probs, best):
     slots = np.empty(n_types, np.int64)
     by_candidate = np.ascontiguousarray(weighted.T)
     everything = support.shape[0] == n_types
-    for policy in range(probs.shape[0]):
+    for place in range(policies.shape[0]):
+        policy = policies[place]
         if number[policy] < n_types:
             n = _summed_by_class(weighted, support, classes[policy], probs[policy], slots, sums, laws)
             np.dot(sums[:n].T, laws[:n], after)
@@ -112,7 +116,7 @@ def best_after_signals(weighted, support, classes, number, probs, best):
         total = 0.0
         for signal in range(n_signals):
             total += largest[signal]
-        best[policy] = total
+        best[place] = total
 
 
 @inlined

@@ -8,15 +8,17 @@ from numpy.typing import NDArray
 Ints = NDArray[np.int64]
 
 
-def mixtures(share: NDArray[Any], support: Ints, probs: NDArray[Any]) -> NDArray[Any]:
-    """Σ share F(signal | type, policy) over the types of a support, (n_policies, n_signals).
+def mixtures(share: NDArray[Any], support: Ints, policies: Ints, probs: NDArray[Any]) -> NDArray[Any]:
+    """Σ share F(signal | type, policy) over the types of a support, for some policies, (n, n_signals).
 
     Parameters
     ----------
     share : (k,) float
     support : (k,) int64
+    policies : (n,) int64
     probs : (n_policies, n_types, n_signals) float
     """
+    probs = probs[policies]
     mixed = np.zeros((probs.shape[0], probs.shape[2]), probs.dtype)
     fours = len(support) - len(support) % 4
     for i in range(0, fours, 4):
@@ -28,9 +30,10 @@ def mixtures(share: NDArray[Any], support: Ints, probs: NDArray[Any]) -> NDArray
 
 
 def class_mixtures(
-    share: NDArray[Any], support: Ints, classes: NDArray[np.int32], probs: NDArray[Any]
+    share: NDArray[Any], support: Ints, classes: NDArray[np.int32], policies: Ints, probs: NDArray[Any]
 ) -> NDArray[Any]:
     """`mixtures` with the shares of types of one class (n_policies, n_types) summed first."""
+    classes, probs = classes[policies], probs[policies]
     mixed = np.zeros((probs.shape[0], probs.shape[2]), probs.dtype)
     for row, own, laws in zip(mixed, classes, probs, strict=True):
         weights: dict[int, Any] = {}

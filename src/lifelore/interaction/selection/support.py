@@ -22,6 +22,9 @@ def supported_types(belief: Array, mass: float) -> tuple[NDArray[np.int64], Arra
 
     Types exactly as likely as the last of these are included. Types of belief 0 never are.
     """
+    if belief.min() > 2.0 * (1.0 - mass):
+        # Even the least likely type holds more than may be left out, with a margin for rounding of the sum.
+        return np.arange(len(belief)), belief
     support = np.flatnonzero(belief >= least_kept(belief, mass))
     if len(support) == len(belief):
         return support, belief

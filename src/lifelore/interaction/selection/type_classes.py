@@ -39,7 +39,8 @@ def type_classes(table: SignalTable) -> TypeClasses:
 
 
 def _classes(table: SignalTable) -> TypeClasses:
-    mark = stream(0, "type classes").random(table.n_signals).astype(table.probs.dtype)
+    # In float64, because sums of different rows are often equal in float32.
+    mark = stream(0, "type classes").random(table.n_signals)
     of_type = np.empty(table.probs.shape[:2], np.int32)
     for policy, laws in enumerate(table.probs):
         of_type[policy] = _equal_rows(laws, mark)

@@ -14,9 +14,12 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import check_bins, joined_bins
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, TableLikelihood
+from lifelore.interaction.outcomes.dirichlet import spread_of_counts
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of
 from lifelore.interaction.outcomes.outcome_model import check_policy, rows_of_samples
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.signals.task_categories import TaskCategories
 
 Array = NDArray[np.float64]
 
@@ -30,6 +33,8 @@ class CategorySignal:
         Rows over categories sum to 1; zeros are allowed.
     categories : sequence of hashable, optional
         Names of the categories; signals are then names. By default signals are 0 … n_categories - 1.
+    count : float or (n_types, n_policies) float, optional
+        Number of signals behind each row, pseudo-counts included; without it rows are exact.
 
     Raises
     ------
@@ -45,8 +50,11 @@ class CategorySignal:
 
     kind: ClassVar[str] = "category"
 
-    def __init__(self, probs: ArrayLike, categories: Sequence[Hashable] | None = None) -> None:
+    def __init__(
+        self, probs: ArrayLike, categories: Sequence[Hashable] | None = None, count: ArrayLike | None = None
+    ) -> None:
         self.probs: Array = checked_distributions(probs, "probs", ("n_types", "n_policies", "n_categories"))
+        self.totals: Array | None = None if count is None else _weights(count, self.probs.shape[:2])
         self.categories = None if categories is None else tuple(categories)
         n = self.probs.shape[2]
         names = range(n) if self.categories is None else self.categories
@@ -56,6 +64,7 @@ class CategorySignal:
         # Policy and category first: an update reads a row.
         self._log = log_of(np.ascontiguousarray(self.probs.transpose(1, 2, 0)))
         self._log.flags.writeable = False
+        self._spread: Spread | None = None
 
     @classmethod
     def from_samples(
@@ -88,7 +97,8 @@ class CategorySignal:
             raise InputError(f"pseudo_count must be at least 0, got {pseudo_count}")
         size = rows.shape[0] * rows.shape[1] * n
         counts = np.bincount(rows.pair * n + number, minlength=size).reshape(*rows.shape, n) + pseudo_count
-        return cls(counts / counts.sum(axis=2, keepdims=True), categories)
+        totals = counts.sum(axis=2)
+        return cls(counts / totals[:, :, None], categories, totals)
 
     @property
     def n_types(self) -> int:
@@ -112,13 +122,26 @@ class CategorySignal:
         NotFoundError
             There is no such policy.
         """
+        return self._log[policy, self.place_of(policy, signal)]
+
+    def place_of(self, policy: int, signal: Hashable) -> int:
+        """The number of a category; errors as for `log_likelihood`."""
         try:
             place = self._place[signal]
         except (KeyError, TypeError):
             raise InputError(f"signal must be one of {list(self._place)[:20]}, got {signal!r}") from None
         if not 0 <= policy < self._log.shape[0]:
             check_policy(policy, self.n_policies)
-        return self._log[policy, place]
+        return place
+
+    def for_task(self) -> TaskCategories | None:
+        """A model of one task, which its own signals change; None where the probabilities are exact."""
+        if self.totals is None:
+            return None
+        if self._spread is None:
+            counts = np.ascontiguousarray((self.probs * self.totals[:, :, None]).transpose(1, 0, 2))
+            self._spread = spread_of_counts(counts, 0.0)
+        return TaskCategories(self, self._spread)
 
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
         """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""
@@ -143,7 +166,9 @@ class CategorySignal:
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""
         chosen = np.ix_(chosen_of(types, self.n_types), chosen_of(policies, self.n_policies))
-        return type(self)(self.probs[chosen], self.categories)
+        return type(self)(
+            self.probs[chosen], self.categories, None if self.totals is None else self.totals[chosen]
+        )
 
     def parts(self) -> tuple[Any, ...]:
         """It uses no other model."""
@@ -155,9 +180,19 @@ class CategorySignal:
             names = json.dumps(self.categories)
         except TypeError:
             raise InputError("categories must be texts or numbers to be saved") from None
-        return {"probs": self.probs, "categories": np.frombuffer(names.encode(), np.uint8)}
+        totals = {} if self.totals is None else {"totals": self.totals}
+        return {"probs": self.probs, "categories": np.frombuffer(names.encode(), np.uint8), **totals}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]], parts: tuple[Any, ...]) -> Self:
         """The model of `to_arrays`, bit for bit."""
-        return cls(arrays["probs"], json.loads(arrays["categories"].tobytes()))
+        return cls(arrays["probs"], json.loads(arrays["categories"].tobytes()), arrays.get("totals"))
+
+
+def _weights(count: ArrayLike, shape: tuple[int, ...]) -> Array:
+    found = np.asarray(count, np.float64)
+    if found.ndim and found.shape != shape:
+        raise InputError(f"count must be one number or of shape {shape}, got {found.shape}")
+    if not ((found > 0) & np.isfinite(found)).all():
+        raise InputError("count must be positive and finite; omit it where the probabilities are exact")
+    return np.broadcast_to(found, shape).copy()

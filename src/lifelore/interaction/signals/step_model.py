@@ -15,6 +15,8 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.log_probability import checked_distributions, log_of, with_pseudo_counts
 from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.outcome_moments import chosen_of
+from lifelore.interaction.signals.step_checks import check_steps
+from lifelore.interaction.signals.task_steps import TaskSteps
 
 Array = NDArray[np.float64]
 
@@ -32,23 +34,27 @@ class StepModel:
         Rows over outcomes sum to 1; zeros are allowed. Without the policies' axis all policies share the table.
     n_policies : int, optional
         Number of policies that share the table; any number where None.
+    count : array of the shape of `probs` without its last axis, optional
+        Number of steps behind each row, pseudo-counts included; without it rows are exact.
 
     Raises
     ------
     InputError
-        A row is no distribution.
+        A row is no distribution, or a count is not positive.
     """
 
     kind: ClassVar[str]
     n_policies: int | None
+    totals: Array | None
 
-    def __init__(self, probs: ArrayLike, n_policies: int | None = None) -> None:
+    def __init__(self, probs: ArrayLike, n_policies: int | None = None, count: ArrayLike | None = None) -> None:
         probs = np.asarray(probs, np.float64)
         self.shared = probs.ndim == 4
         table = checked_distributions(probs[:, None] if self.shared else probs, "probs", _AXES)
         self.n_policies = n_policies if self.shared else table.shape[1]
         # Types last: a step reads a row.
         self._log = log_of(np.ascontiguousarray(np.moveaxis(table, 0, -1)))
+        self.totals = None if count is None else self._weights(count)
 
     @property
     def n_types(self) -> int:
@@ -85,12 +91,30 @@ class StepModel:
         check_steps(steps, self.shape)
         return self._log[0 if self.shared else policy, steps[:, 0], steps[:, 1], steps[:, 2]].sum(axis=0)
 
-    def taken(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> tuple[Array, int | None]:
-        """The table of some types and policies, and the number of policies that share it."""
-        table = self.probs[chosen_of(types, self.n_types)]
+    def log_probs(self, place: tuple[int, int, int]) -> Array:
+        """Log probabilities of the outcomes of a table, state and action, (n_outcomes, n_types)."""
+        return self._log[place]
+
+    def steps_of(self, signal: Any) -> NDArray[np.int64]:
+        """A signal as steps (n, 3): state, action, number of the outcome."""
+        raise NotImplementedError
+
+    def for_task(self) -> TaskSteps | None:
+        """A model of one task, which its own steps change; None where the probabilities are exact."""
+        return None if self.totals is None else TaskSteps(self)
+
+    def taken(
+        self, types: Sequence[int] | None, policies: Sequence[int] | None
+    ) -> tuple[Array, int | None, Array | None]:
+        """The table of some types and policies, the number of policies that share it, the steps behind rows."""
+        some = chosen_of(types, self.n_types)
+        table = self.probs[some]
+        count = None if self.totals is None else np.moveaxis(self.totals, -1, 0)[some]
         if self.shared:
-            return table, self.n_policies if policies is None else len(policies)
-        return table[:, chosen_of(policies, table.shape[1])], None
+            n_policies = self.n_policies if policies is None else len(policies)
+            return table, n_policies, None if count is None else count[:, 0]
+        chosen = chosen_of(policies, table.shape[1])
+        return table[:, chosen], None, None if count is None else count[:, chosen]
 
     def parts(self) -> tuple[Any, ...]:
         """It uses no other model."""
@@ -98,7 +122,8 @@ class StepModel:
 
     def to_arrays(self) -> dict[str, NDArray[Any]]:
         """The logarithms, and the number of policies that share them."""
-        return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0])}
+        totals = {} if self.totals is None else {"totals": self.totals}
+        return {"log": self._log, "shared": np.array([self.shared, self.n_policies or 0]), **totals}
 
     def _restore(self, arrays: dict[str, NDArray[Any]]) -> Self:
         """Restore the arrays of `to_arrays`, bit for bit."""
@@ -106,14 +131,19 @@ class StepModel:
         if log.ndim != 5 or not log.size or not (log <= _ABOVE).all() or (shared and len(log) != 1):
             raise InputError("log must be logarithms of probabilities by policy, state, action, outcome, type")
         self._log, self.shared, self.n_policies = log, bool(shared), int(n_policies) or None
+        self.totals = np.array(arrays["totals"], np.float64) if "totals" in arrays else None
+        if self.totals is not None and self.totals.shape != (*log.shape[:3], log.shape[4]):
+            raise InputError("totals must be the steps behind each row, by policy, state, action, type")
         return self
 
-
-def check_steps(steps: NDArray[np.int64], shape: tuple[int, int, int]) -> None:
-    """Raise InputError for steps (n, 3) outside (n_states, n_actions, n_outcomes)."""
-    if len(steps) and not ((steps >= 0).all() and (steps < shape).all()):
-        bad = steps[((steps < 0) | (steps >= shape)).any(axis=1)][0]
-        raise InputError(f"each step must be below {shape} (states, actions, outcomes), got {tuple(bad.tolist())}")
+    def _weights(self, count: ArrayLike) -> Array:
+        found = np.asarray(count, np.float64)
+        found = np.moveaxis(found[:, None] if self.shared else found, 0, -1)
+        if found.shape != (*self._log.shape[:3], self.n_types):
+            raise InputError(f"count must have the shape of probs without its last axis, got {found.shape}")
+        if not ((found > 0) & np.isfinite(found)).all():
+            raise InputError("count must be positive and finite; omit it where the probabilities are exact")
+        return np.ascontiguousarray(found)
 
 
 def whole_numbers(steps: ArrayLike, what: str) -> NDArray[np.int64]:
@@ -156,8 +186,10 @@ def step_counts(
     return counts[:, 0] if n_policies is None else counts
 
 
-def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> Array:
-    """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`.
+def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | None) -> tuple[Array, Array]:
+    """Distributions over outcomes from counts, `pseudo_count` added to each outcome that is `possible`; row sums.
+
+    A row without any count is uniform and counts as one step.
 
     Parameters
     ----------
@@ -165,7 +197,9 @@ def step_probs(counts: ArrayLike, pseudo_count: float, possible: ArrayLike | Non
         Possible outcomes; by default all. Counted outcomes are possible in any case.
     """
     counts = np.asarray(counts, np.float64)
-    if possible is None:
-        return with_pseudo_counts(counts, pseudo_count)
-    weights = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
-    return with_pseudo_counts(weights, 0.0)
+    if possible is not None:
+        counts = counts + pseudo_count * np.broadcast_to(np.asarray(possible, bool), counts.shape)
+        pseudo_count = 0.0
+    probs = with_pseudo_counts(counts, pseudo_count)
+    totals = (counts + pseudo_count).sum(axis=-1)
+    return probs, np.where(totals > 0, totals, 1.0)

@@ -36,8 +36,10 @@ class StepRewardSignal(StepModel):
 
     kind: ClassVar[str] = "step-reward"
 
-    def __init__(self, rewards: ArrayLike, probs: ArrayLike, n_policies: int | None = None) -> None:
-        super().__init__(probs, n_policies)
+    def __init__(
+        self, rewards: ArrayLike, probs: ArrayLike, n_policies: int | None = None, count: ArrayLike | None = None
+    ) -> None:
+        super().__init__(probs, n_policies, count)
         self.rewards: Array = np.array(rewards, np.float64)
         self._index = _index_of(self.rewards, self.shape[2])
 
@@ -58,7 +60,8 @@ class StepRewardSignal(StepModel):
         index = _index_of(listed, listed.size)
         steps = ((type_, policy, _coded(rows, index)) for type_, policy, rows in sequences)
         counts = step_counts(steps, n_types, n_policies, (n_states, n_actions, listed.size))
-        return cls(listed, step_probs(counts, pseudo_count, possible))
+        probs, totals = step_probs(counts, pseudo_count, possible)
+        return cls(listed, probs, count=totals)
 
     def log_likelihood(self, policy: int, signal: Sequence[tuple[int, int, float]]) -> Array:
         """Log likelihood of the steps (n, 3) per type, (n_types,).
@@ -70,7 +73,11 @@ class StepRewardSignal(StepModel):
         NotFoundError
             There is no such policy.
         """
-        return self.log_sum(policy, _coded(signal, self._index))
+        return self.log_sum(policy, self.steps_of(signal))
+
+    def steps_of(self, signal: Sequence[tuple[int, int, float]]) -> NDArray[np.int64]:
+        """A signal as steps (n, 3): state, action, place of the reward in the list."""
+        return _coded(signal, self._index)
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""

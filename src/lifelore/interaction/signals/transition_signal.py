@@ -34,8 +34,8 @@ class TransitionSignal(StepModel):
 
     kind: ClassVar[str] = "transition"
 
-    def __init__(self, probs: ArrayLike, n_policies: int | None = None) -> None:
-        super().__init__(probs, n_policies)
+    def __init__(self, probs: ArrayLike, n_policies: int | None = None, count: ArrayLike | None = None) -> None:
+        super().__init__(probs, n_policies, count)
         if self.shape[0] != self.shape[2]:
             raise InputError(f"probs must lead from states to states, got {self.shape[0]} and {self.shape[2]}")
 
@@ -56,7 +56,8 @@ class TransitionSignal(StepModel):
         possible : bool, broadcastable to `counts`, optional
             Possible transitions; by default all.
         """
-        return cls(step_probs(counts, pseudo_count, possible), n_policies)
+        probs, totals = step_probs(counts, pseudo_count, possible)
+        return cls(probs, n_policies, totals)
 
     @classmethod
     def from_sequences(
@@ -84,7 +85,11 @@ class TransitionSignal(StepModel):
         NotFoundError
             There is no such policy.
         """
-        return self.log_sum(policy, _triples(signal))
+        return self.log_sum(policy, self.steps_of(signal))
+
+    def steps_of(self, signal: ArrayLike) -> NDArray[np.int64]:
+        """A signal as steps (n, 3): state, action, next state."""
+        return _triples(signal)
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """The model of some types and policies."""

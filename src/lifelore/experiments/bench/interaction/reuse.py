@@ -2,8 +2,8 @@
 
 One core, and its own time alone: contenders take from a microsecond to a second, and on a shared machine only
 the long ones would wait for others. A decision is a rule's scores and the choice of the best of them under a
-flat belief, unless a row says otherwise. Kept from one decision to the next are the library's table of signals
-and which types have equal laws in it: many where models are exact, none where they are learnt from samples.
+flat belief, unless a row says otherwise. The library's table of signals and what the rules compute from it are
+stored between decisions. Exact models have many types of equal distributions, models learnt from samples none.
 """
 
 import time
@@ -25,6 +25,7 @@ from lifelore.experiments.bench.interaction.reuse_peers import (
     installed,
     mabwiser_ucb1,
 )
+from lifelore.experiments.bench.interaction.reuse_users import bench_users
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
@@ -42,8 +43,10 @@ from lifelore.interaction.selection import (
 SIGNALS = 50
 SIZES = ((30, 50), (68, 50), (100, 50), (300, 50), (1000, 100))
 """Types (and as many policies) and signals of the rows on growth."""
-DENSE_GRADIENT = 300
-"""Size up to which the knowledge gradient is measured under a flat belief: beyond, it takes seconds."""
+SCREENED = (1000, 100)
+"""Types (and as many policies) and signals at which screened and exact knowledge gradients are compared."""
+CHECKED, EPISODES_BEFORE = 8, (0, 1, 3, 10)
+"""Number of tasks, and of episodes before the compared decisions of each."""
 USERS, AT_ONCE = 1_000_000, 100_000
 TASKS = 4
 """Tasks of 50 episodes that each method plays in a round; BoTorch, refitted each episode, plays the first."""
@@ -55,8 +58,17 @@ LEAST = {
     "knowledge gradient": 50.0,
 }  # fmt: skip
 """Least ratios to the loops."""
-MOST_MS = {"expected improvement": 20.0, "belief entropy": 15.0, "knowledge gradient": 30.0}
+MOST_US_LEARNT = {"belief entropy": 40.0, "knowledge gradient": 450.0}
+"""Most microseconds of a decision on learnt models of the size beside loops."""
+MOST_MS = {
+    "expected improvement, flat belief": 20.0, "belief entropy, flat belief": 15.0,
+    "knowledge gradient, settled belief": 30.0, "knowledge gradient, flat belief": 200.0,
+}  # fmt: skip
+"""Most milliseconds of a decision at the largest size, with exact and with learnt models."""
+MOST_UNCERTAIN = 3.0
+"""Most time of an episode with uncertain models, in the time of an episode with plug-in models."""
 OURS, LOOPS = "Lifelore", "loops"
+PLUG_IN, UNCERTAIN = "plug-in", "uncertain"
 EI, SAMPLING = "policy reuse, expected improvement", "policy reuse, sampling"
 UCB1, GP_EACH, GP_TEN = "MABWiser UCB1", "BoTorch GP-UCB, refitted each", "BoTorch GP-UCB, refitted every 10"
 
@@ -69,7 +81,7 @@ def bench_reuse(repeats: int, progress: Progress) -> dict:
 
     rows: list[dict[str, Any]] = []
     goals: list[dict[str, Any]] = []
-    parts = (_beside_loops, _beside_peers, _growth, _many_users)
+    parts = (_beside_loops, _uncertain, _beside_peers, _growth, _screened, _many_users, bench_users)
     with threadpool_limits(1):
         for number, part in enumerate(parts):
             done = 0
@@ -106,7 +118,7 @@ def _beside_loops(repeats: int, after: Callable[[str], None]) -> Result:
             lambda name=name: case.looped(name).argmax(),
         )
     size = f"{len(case.mean)} x {len(case.mean)} x {SIGNALS}"
-    rows, goals = _learnt(case, size, repeats, after), []
+    rows, goals = _learnt(case, size, repeats, after)
     for name, (ours, theirs) in works.items():
         labels = {who: f"{name}, {size}: {who}" for who in (OURS, LOOPS)}
         times = interleaved({labels[OURS]: _us(ours), labels[LOOPS]: _us(theirs)}, repeats, after)
@@ -117,14 +129,52 @@ def _beside_loops(repeats: int, after: Callable[[str], None]) -> Result:
     return rows, goals
 
 
-def _learnt(case: Reserve, size: str, repeats: int, after: Callable[[str], None]) -> list[dict[str, Any]]:
-    """The same decisions with models learnt from samples, where no two types are alike to any policy."""
+def _learnt(case: Reserve, size: str, repeats: int, after: Callable[[str], None]) -> Result:
+    """The same update and decisions with models learnt from samples, where no two types are alike."""
     library, random = case.learnt(), np.random.default_rng(0)
     library.table(SIGNALS)
-    works = {name: _decision(library, rule, case.flat, random) for name, rule in case.rules().items()}
-    labels = {f"{name}, {size}, learnt models": _us(run) for name, run in works.items()}
-    times = interleaved(labels, repeats, after)
-    return [row(label, median(times[label]), "us") for label in labels]
+    agent = BayesianPolicyReuse(library, models="plug-in")
+    works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
+    works |= {name: _decision(library, rule, case.flat, random) for name, rule in case.rules().items()}
+    labels = {name: f"{name}, {size}, learnt models" for name in works}
+    times = interleaved({labels[name]: _us(run) for name, run in works.items()}, repeats, after)
+    rows = [row(label, median(times[label]), "us") for label in labels.values()]
+    return rows, [
+        at_most(f"{labels[name]}, us", most, median(times[labels[name]])) for name, most in MOST_US_LEARNT.items()
+    ]
+
+
+def _uncertain(repeats: int, after: Callable[[str], None]) -> Result:
+    """Episodes of selecting and learning with learnt models that know how few samples they are from."""
+    case = Reserve(SIGNALS)
+    library = case.learnt()
+    rules = {"expected improvement": ExpectedImprovement(), "sampling": BeliefSampling()}
+    labels = {
+        (name, models): f"select and learn, {name}, {models} models"
+        for name in rules
+        for models in (PLUG_IN, UNCERTAIN)
+    }
+    contenders = {}
+    for (name, models), label in labels.items():
+        make = _reuse(library, rules[name], models)
+        contenders[label] = _playing(case, label, make, [])
+    times = interleaved(contenders, repeats, after)
+    rows, goals = [], []
+    for name in rules:
+        first, second = labels[name, PLUG_IN], labels[name, UNCERTAIN]
+        ratio = paired_ratio(times[second], times[first])
+        rows.append(row(first, median(times[first]), "us"))
+        rows.append(row(second, median(times[second]), "us", first, ratio))
+        goals.append(at_most(f"{name}: uncertain / plug-in models", MOST_UNCERTAIN, ratio))
+    return rows, goals
+
+
+def _reuse(library: Any, rule: SelectionRule, models: Any = "plug-in") -> Callable[[int], Player]:
+    def make(number: int) -> Player:
+        agent = BayesianPolicyReuse(library, rule, horizon=HORIZON, seed=number, models=models)
+        return agent.select, agent.update
+
+    return make
 
 
 def _decision(library: Any, rule: SelectionRule, belief: Any, random: np.random.Generator) -> Callable[[], int]:
@@ -161,13 +211,6 @@ def _beside_peers(repeats: int, after: Callable[[str], None]) -> Result:
 
 
 def _methods(case: Reserve) -> dict[str, Callable[[int], Player]]:
-    def reuse(rule: SelectionRule) -> Callable[[int], Player]:
-        def make(number: int) -> Player:
-            agent = BayesianPolicyReuse(case.library, rule, horizon=HORIZON, seed=number)
-            return agent.select, agent.update
-
-        return make
-
     def gaussian(refit: int) -> Callable[[int], Player]:
         def make(number: int) -> Player:
             first = int(stream(number, "bench", "reuse", "first").integers(len(case.mean)))
@@ -176,7 +219,10 @@ def _methods(case: Reserve) -> dict[str, Callable[[int], Player]]:
 
         return make
 
-    methods = {EI: reuse(ExpectedImprovement()), SAMPLING: reuse(BeliefSampling())}
+    methods = {
+        EI: _reuse(case.library, ExpectedImprovement(of="outcome")),
+        SAMPLING: _reuse(case.library, BeliefSampling()),
+    }
     if installed(MABWISER):
         average = case.mean.mean(axis=0)
         methods[UCB1] = lambda number: mabwiser_ucb1(average, ALPHAS["as it comes"])
@@ -246,7 +292,7 @@ def _growth(repeats: int, after: Callable[[str], None]) -> Result:
         labels = {f"{what}, {case.label}": _us(run) for what, run in _works(case).items()}
         times = interleaved(labels, repeats, after)
         rows += [row(label, median(times[label]), "us") for label in labels]
-        if (size, n_signals) == max(SIZES) and not learnt:
+        if (size, n_signals) == max(SIZES):
             goals += _size_goals(case.label, times)
     return rows, goals
 
@@ -256,23 +302,53 @@ def _works(case: LargeReserve) -> dict[str, Callable]:
     works: dict[str, Callable] = {"update": lambda: agent.update(3, 55.0)}
     rules: dict[str, SelectionRule] = {
         "greedy": Greedy(),
-        "expected improvement": ExpectedImprovement(),
+        "expected improvement": ExpectedImprovement(of="outcome"),
         "belief entropy": BeliefEntropy(n_bins=n),
         "information-directed": InformationDirected(n_bins=n),
-        "knowledge gradient": KnowledgeGradient(n_bins=n),
+        "knowledge gradient": KnowledgeGradient(n_bins=n, candidates="responses"),
     }
     for name, rule in rules.items():
-        if case.size <= DENSE_GRADIENT or name != "knowledge gradient":
-            works[f"{name}, flat belief"] = _decision(case.library, rule, case.flat, random)
+        works[f"{name}, flat belief"] = _decision(case.library, rule, case.flat, random)
         if name not in ("greedy", "expected improvement"):
             works[f"{name}, settled belief"] = _decision(case.library, rule, case.settled, random)
     return works
 
 
 def _size_goals(label: str, times: Rates) -> list[dict[str, Any]]:
-    belief = {name: "settled" if name == "knowledge gradient" else "flat" for name in MOST_MS}
-    names = {name: f"{name}, {belief[name]} belief, {label}" for name in MOST_MS}
-    return [at_most(f"{names[name]}, ms", MOST_MS[name], median(times[names[name]]) / 1e3) for name in MOST_MS]
+    return [
+        at_most(f"{name}, {label}, ms", most, median(times[f"{name}, {label}"]) / 1e3)
+        for name, most in MOST_MS.items()
+    ]
+
+
+# ---- what the screen misses ----------------------------------------------------------------------------------
+
+
+def _screened(repeats: int, after: Callable[[str], None]) -> Result:
+    """How often, and by how much, the screened knowledge gradient misses the best policy of the exact scores."""
+    size, n_signals = SCREENED
+    case = LargeReserve(size, n_signals, learnt=True)
+    library, means = case.library, case.library.performance.mean
+    rule, losses = KnowledgeGradient(n_bins=n_signals), []
+    for task in range(CHECKED):
+        random = stream(0, "bench", "reuse", "screened", task)
+        agent, type_ = BayesianPolicyReuse(library, rule, horizon=HORIZON, seed=task), int(random.integers(size))
+        for episode in range(max(EPISODES_BEFORE) + 1):
+            quick = rule.scores(library, agent.belief, episodes_left=agent.episodes_left)
+            policy = int(quick.argmax())
+            if episode in EPISODES_BEFORE:
+                # Several beliefs are scored exactly.
+                exact = rule.scores(library, agent.belief[None], episodes_left=agent.episodes_left)[0]
+                losses.append(float((exact.max() - exact[policy]) / np.abs(exact).max()))
+                after(f"task {task}, episode {episode}")
+            agent.update(policy, means[type_, policy] + NOISE * random.standard_normal())
+    name = f"knowledge gradient, {case.label}, screened"
+    return [
+        row(f"{name}: decisions compared", float(len(losses)), "decisions"),
+        row(f"{name}: share with the best policy", mean(loss < 1e-6 for loss in losses), ""),
+        row(f"{name}: mean loss of score", mean(losses), ""),
+        row(f"{name}: largest loss of score", max(losses), ""),
+    ], []
 
 
 # ---- a million users -----------------------------------------------------------------------------------------
@@ -281,7 +357,7 @@ def _size_goals(label: str, times: Rates) -> list[dict[str, Any]]:
 def _many_users(repeats: int, after: Callable[[str], None]) -> Result:
     """Users in random order: learn from the last outcome and select the next policy, in one pass."""
     case = Reserve(SIGNALS)
-    users = UserBeliefs(case.library, USERS, "f4")
+    users = UserBeliefs(case.library, USERS, "f4", models="plug-in")
     random = stream(0, "bench", "reuse", "users")
     contenders = {name: _serving(case, users, name, random) for name in ("sampling", "greedy")}
     if installed(MABWISER):

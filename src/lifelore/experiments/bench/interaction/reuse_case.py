@@ -68,10 +68,10 @@ class Reserve:
         """The rules whose loops are measured beside them."""
         n = self.n_signals
         return {
-            "expected improvement": ExpectedImprovement(),
+            "expected improvement": ExpectedImprovement(of="outcome"),
             "belief entropy": BeliefEntropy(n_bins=n),
             "information-directed": InformationDirected(n_bins=n),
-            "knowledge gradient": KnowledgeGradient(n_bins=n),
+            "knowledge gradient": KnowledgeGradient(n_bins=n, candidates="responses"),
         }
 
     def looped(self, name: str) -> Array:

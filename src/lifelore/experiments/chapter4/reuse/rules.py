@@ -17,12 +17,12 @@ STANDARD: dict[str, SelectionRule] = {
     "eps-greedy": EpsilonGreedy(0.3),
     "sampling": BeliefSampling(),
     "PI": ProbabilityOfImprovement(),
-    "EI": ExpectedImprovement(),
+    "EI": ExpectedImprovement(of="outcome"),
     "BE": BeliefEntropy(),
-    "KG": KnowledgeGradient(),
+    "KG": KnowledgeGradient(candidates="responses"),
     "IDS": InformationDirected(),
 }
-"""ε as in the thesis; κ of BE is the range of mean utilities; IDS is not in the thesis."""
+"""EI improves the outcome; ε as in the thesis; κ of BE is the range of mean pays; IDS is not in the thesis."""
 PRINTED: dict[str, SelectionRule] = {
     "PI, printed": ProbabilityOfImprovement(variant="thesis"),
     "EI, printed": ExpectedImprovement(variant="thesis"),

@@ -1,0 +1,315 @@
+"""Normal outcomes of one task, whose means and variances are known from a finite number of runs.
+
+    given a type, mean and variance of a pair have a normal-inverse-χ² law: location m₀, variance v₀ with ν₀
+    degrees of freedom, and the weight of κ₀ = 1 / (1/n + ρ) outcomes, ρ the spread of the tasks of a type
+
+After k outcomes of the task under a policy, with mean x̄ and sum of squares S, the law is of the same kind:
+
+    κ = κ₀ + k     m = (κ₀ m₀ + k x̄) / κ     ν = ν₀ + k     ν v = ν₀ v₀ + S + (κ₀ k / κ)(x̄ − m₀)²
+
+and the next outcome has a t distribution with ν degrees of freedom, location m and scale² = v (1 + 1/κ). So the
+parameters are never drawn: (k, x̄, S) of each policy that was tried is all that a task needs. Pairs that are known
+exactly (n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
+"""
+
+from functools import lru_cache
+from math import erfc, lgamma, log, pi
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.interaction.finite_signals.signal_bins import informative_cuts
+from lifelore.interaction.finite_signals.signal_table import SignalTable
+from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, over_pairs, refuse_outcome
+from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
+from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
+from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
+from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskOutcomes
+
+Array = NDArray[np.float64]
+
+LEAST_FREEDOM = 0.5
+"""Least ν − 2 in the variance of a t distribution: below it would be infinite, and nothing compares."""
+LARGEST_FREEDOM = 1e7
+"""Degrees of freedom above which a t distribution is computed as this one's."""
+ROOT_HALF = 0.5**0.5
+_ROOT_2_PI = np.sqrt(2 * np.pi)
+
+
+class TaskNormals(TaskOutcomes):
+    """P(U | type, policy) in one task, given the outcomes it has shown.
+
+    Parameters
+    ----------
+    moments : OutcomeMoments
+        What the runs of the library say; not copied and not changed.
+    spread : Spread
+
+    Attributes
+    ----------
+    mean, mean_variance, noise : (n_types, n_policies) float64
+        Expected mean outcome of a pair, variance of that mean (what is not known about it), and expected variance
+        of outcomes around it.
+    """
+
+    def __init__(self, moments: OutcomeMoments, spread: Spread) -> None:
+        super().__init__(spread)
+        # Policy first: an update reads the row of a policy.
+        self._location = np.ascontiguousarray(moments.mean.T)
+        self._variance = np.ascontiguousarray(moments.variance.T)
+        self._rarity = np.ascontiguousarray(1 / moments.count.T)
+        self._doubt = np.ascontiguousarray(1 / moments.freedom.T)
+        self._shown: dict[int, tuple[float, float, float]] = {}
+        self._stale: set[int] = set()
+        factor = variance_factor(moments.freedom)
+        self._mean, self._noise = moments.mean.copy(), moments.variance * factor
+        self._of_runs, self._of_spread = self._noise / moments.count, self._noise.copy()
+        self._freedom = np.minimum(moments.freedom, LARGEST_FREEDOM)
+        self._tried_variance: dict[int, Array] = {}
+
+    # ---- what the task has shown ---------------------------------------------------------------------------
+
+    def predicted(self, policy: int, value: float) -> Predicted:
+        """The log density of `value` by spread and type, and its density in a task that has shown nothing."""
+        if not is_outcome(policy, value, len(self._location)):
+            refuse_outcome(policy, value, self.n_policies)
+        shown = self._shown.get(policy)
+        fresh = self._log_density(policy, value, (0.0, 0.0, 0.0))
+        return Predicted(fresh if shown is None else self._log_density(policy, value, shown), fresh)
+
+    def learn(self, policy: int, value: float, log_weights: Array | None = None) -> None:
+        """Take in an outcome of this task, and the spreads' log probabilities after it."""
+        k, mean, squares = self._shown.get(policy, (0.0, 0.0, 0.0))
+        before = value - mean
+        self._shown[policy] = k + 1, mean + before / (k + 1), squares + before**2 * (k / (k + 1))
+        if log_weights is not None:
+            self.log_weights = log_weights
+        self._stale.update(self._shown if len(self.log_weights) > 1 else (policy,))
+
+    @property
+    def shown(self) -> dict[int, tuple[float, float, float]]:
+        """Number, mean and sum of squares around the mean of the outcomes of each policy that was tried."""
+        return dict(self._shown)
+
+    def fade(self, keep: float) -> None:
+        """Let everything that the task has shown count `keep` of what it did; the type may have changed."""
+        for policy, (k, mean, squares) in self._shown.items():
+            self._shown[policy] = k * keep, mean, squares * keep
+        self.fade_weights(keep)
+        self._stale.update(self._shown)
+
+    def state(self) -> dict[str, NDArray[Any]]:
+        """What the task has shown: ``policies`` (m,), ``shown`` (m, 3): k, mean, squares; ``log_weights``."""
+        return {
+            "policies": np.array(list(self._shown), np.int64),
+            "shown": np.array(list(self._shown.values()), np.float64).reshape(-1, 3),
+            "log_weights": self.log_weights.copy(),
+        }
+
+    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+        """Take over a `state`; the model then has the same bits."""
+        shown = np.asarray(state["shown"], np.float64)
+        policies = np.asarray(state["policies"], np.int64)
+        good = shown.shape == (len(policies), 3) and (shown[:, [0, 2]] >= 0).all() and np.isfinite(shown).all()
+        if not good or (policies.size and not 0 <= policies.min() <= policies.max() < self.n_policies):
+            raise InputError("a task's state must have policies and (count, mean, squares) of each")
+        self.restore_weights(state["log_weights"])
+        self._shown = dict(zip(policies.tolist(), map(tuple, shown.tolist()), strict=True))  # type: ignore[arg-type]
+        self._stale.update(self._shown)
+
+    # ---- the model as rules use it -------------------------------------------------------------------------
+
+    @property
+    def mean(self) -> Array:  # type: ignore[override]
+        """Expected mean outcome of each pair, (n_types, n_policies); read only."""
+        if self._stale:
+            self._renew()
+        return self._mean
+
+    @property
+    def noise(self) -> Array:
+        """Expected variance of a pair's outcomes around their mean, (n_types, n_policies); read only."""
+        if self._stale:
+            self._renew()
+        return self._noise
+
+    @property
+    def mean_variance(self) -> Array:
+        """Variance of each pair's mean outcome, (n_types, n_policies)."""
+        if self._stale:
+            self._renew()
+        found = self._of_runs + self._of_spread * (np.exp(self.log_weights) @ self.spread.values)
+        for policy, column in self._tried_variance.items():
+            found[:, policy] = column
+        return found
+
+    @property
+    def deviation(self) -> Array:
+        """Standard deviation of the next outcome, (n_types, n_policies)."""
+        return np.sqrt(self.mean_variance + self.noise)
+
+    @property
+    def freedom(self) -> Array:
+        """Degrees of freedom of the next outcome, at most `LARGEST_FREEDOM`, (n_types, n_policies)."""
+        freedom = self._freedom.copy()
+        for policy, (k, *_) in self._shown.items():
+            freedom[:, policy] += k
+        return freedom
+
+    @property
+    def scale(self) -> Array:
+        """Scale of the t distribution of the next outcome, (n_types, n_policies)."""
+        return self.deviation / np.sqrt(variance_factor(self.freedom))
+
+    def expected_mean_excess(self, threshold: ArrayLike) -> Array:
+        """E[max(m − threshold, 0)] of each pair's mean outcome m, taken as normal, (..., n_types, n_policies)."""
+        above = self.mean - over_pairs(threshold)
+        deviation = np.sqrt(self.mean_variance)
+        z = above / np.maximum(deviation, 1e-300)
+        z = np.clip(z, -1e3, 1e3)
+        excess = deviation * np.exp(-0.5 * z * z) / _ROOT_2_PI + above * ndtr(z)
+        return np.maximum(excess, 0.0)
+
+    def density(self, value: ArrayLike) -> Array:
+        """Density of `value` for every pair, (..., n_types, n_policies)."""
+        freedom, scale = self.freedom, self.scale
+        z = (over_pairs(value) - self.mean) / scale
+        half = 0.5 * freedom
+        height = gammaln(half + 0.5) - gammaln(half) - 0.5 * np.log(np.pi * freedom)
+        return np.exp(height - (half + 0.5) * np.log1p(z * z / freedom)) / scale
+
+    def exceedance(self, threshold: ArrayLike) -> Array:
+        """P(U > threshold) for every pair, (..., n_types, n_policies)."""
+        return stdtr(self.freedom, (self.mean - over_pairs(threshold)) / self.scale)
+
+    def expected_excess(self, threshold: ArrayLike) -> Array:
+        """E[max(U − threshold, 0)] for every pair, outcomes taken as normal, (..., n_types, n_policies)."""
+        deviation = self.deviation
+        z = (self.mean - over_pairs(threshold)) / deviation
+        return np.maximum(deviation * (z * ndtr(z) + np.exp(-0.5 * z * z) / _ROOT_2_PI), 0.0)
+
+    def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
+        """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
+        noise = self.noise[:, policy]
+        freedom = self._freedom[types, policy] + self._shown.get(policy, (0.0,))[0]
+        variance = self._tried_variance.get(policy)
+        if variance is None:
+            expected = np.exp(self.log_weights) @ self.spread.values
+            variance = self._of_runs[:, policy] + self._of_spread[:, policy] * expected
+        scale = np.sqrt((variance[types] + noise[types]) / variance_factor(freedom))
+        z = (values - self.mean[types, policy][:, None]) / scale[:, None]
+        return stdtr(freedom[:, None], z)
+
+    def bounds(self) -> tuple[float, float]:
+        """(U^min, U^max): four deviations around the means."""
+        deviation = self.deviation
+        return float((self.mean - 4 * deviation).min()), float((self.mean + 4 * deviation).max())
+
+    def cuts(self, n_bins: int) -> list[Array]:
+        """Cuts of each policy's outcomes into bins that tell the types apart, as they are now."""
+        return [informative_cuts(self, policy, n_bins) for policy in range(self.n_policies)]
+
+    def table_rows(self, policy: int, cuts: Array, n_bins: int) -> Array:
+        """P(bin | type) of the next outcome of a policy, taken as normal, (n_types, n_bins)."""
+        z = (cuts - self.mean[:, policy, None]) / self.deviation[:, policy, None]
+        # Not by SciPy, whose import takes longer than a whole choice.
+        below = np.array([0.5 * erfc(-value * ROOT_HALF) for value in z.ravel().tolist()]).reshape(z.shape)
+        probs = np.zeros((len(z), n_bins))
+        probs[:, : z.shape[1] + 1] = np.maximum(np.diff(below, axis=1, prepend=0.0, append=1.0), 0.0)
+        return probs
+
+    def table(self, n_bins: int = 8) -> SignalTable:
+        """The next outcome in bins that tell the types apart."""
+        rows = [self.table_rows(policy, cuts, n_bins) for policy, cuts in enumerate(self.cuts(n_bins))]
+        return SignalTable(np.stack(rows), copy=False)
+
+    def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
+        """Random next outcomes of a pair: a number, or an array of shape `size`."""
+        drawn = generator.standard_t(self.freedom[type_, policy], size)
+        return self.mean[type_, policy] + self.scale[type_, policy] * drawn
+
+    # ---- the law of a policy's pairs -----------------------------------------------------------------------
+
+    def _law(self, policies: Any, shown: Any) -> tuple[Array, Array, Array, Array]:
+        """Location, 1/κ and variance by spread and type, (..., n_spreads, n_types), and degrees of freedom.
+
+        `shown` is (k, mean, squares) of a policy, or arrays (m, 1, 1) of `policies` (m,).
+        """
+        k, mean, squares = shown
+        place = (policies, None)
+        location, variance, doubt = self._location[place], self._variance[place], self._doubt[place]
+        rarity = self._rarity[place] + self.spread.values[:, None]
+        grown = 1 + k * rarity
+        apart = mean - location
+        with np.errstate(divide="ignore", over="ignore"):
+            freedom = 1 / doubt + k
+            found = (variance + doubt * (squares + k / grown * apart**2)) / (1 + doubt * k)
+        return location + k * rarity / grown * apart, rarity / grown, np.minimum(found, LARGEST**2), freedom
+
+    def _log_density(self, policy: int, value: float, shown: tuple[float, float, float]) -> Array:
+        location, rarity, variance, freedom = self._law(policy, shown)
+        freedom = freedom[0]
+        square = variance * (1 + rarity)
+        z2 = (value - location) ** 2 / square
+        normal = freedom == np.inf
+        if normal.any():
+            finite = np.where(normal, 1.0, freedom)
+            tail = np.where(normal, 0.5 * z2, 0.5 * (finite + 1) * np.log1p(z2 / finite))
+        else:
+            tail = 0.5 * (freedom + 1) * np.log1p(z2 / freedom)
+        return _heights(freedom) - 0.5 * np.log(square) - tail
+
+    def _renew(self) -> None:
+        """Compute the columns of the policies again whose law has changed."""
+        policies = np.array(sorted(self._stale))
+        shown = np.array([self._shown[policy] for policy in policies.tolist()]).T[:, :, None, None]
+        location, rarity, variance, freedom = self._law(policies, shown)
+        weights, factor = np.exp(self.log_weights)[:, None], variance_factor(freedom[:, 0])
+        mean = (weights * location).sum(axis=1)
+        self._mean[:, policies] = mean.T
+        self._noise[:, policies] = (factor * (weights * variance).sum(axis=1)).T
+        within = factor * (weights * variance * rarity).sum(axis=1)
+        doubt = within + (weights * (location - mean[:, None]) ** 2).sum(axis=1)
+        self._tried_variance.update(zip(policies.tolist(), doubt, strict=True))
+        self._stale.clear()
+
+
+def variance_factor(freedom: Array) -> Array:
+    """Variance of a t distribution of scale 1, ν / (ν − 2) with ν − 2 at least `LEAST_FREEDOM`."""
+    return 1 + 2 / np.maximum(freedom - 2, LEAST_FREEDOM)
+
+
+def spread_of(moments: OutcomeMoments) -> Spread:
+    """The spreads that the moments' own types leave possible; none where there is a single type."""
+    n_types, n_policies = moments.mean.shape
+    if n_types < 2 or np.isinf(moments.count).any():
+        return Spread.known(0.0)
+    some = held_out(n_types, n_types * n_policies)
+    rare = moments.variance / moments.count
+    found = np.empty((len(GRID), len(some), n_types))
+    for place, i in enumerate(some):
+        apart = (moments.mean[i] - moments.mean) ** 2
+        noise, unit = rare[i] + rare, moments.variance
+        for number, value in enumerate(GRID):
+            variance = noise + value * unit
+            found[number, place] = -0.5 * (apart / variance + np.log(variance)).sum(axis=1)
+        found[:, place, i] = -np.inf
+    return Spread.up_to(likeliest(found))
+
+
+def _heights(freedom: Array) -> Array:
+    first = freedom[0]
+    if (freedom == first).all():
+        return np.full(freedom.shape, _height(float(first)))
+    return np.array([_height(value) for value in freedom.tolist()])
+
+
+@lru_cache(maxsize=4096)
+def _height(freedom: float) -> float:
+    """Log of the density of Student's t at its location, scale 1."""
+    if freedom > 1e6:
+        # Differences of log Γ at large arguments lose their digits; the next term of this series is below 1e-18.
+        return -0.5 * log(2 * pi) - (0.25 / freedom if freedom < np.inf else 0.0)
+    return lgamma(0.5 * (freedom + 1)) - lgamma(0.5 * freedom) - 0.5 * log(pi * freedom)
