@@ -110,7 +110,8 @@ def test_the_contract_names_these_commands():
         "version",
     }
     verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}
-    verbs |= {f"reuse {verb}" for verb in ("fit", "warm", "choose", "update", "report", "retire", "add", "forget")}
+    reuse = ("fit", "warm", "choose", "update", "report", "evaluate", "retire", "add", "forget")
+    verbs |= {f"reuse {verb}" for verb in reuse}
     assert {" ".join(path) for path in COMMANDS} == verbs
 
 

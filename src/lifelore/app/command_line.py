@@ -41,6 +41,7 @@ def _register() -> None:
         perceive_command,
         reproduce_command,
         reuse_command,
+        reuse_evaluate_command,
         scenes_command,
         teach_command,
         way_command,
@@ -54,6 +55,7 @@ def _register() -> None:
     app.command("teach")(teach_command.teach)
     app.command("learn-from")(learn_from_command.learn_from)
     app.command("advise")(advise_command.advise)
+    reuse_command.reuse.command("evaluate")(reuse_evaluate_command.evaluate)
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
     app.command("reproduce")(reproduce_command.reproduce)

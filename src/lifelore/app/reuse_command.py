@@ -102,7 +102,7 @@ def fit(
 
     rule = rule or DEFAULT_RULE
     settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, models, seed)
-    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
@@ -131,7 +131,7 @@ def warm(
     from lifelore.agent.reuse.warm import warm as warmed
     from lifelore.app.console import print_json
 
-    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
     print_json(document) if as_json else _print_warm(document)
@@ -282,7 +282,7 @@ def _opened(name: str, where: str | None) -> "Iterator[tuple[Memory, Study]]":
         yield memory, open_study(memory, name)
 
 
-def _log_format(
+def log_format(
     columns: list[str] | None,
     separator: str | None,
     decimal_comma: bool,

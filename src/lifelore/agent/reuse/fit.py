@@ -104,16 +104,31 @@ def fit(
     """
     settings = settings or FitSettings()
     log = read_log(paths, form)
-    generator = stream(settings.seed, "reuse types", settings.name)
-    typed = typed_rows(log, settings.model, settings.types, generator)
-    library, counts = library_of(log, typed, settings.model)
     earlier = _earlier(memory, settings.name)
-    # Computed once and stored with the library.
-    library.performance.spread  # noqa: B018  # pyright: ignore
-    study = _study(log, library, typed, settings, dict(earlier.get("states", {})))
+    study, typed, counts = study_of_log(log, settings, dict(earlier.get("states", {})))
     study.keep(memory)
     keep_fitted_past(memory, study, log)
     return _document(study, log, typed, counts) | {"changed": _changed(study, earlier)}
+
+
+def study_of_log(
+    log: ReuseLog, settings: FitSettings, earlier: dict[str, str] | None = None
+) -> tuple[Study, TypedRows, NDArray[np.float64]]:
+    """The study that a log gives, its typed rows, and the number of outcomes of each type and policy.
+
+    Parameters
+    ----------
+    log : ReuseLog
+    settings : FitSettings
+    earlier : dict of str to str, optional
+        What each policy is in an earlier study of the name.
+    """
+    generator = stream(settings.seed, "reuse types", settings.name)
+    typed = typed_rows(log, settings.model, settings.types, generator)
+    library, counts = library_of(log, typed, settings.model)
+    # Computed once and stored with the library.
+    library.performance.spread  # noqa: B018  # pyright: ignore
+    return _study(log, library, typed, settings, earlier or {}), typed, counts
 
 
 def _study(

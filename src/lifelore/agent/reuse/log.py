@@ -12,14 +12,14 @@ Other columns are ignored. Several logs are read as one. `LogFormat` reads logs 
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log_columns import COUNTED, Lines, check_word, read_outcome
+from lifelore.agent.reuse.log_columns import COUNTED, WORDS, Lines, check_word, read_outcome
 from lifelore.agent.reuse.log_format import LogFormat
 from lifelore.agent.reuse.log_lines import read_lines
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -45,6 +45,15 @@ class Column:
     def words(self) -> list[str]:
         """The word of each row."""
         return [self.names[code] for code in self.codes.tolist()]
+
+    def take(self, rows: NDArray[np.int64]) -> "Column":
+        """The column of the rows at some places, and the names that they have."""
+        used, codes = np.unique(self.codes[rows], return_inverse=True)
+        return Column(tuple(self.names[code] for code in used.tolist()), codes.astype(np.int64))
+
+
+NOTHING = Column(("",), np.zeros(0, np.int64))
+"""A column of a log without rows."""
 
 
 @dataclass(frozen=True)
@@ -81,6 +90,8 @@ class ReuseLog:
         Lines whose missing outcome or policy got what the format says.
     without_policy : int
         Lines left out because their policy is missing.
+    probability, group : Column
+        "" where the log says nothing, and where the format does not read them.
     """
 
     user: Column
@@ -96,6 +107,8 @@ class ReuseLog:
     filled_outcomes: int = 0
     filled_policies: int = 0
     without_policy: int = 0
+    probability: Column = NOTHING
+    group: Column = NOTHING
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -114,6 +127,12 @@ class ReuseLog:
     def says_types(self) -> bool:
         """Whether any row names a type."""
         return any(self.type.names)
+
+    def take(self, rows: NDArray[np.int64]) -> "ReuseLog":
+        """The log with the rows at some places alone, and the names that they have."""
+        columns = {name: getattr(self, name).take(rows) for name in WORDS}
+        own = {name: getattr(self, name)[rows] for name in ("outcomes", "file", "line")}
+        return replace(self, **columns, **own)
 
     @cached_property
     def type_of_user(self) -> NDArray[np.int64]:
@@ -179,12 +198,14 @@ def _lines(path: Path, form: LogFormat) -> Lines:
 
 
 def _joined(lines: Sequence[Lines], paths: Sequence[str]) -> ReuseLog:
-    user, policy, type_, context, decision = (
-        _column([part.names[place] for part in lines], [part.codes[place] for part in lines]) for place in range(5)
+    user, policy, type_, context, decision, probability, group = (
+        _column([part.names[place] for part in lines], [part.codes[place] for part in lines])
+        for place in range(len(WORDS))
     )
     counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
     return ReuseLog(
         user=user, policy=policy, type=type_, context=context, decision=decision,
+        probability=probability, group=group,
         outcomes=np.concatenate([part.outcomes for part in lines]),
         file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
         line=np.concatenate([part.line for part in lines]),

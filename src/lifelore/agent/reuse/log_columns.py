@@ -7,12 +7,12 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log_format import LEAVE_OUT, OPTIONAL, REFUSE, LogFormat
+from lifelore.agent.reuse.log_format import LEAVE_OUT, LOGGED, OPTIONAL, REFUSE, LogFormat
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 
 LONGEST = 200
-WORDS = ("user", "policy", *OPTIONAL)
+WORDS = ("user", "policy", *OPTIONAL, *LOGGED)
 COUNTED = ("pending", "filled_outcomes", "filled_policies", "without_policy")
 """Reasons for which lines are left out or filled; see `ReuseLog`."""
 

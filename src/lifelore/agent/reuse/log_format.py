@@ -9,6 +9,8 @@ from lifelore.core.errors import InputError, NotFoundError
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision")
+LOGGED = ("probability", "group")
+"""Columns of the log that `reuse report` writes, read for off-policy evaluation only."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 
@@ -20,8 +22,8 @@ class LogFormat:
     Parameters
     ----------
     columns : dict of str to str
-        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`); others have our names. Capitals do not
-        matter.
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `LOGGED`); others have our names. Capitals
+        do not matter.
     separator : {"comma", "semicolon", "tab"}, optional
         Between columns; default: the one that makes the needed columns of the header.
     decimal_comma : bool
@@ -35,6 +37,8 @@ class LogFormat:
         means, such as ``0``.
     missing_policy : str
         ``refuse`` the log; ``leave-out`` the line; or the name of the policy that a missing policy means.
+    probabilities : bool
+        Whether to read the column ``probability``, which the log must then have, and ``group``.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -44,17 +48,29 @@ class LogFormat:
     missing: tuple[str, ...] = ()
     missing_outcome: str = LEAVE_OUT
     missing_policy: str = REFUSE
+    probabilities: bool = False
 
     def __post_init__(self) -> None:
+        known = (*NEEDED, *OPTIONAL, *LOGGED)
         for ours in self.columns:
-            if ours not in (*NEEDED, *OPTIONAL):
-                raise InputError(f"columns must name {', '.join((*NEEDED, *OPTIONAL))}, got '{ours}'")
+            if ours not in known:
+                raise InputError(f"columns must name {', '.join(known)}, got '{ours}'")
         if self.separator is not None and self.separator not in SEPARATORS:
             raise NotFoundError(f"separator must be one of {', '.join(SEPARATORS)}, got '{self.separator}'")
         try:
             codecs.lookup(self.encoding)
         except LookupError:
             raise NotFoundError(f"encoding must be one that Python knows, got '{self.encoding}'") from None
+
+    @property
+    def needed(self) -> tuple[str, ...]:
+        """Columns that the log must have, by our names."""
+        return (*NEEDED, "probability") if self.probabilities else NEEDED
+
+    @property
+    def read(self) -> tuple[str, ...]:
+        """Columns that are read where the log has them, by our names."""
+        return (*NEEDED, *OPTIONAL, *LOGGED) if self.probabilities else (*NEEDED, *OPTIONAL)
 
     def column(self, ours: str) -> str:
         """The log's name of a column, in small letters."""

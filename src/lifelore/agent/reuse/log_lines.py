@@ -8,7 +8,7 @@ from itertools import chain
 import numpy as np
 
 from lifelore.agent.reuse.log_columns import WORDS, ColumnReader, Lines
-from lifelore.agent.reuse.log_format import NEEDED, OPTIONAL, SEPARATORS, LogFormat
+from lifelore.agent.reuse.log_format import SEPARATORS, LogFormat
 from lifelore.core.errors import InputError
 
 CHUNK = 1 << 16
@@ -73,7 +73,7 @@ def _separator(header: str, form: LogFormat) -> str:
     """The separator that makes the needed columns, a comma where none does."""
     if form.separator is not None:
         return SEPARATORS[form.separator]
-    needed = {form.column(column) for column in NEEDED}
+    needed = {form.column(column) for column in form.needed}
     for separator in SEPARATORS.values():
         if {word.strip().strip('"').strip().lower() for word in header.split(separator)}.issuperset(needed):
             return separator
@@ -81,22 +81,20 @@ def _separator(header: str, form: LogFormat) -> str:
 
 
 def _places(header: list[str], name: str, form: LogFormat) -> dict[str, int]:
-    needed = ", ".join(form.column(column) for column in NEEDED)
+    needed = ", ".join(form.column(column) for column in form.needed)
     if not any(header):
         raise InputError(f"{name} must begin with a header that names {needed}, it is empty")
-    for column in (*NEEDED, *OPTIONAL):
+    for column in form.read:
         own = form.column(column)
         if header.count(own) > 1:
             raise InputError(f"{name} must have one column '{own}', its header names {header.count(own)}")
-    missing = [form.column(column) for column in (*NEEDED, *form.columns) if form.column(column) not in header]
+    missing = [
+        form.column(column) for column in (*form.needed, *form.columns) if form.column(column) not in header
+    ]
     if missing:
         raise InputError(
             f"{name} must have the columns {needed}, separated by commas; it has no "
             f"{' and no '.join(dict.fromkeys(missing))}, its header is '{','.join(header)[:80]}'; name others "
             "with --columns user=NAME,policy=NAME,outcome=NAME"
         )
-    return {
-        column: header.index(form.column(column))
-        for column in (*NEEDED, *OPTIONAL)
-        if form.column(column) in header
-    }
+    return {column: header.index(form.column(column)) for column in form.read if form.column(column) in header}

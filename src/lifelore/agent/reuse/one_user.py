@@ -29,7 +29,7 @@ ATTEMPTS = 1000
 
 
 @dataclass(frozen=True, eq=False)
-class _Odds:
+class Odds:
     """Policies that may be chosen, and how likely each is."""
 
     policies: list[str]
@@ -85,7 +85,7 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     belief = study.algorithm.belief(head.log_belief)
     control = study.holds_out(user)
     known_of_user = study.choice_for(head.task)
-    odds = _control_odds(study) if control else _odds(study, known_of_user, belief)
+    odds = _control_odds(study) if control else policy_odds(study, known_of_user, belief)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
@@ -105,17 +105,24 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     return decision, answer
 
 
-def _odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64]) -> _Odds:
-    """What the rule does, and a share of anything."""
+def policy_odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64]) -> Odds:
+    """Policies in use, and the probability that the rule chooses each, with the share of exploration mixed in.
+
+    Parameters
+    ----------
+    library : PolicyLibrary
+        Of the policies in use, as the user's outcomes leave it (`Study.choice_for`).
+    belief : (n_types,) float64
+    """
     probs = study.selection.probabilities(library, belief)
     probs = (1 - study.explore) * probs + study.explore / len(probs)
-    return _Odds(study.active, probs / probs.sum())
+    return Odds(study.active, probs / probs.sum())
 
 
-def _control_odds(study: Study) -> _Odds:
+def _control_odds(study: Study) -> Odds:
     """The incumbent, or every policy in use alike, pilots too."""
     policies = [study.incumbent] if study.incumbent is not None else [*study.active, *study.pilots]
-    return _Odds(policies, np.full(len(policies), 1 / len(policies)))
+    return Odds(policies, np.full(len(policies), 1 / len(policies)))
 
 
 def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[str, Any]:

@@ -7,8 +7,6 @@ one from more than `MANY` users on).
 
 import csv
 import io
-import json
-import warnings
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -18,10 +16,10 @@ import numpy as np
 
 from lifelore.agent.reuse.history import Decision, History, histories
 from lifelore.agent.reuse.past import Past, PastUser, read_past
+from lifelore.agent.reuse.result_folder import write_result, write_text
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_belief import expected_outcomes
-from lifelore.core.atomic_write import atomic_write
-from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.metrics import mean_estimate
 from lifelore.memory import Memory
 
@@ -90,9 +88,11 @@ def report(
     past = read_past(memory, study.name)
     document = _document(study, _split(study, known, past, split), past, incumbent) | {"split": split}
     if log is not None:
-        _write(Path(log), _log_text(study, known))
+        write_text(Path(log), _log_text(study, known))
     if out is not None:
-        _write_folder(Path(out), document)
+        from lifelore.figures.reuse_report import draw_reuse_report
+
+        write_result(Path(out), "report", document, draw_reuse_report)
     return document
 
 
@@ -230,27 +230,3 @@ def _log_text(study: Study, known: list[History]) -> str:
                 group, history.identifier(one), one.number, "" if one.ended is None else one.ended,
             ])  # fmt: skip
     return text.getvalue()
-
-
-def _write_folder(folder: Path, document: dict[str, Any]) -> None:
-    from lifelore.figures.reuse_report import draw_reuse_report
-    from lifelore.figures.style import save_figure
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise StoreError(f"cannot write {folder}: {error.strerror}; choose another place") from None
-    _write(folder / "report.json", json.dumps(document, indent=2, allow_nan=False) + "\n")
-    with warnings.catch_warnings():
-        # Names may be of any script; what the font lacks is drawn as a box, and report.json has it.
-        warnings.filterwarnings("ignore", "Glyph .* missing from")
-        save_figure(draw_reuse_report(document), folder / "report.png")
-
-
-def _write(path: Path, text: str) -> None:
-    """The whole file or none."""
-    try:
-        with atomic_write(path) as file:
-            file.write(text.encode())
-    except OSError as error:
-        raise StoreError(f"cannot write {path}: {error.strerror}; choose another place") from None

@@ -1,0 +1,69 @@
+"""A study replayed on logged decisions: before each, the policies' expected outcomes and their probabilities."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.reuse.log import ReuseLog
+from lifelore.agent.reuse.one_user import policy_odds
+from lifelore.agent.reuse.study import Study
+from lifelore.agent.reuse.user_state import Checkpoint, WorkingBelief
+from lifelore.interaction.beliefs.belief import expected_utility
+
+Array = NDArray[np.float64]
+
+
+class ReplayedChoices(NamedTuple):
+    """What a study believes and would do before each logged decision.
+
+    expected : (n, n_policies) float64
+        Expected outcome of each policy of the log; NaN where the study does not choose from it.
+    probabilities : (n, n_policies) float64
+        With which the study would choose each policy of the log.
+    unknown : (n,) float64
+        Probability of policies that the log does not name.
+    """
+
+    expected: Array
+    probabilities: Array
+    unknown: Array
+
+
+def replayed_choices(study: Study, log: ReuseLog, rows: NDArray[np.int64]) -> ReplayedChoices:
+    """Replay some rows of a log: each user starts as a stranger and learns from the logged outcomes.
+
+    Parameters
+    ----------
+    study : Study
+    log : ReuseLog
+    rows : (n,) int64
+        Places in the log; those of a user are in order of time. The belief learns from each outcome before the
+        user's next decision.
+    """
+    place = {policy: number for number, policy in enumerate(log.policy.names)}
+    shape = len(rows), len(log.policy.names)
+    expected, probabilities, unknown = np.full(shape, np.nan), np.zeros(shape), np.zeros(len(rows))
+    beliefs: dict[int, WorkingBelief] = {}
+    policies, outcomes = log.policy.codes[rows].tolist(), log.outcomes[rows].tolist()
+    for number, user in enumerate(log.user.codes[rows].tolist()):
+        if user not in beliefs:
+            prior = study.algorithm.start(study.prior_of(_context(log, user)))
+            beliefs[user] = WorkingBelief(study, Checkpoint(0, prior, 0.0))
+        now = beliefs[user].checkpoint(number)
+        belief, library = study.algorithm.belief(now.log_belief), study.choice_for(now.task)
+        odds = policy_odds(study, library, belief)
+        utility = expected_utility(belief, library.performance.mean)
+        for policy, probability, value in zip(odds.policies, odds.probs, utility, strict=True):
+            if policy in place:
+                probabilities[number, place[policy]] = probability
+                expected[number, place[policy]] = value
+            else:
+                unknown[number] += probability
+        beliefs[user].learn(log.policy.names[policies[number]], outcomes[number])
+    return ReplayedChoices(expected, probabilities, unknown)
+
+
+def _context(log: ReuseLog, user: int) -> str | None:
+    place = int(log.context_of_user[user])
+    return log.context.names[place] if place >= 0 else None
