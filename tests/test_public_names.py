@@ -15,7 +15,7 @@ def test_every_public_name_exists_and_is_documented():
 
 
 def test_importing_the_package_imports_nothing_heavy():
-    heavy = ("numba", "numpy", "matplotlib", "sqlalchemy", "gymnasium", "scipy", "typer")
+    heavy = ("numba", "numpy", "matplotlib", "sqlite3", "gymnasium", "scipy", "typer")
     code = f"import sys, lifelore; print([name for name in {heavy} if name in sys.modules])"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True, text=True).stdout.strip() == "[]"
 

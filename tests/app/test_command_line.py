@@ -14,7 +14,7 @@ from lifelore.app import command_line
 from lifelore.domains.worlds import domain_names
 from lifelore.experiments.bench import BENCHES
 
-HEAVY = ("numba", "sklearn", "matplotlib", "sqlalchemy", "scipy", "gymnasium", "numpy")
+HEAVY = ("numba", "sklearn", "matplotlib", "sqlite3", "scipy", "gymnasium", "numpy")
 TOLD_WHAT_IT_IMPORTED = """
 import sys
 from lifelore.app.command_line import run

@@ -26,8 +26,9 @@ def test_rows_and_goals(monkeypatch):
     said = []
     document = bench("long_user", repeats=2, progress=lambda *at: said.append(at[:2]))
     assert said == [(done, 4) for done in (1, 2, 3, 4)]
-    short, long = document["rows"]
+    short, long, statements = document["rows"]
     assert long["ratio_to"] == short["name"]
     assert (short["value"] > 0, short["unit"]) == (True, "ms")
-    assert [goal["goal"] for goal in document["goals"]] == ["<= 10.0", "<= 1.5"]
+    assert [goal["goal"] for goal in document["goals"]] == ["<= 2.0", "<= 1.5", "<= 6"]
     assert document["goals"][0]["measured"] == pytest.approx(long["value"])
+    assert (statements["value"], statements["unit"]) == (10, "statements")

@@ -7,7 +7,7 @@ import pytest
 
 from lifelore.core.errors import LifeloreError
 from lifelore.experiments.bench import BENCHES
-from lifelore.experiments.bench.interaction import reuse, reuse_loops
+from lifelore.experiments.bench.interaction import reuse, reuse_loops, reuse_users
 from lifelore.experiments.bench.interaction.reuse import bench_reuse
 from lifelore.experiments.bench.interaction.reuse_case import HORIZON, LargeReserve, Reserve
 from lifelore.experiments.bench.interaction.reuse_peers import (
@@ -39,6 +39,8 @@ def short(monkeypatch):
     monkeypatch.setattr(reuse, "USERS", 3000)
     monkeypatch.setattr(reuse, "AT_ONCE", 1000)
     monkeypatch.setattr(reuse, "TASKS", 1)
+    monkeypatch.setattr(reuse_users, "USERS", 3000)
+    monkeypatch.setattr(reuse_users, "AT_ONCE", 1000)
     monkeypatch.setattr(reuse_loops, "POINTS", 4)
     monkeypatch.setattr(reuse, "installed", lambda name: False)
 
@@ -82,7 +84,7 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     names = [line["name"] for line in result["rows"]]
     assert len(names) == len(set(names))
     assert [done for done, _, _ in told] == sorted(done for done, _, _ in told)
-    assert told[-1][:2] == (6, 6)
+    assert told[-1][:2] == (7, 7)
     empty = {line["name"] for line in result["rows"] if line["value"] is None}
     assert all("MABWiser" in name or "BoTorch" in name for name in empty)
     assert len(empty) == 7
@@ -93,7 +95,7 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     assert undecided == {goal["name"] for goal in result["goals"] if goal["measured"] is None}
     assert len(undecided) == 5
     assert all("MABWiser" in name or "BoTorch" in name for name in undecided)
-    assert len(result["goals"]) == 25
+    assert len(result["goals"]) == 28
     assert sum("settled belief" in name for name in names) == 9
     assert sum("knowledge gradient, flat" in name for name in names) == 3
     assert sum("learnt models" in name for name in names) == 5 + 9 + 4

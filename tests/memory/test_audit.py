@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sqlalchemy import text
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
@@ -37,7 +36,7 @@ CACHE_DAMAGE = [
 def test_a_wrong_cache_is_found_and_rebuilt(lived, damage):
     before = lived.show()
     with lived._store.writing() as conn:
-        conn.execute(text(damage))
+        conn.execute(damage)
     assert lived.check()
     lived.rebuild()
     assert lived.check() == []
@@ -51,7 +50,7 @@ def test_a_wrong_cache_is_found_and_rebuilt(lived, damage):
 )  # fmt: skip
 def test_a_changed_contribution_is_found_and_never_merged(lived, damage, tmp_path):
     with lived._store.writing() as conn:
-        conn.execute(text(f"UPDATE lifelore_contributions SET {damage} WHERE seq = 1"))
+        conn.execute(f"UPDATE lifelore_contributions SET {damage} WHERE seq = 1")
     (problem,) = lived.check()
     assert "SHA-256" in problem
     with open_memory(tmp_path / "other.db") as other, pytest.raises(StoreError, match="SHA-256"):
@@ -63,5 +62,5 @@ def test_a_changed_contribution_is_found_and_never_merged(lived, damage, tmp_pat
 
 def test_a_forgotten_contribution_that_is_there_is_found(lived):
     with lived._store.writing() as conn:
-        conn.execute(text("INSERT INTO lifelore_tombstones VALUES ('a', 'p', 1)"))
+        conn.execute("INSERT INTO lifelore_tombstones VALUES ('a', 'p', 1)")
     assert any("although it was forgotten" in problem for problem in lived.check())

@@ -5,12 +5,12 @@ import pytest
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory.contribution import new_contribution
+from lifelore.memory.contribution import new_offer
 
 
-def make():
+def make(stamp=77):
     record = Record("k", "y", 1, "add", np.array([2, 1]), np.array([20, 10]), {"unit": "m"})
-    return new_contribution("r", [record], process="p", seq=3, task={"goal": [1, 2]}).stamped(77)
+    return new_offer("r", [record], process="p", seq=3, task={"goal": [1, 2]}).stamped(stamp)
 
 
 def test_records_come_back():
@@ -20,7 +20,7 @@ def test_records_come_back():
 
 def test_equal_contributions_have_equal_digests():
     assert make() == make()
-    assert make().digest != make().stamped(78).digest
+    assert make().digest != make(78).digest
 
 
 @pytest.mark.parametrize(

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import folding
-from lifelore.memory.contribution import new_contribution
+from lifelore.memory.contribution import new_offer
 from lifelore.memory.folding import Stored, fold
 
 cells = st.dictionaries(
@@ -20,7 +20,7 @@ NAME = ("k", "y", 1)
 def stored(parts: list[dict[int, int]], merge: str) -> list[Stored]:
     columns = [(np.array(list(part), dtype=np.int64), np.array(list(part.values()))) for part in parts]
     made = [Record(*NAME, merge, slots, values) for slots, values in columns]
-    return [Stored(100 + seq, new_contribution("r", [record], process="p", seq=seq, task={}))
+    return [Stored(100 + seq, new_offer("r", [record], process="p", seq=seq, task={}).stamped(1))
             for seq, record in enumerate(made)]  # fmt: skip
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sqlalchemy import text
 
 from lifelore.core.errors import NotFoundError
 from lifelore.core.protocols import Record
@@ -54,7 +53,7 @@ def test_forgotten_records_stay_forgotten_through_merges_in_any_order(tmp_path):
                 assert union.recall("place", "x", 1).values.tolist() == [7]
                 assert union.recall("skill", "s", 1).values.tolist() == [1]
                 with union._store.reading() as conn:
-                    rows = conn.execute(text("SELECT robot, stamp, digest FROM lifelore_contributions"))
+                    rows = conn.execute("SELECT robot, stamp, digest FROM lifelore_contributions")
                     found.append(sorted(tuple(row) for row in rows))
         with life("at-once") as union:
             union.merge_many([away, late, home])

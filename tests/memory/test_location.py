@@ -3,7 +3,7 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.memory.location import default_path, describe, locate
+from lifelore.memory.location import Server, default_path, describe, locate
 
 
 def test_the_default_lies_in_the_users_data_directory(monkeypatch):
@@ -18,12 +18,31 @@ def test_a_path_becomes_absolute(monkeypatch, tmp_path):
 
 
 @pytest.mark.parametrize("scheme", ["postgresql", "postgres", "postgresql+psycopg"])
-def test_urls_get_the_psycopg_driver_and_hide_the_password(scheme):
-    url = locate(f"{scheme}://me:s3cret@host:1/lore?sslmode=require&password=s3cret")
-    assert url.drivername == "postgresql+psycopg"
-    assert url.password == "s3cret"
-    assert describe(url).startswith("postgresql://me:***@host:1/lore?")
-    assert "s3cret" not in describe(url)
+def test_urls_are_taken_apart_and_hide_the_password(scheme):
+    server = locate(f"{scheme}://me:s3cr%65t@host:1/lore?sslmode=require&sslp%61ssword=s3cret")
+    assert isinstance(server, Server)
+    assert server.options == {
+        "user": "me", "password": "s3cret", "host": "host", "port": "1", "dbname": "lore", "sslmode": "require",
+        "sslpassword": "s3cret",
+    }  # fmt: skip
+    assert describe(server) == "postgresql://me:***@host:1/lore?sslmode=require&sslp%61ssword=***"
+    assert "s3cr" not in repr(server)
+
+
+@pytest.mark.parametrize(
+    ("url", "options"),
+    [
+        ("postgresql://", {}),
+        ("postgresql:///lore?host=/run/pg", {"dbname": "lore", "host": "/run/pg"}),
+        ("postgresql://[::1]:5432/lore", {"host": "::1", "port": "5432", "dbname": "lore"}),
+        ("postgresql://me@host", {"user": "me", "host": "host"}),
+        ("postgresql://me:a#b/c?d@host/l", {"user": "me", "password": "a#b/c?d", "host": "host", "dbname": "l"}),
+    ],
+)
+def test_every_part_of_a_url_may_be_missing(url, options):
+    server = locate(url)
+    assert isinstance(server, Server)
+    assert server.options == options
 
 
 def test_a_broken_url_is_not_repeated():

@@ -339,4 +339,4 @@ def test_folders_are_created(tmp_path: Path):
 def test_durable_asks_sqlite_for_a_flush_at_every_commit(file):
     for durable, expected in [(False, 1), (True, 2)]:
         with open_memory(file, durable=durable) as memory, memory._store.reading() as conn:
-            assert conn.exec_driver_sql("PRAGMA synchronous").scalar_one() == expected
+            assert conn.value("PRAGMA synchronous") == expected

@@ -3,7 +3,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
-from lifelore.memory.contribution import new_contribution
+from lifelore.memory.contribution import new_offer
 from lifelore.memory.record_rules import checked_record
 
 
@@ -57,7 +57,7 @@ def test_what_breaks_a_rule_is_named(changes, rule):
 
 def test_one_contribution_has_each_key_once():
     with pytest.raises(InputError, match="twice"):
-        new_contribution("r", [make(), make()], process="p", seq=0, task={})
+        new_offer("r", [make(), make()], process="p", seq=0, task={})
 
 
 @pytest.mark.parametrize("changes", [{"robot": " \t"}, {"robot": 3}, {"process": ""}, {"seq": -1}, {"seq": 2**63},
@@ -65,4 +65,4 @@ def test_one_contribution_has_each_key_once():
 def test_names_around_a_record_have_rules_too(changes):
     fields = {"robot": "r", "process": "p", "seq": 0, "task": {}} | changes
     with pytest.raises(InputError, match=next(iter(changes))):
-        new_contribution(fields.pop("robot"), [make()], **fields)
+        new_offer(fields.pop("robot"), [make()], **fields)

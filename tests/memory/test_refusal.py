@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from sqlalchemy import text
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import Record
@@ -36,8 +35,8 @@ def attempt(memory: Memory, seq: int) -> str | None:
 
 def test_a_full_disk_loses_the_task_in_progress_only(file):
     with open_memory(file) as memory:
-        with memory._store.engine.connect() as conn:
-            conn.exec_driver_sql("PRAGMA max_page_count = 60")
+        with memory._store.pool.connection() as conn:
+            conn.execute("PRAGMA max_page_count = 60")
         stored = 0
         while (refused := attempt(memory, stored)) is None:
             stored += 1
@@ -45,8 +44,8 @@ def test_a_full_disk_loses_the_task_in_progress_only(file):
         assert "\n" not in refused
         assert 0 < stored == memory.tasks("a")
         assert memory.check() == []
-        with memory._store.engine.connect() as conn:
-            conn.exec_driver_sql("PRAGMA max_page_count = 6000")
+        with memory._store.pool.connection() as conn:
+            conn.execute("PRAGMA max_page_count = 6000")
         assert memory.contribute("a", [noise(stored)], process="p", seq=stored, task={})
         assert memory.check() == []
 
@@ -83,7 +82,7 @@ def test_a_locked_file_is_given_up_in_the_end(file, monkeypatch):
 
 def test_a_broken_database_is_one_line(memory):
     with memory._store.writing() as conn:
-        conn.execute(text("DROP TABLE lifelore_cells"))
+        conn.execute("DROP TABLE lifelore_cells")
     with pytest.raises(StoreError, match="lifelore_cells") as refused:
         memory.contribute("a", [noise(0)], process="p", seq=0, task={})
     assert "\n" not in str(refused.value)
@@ -95,7 +94,7 @@ def test_an_interrupt_changes_nothing(memory, monkeypatch):
         raise KeyboardInterrupt
 
     with monkeypatch.context() as patch:
-        patch.setattr("lifelore.memory.memory.cache.write", interrupt)
+        patch.setattr("lifelore.memory.memory.cache.add", interrupt)
         with pytest.raises(KeyboardInterrupt):
             memory.contribute("a", [noise(0)], process="p", seq=0, task={})
     assert memory.tasks("a") == 0

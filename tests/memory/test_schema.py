@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from sqlalchemy import text
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
@@ -12,19 +11,18 @@ NOW = sorted(schema.MIGRATIONS)
 
 
 @pytest.fixture
-def first_schema(monkeypatch):
-    """Lifelore as it was before forgotten records and states: its tables, and how it writes."""
-    from lifelore.memory import cache, ledger
+def first_schema():
+    """A memory as Lifelore wrote it before forgotten records and states."""
 
     def make(where, fill):
-        with monkeypatch.context() as patch:
-            patch.setattr(schema, "LATEST", 1)
-            stamps = "SELECT COALESCE(MAX(stamp), 0) FROM lifelore_contributions"
-            patch.setattr(ledger, "_LARGEST_STAMP", text(stamps))
-            patch.setattr(cache, "_SET_STATE", text("SELECT :lore, :token, :state"))
-            with open_memory(where) as memory:
-                fill(memory)
-                assert steps(memory) == [1]
+        with open_memory(where) as memory:
+            fill(memory)
+            with memory._store.writing() as conn:
+                conn.execute("DROP TABLE lifelore_forgotten_records")
+                for column in ("token", "state"):
+                    conn.execute(f"ALTER TABLE lifelore_lore DROP COLUMN {column}")
+                conn.execute("DELETE FROM lifelore_migrations WHERE number > 1")
+            assert steps(memory) == [1]
 
     return make
 
@@ -45,7 +43,7 @@ def next_schema(monkeypatch):
 
 def steps(memory) -> list[int]:
     with memory._store.reading() as conn:
-        return list(conn.execute(text("SELECT number FROM lifelore_migrations ORDER BY number")).scalars())
+        return [row[0] for row in conn.execute("SELECT number FROM lifelore_migrations ORDER BY number")]
 
 
 def test_an_older_memory_takes_the_missing_steps(where, next_schema):
@@ -70,7 +68,7 @@ def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
     first_schema(where, fill)
     with open_memory(where) as memory:
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
-        assert memory.recall_state("prior", "b7", 1) == (0, None, {})
+        assert memory.recall_state("prior", "b7", 1) == (0, None, {}, None)
         assert memory.check() == []
 
 
@@ -99,14 +97,14 @@ def test_a_step_that_fails_leaves_nothing_behind(where, next_schema, monkeypatch
     with open_memory(where) as memory:
         assert (steps(memory), memory.tasks("a")) == (NOW, 1)
         with memory._store.reading() as conn, pytest.raises(Exception, match="half"):
-            conn.execute(text("SELECT * FROM half"))
+            conn.execute("SELECT * FROM half")
 
 
 def test_a_newer_memory_is_refused(where):
     with open_memory(where) as memory:
         memory.contribute("a", [], process="p", seq=0, task={})
         with memory._store.writing() as conn:
-            conn.execute(text("INSERT INTO lifelore_migrations VALUES (99, 'flying', 0)"))
+            conn.execute("INSERT INTO lifelore_migrations VALUES (99, 'flying', 0)")
     with pytest.raises(StoreError, match="newer Lifelore"):
         open_memory(where)
 

@@ -24,7 +24,6 @@ PACKAGES = {
     "scipy": "maps and graphs",
     "numba": "kernels",
     "gymnasium": "environments",
-    "sqlalchemy": "memory",
     "matplotlib": "figures",
     "scikit-learn": "learning relations",
     "networkx": "contact point networks",

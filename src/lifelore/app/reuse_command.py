@@ -68,12 +68,17 @@ def fit(
         Option(metavar="POLICY", help="Policy of the control group; default: each policy with equal probability."),
     ] = None,
     rule: Annotated[
-        str, Option(help="Selection rule, such as sampling or expected-improvement.")
-    ] = "information-directed",
+        str | None,
+        Option(help="Selection rule, such as sampling or expected-improvement; default: information-directed."),
+    ] = None,
     explore: Annotated[float, Option(help="Share of the other choices that are drawn from all policies.")] = 0.0,
     change: Annotated[
         float, Option(help="Probability that the type of a user changes between two choices.")
     ] = 0.0,
+    models: Annotated[
+        str,
+        Option(help="uncertain: models of few runs learn from each user too. plug-in: estimates are the truth."),
+    ] = "uncertain",
     columns: Columns = None,
     separator: Separator = None,
     decimal_comma: DecimalComma = False,
@@ -92,9 +97,11 @@ def fit(
     from lifelore.agent.reuse.fit import FitSettings
     from lifelore.agent.reuse.fit import fit as fitted
     from lifelore.app.console import print_json
+    from lifelore.interaction.selection import DEFAULT_RULE
     from lifelore.memory import open_memory
 
-    settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, seed)
+    rule = rule or DEFAULT_RULE
+    settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, models, seed)
     form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
@@ -164,7 +171,7 @@ def update(
     as_json: AsJson = False,
 ) -> None:
     """Store the outcome of a decision, once, at any later time."""
-    from lifelore.agent.reuse.log import read_outcome
+    from lifelore.agent.reuse.log_columns import read_outcome
     from lifelore.agent.reuse.one_user import update as updated
 
     value = read_outcome(outcome)

@@ -36,18 +36,18 @@ class PackedFormat:
     version : int
     what, writer : str
         For error messages: "action prior", and the function that writes one.
-    oldest : int, optional
-        Oldest version that the caller can read; by default only `version`.
     largest : int
         Largest size in bytes after unpacking, so that no file fills the memory.
+    oldest : int, optional
+        Oldest version that the caller can read; by default only `version`.
     """
 
     name: str
     version: int
     what: str
     writer: str
-    oldest: int | None = None
     largest: int = 2**33
+    oldest: int | None = None
 
     def pack(self, header: Mapping[str, Any], arrays: Mapping[str, NDArray[Any]]) -> bytes:
         """The archive's bytes, compressed; see `write`."""

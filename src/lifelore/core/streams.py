@@ -25,7 +25,7 @@ def stream(seed: int, *names: str | int) -> np.random.Generator:
     """
     label = "\x1f".join(_label(name) for name in (int(seed), *names))
     digest = hashlib.sha256(label.encode()).digest()
-    return np.random.default_rng(np.frombuffer(digest, dtype=np.uint32).tolist())
+    return np.random.default_rng(np.frombuffer(digest, dtype=np.uint32))
 
 
 def _label(name: str | int) -> str:

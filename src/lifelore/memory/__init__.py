@@ -5,7 +5,7 @@ A memory is a set of *contributions* (the records of one robot about one task) a
 order and grouping. The merged cells that `Memory.recall` reads are a cache, which `Memory.rebuild` computes again.
 
 Read in this order: `memory`, `contribution`, `folding`, `ledger`, `cache`, `merging`, `export`; then `store`,
-`sqlite_file`, `schema`, `refusal` for the database.
+`connection`, `sqlite_file`, `schema`, `refusal` for the database.
 """
 
 from lifelore.memory.cache import KeyState

@@ -3,10 +3,10 @@
 from collections.abc import Iterator
 
 import numpy as np
-from sqlalchemy import Connection, text
 
 from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
+from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold
 
 
@@ -28,8 +28,8 @@ def problems(conn: Connection) -> list[str]:
 
 
 def _file_problems(conn: Connection) -> Iterator[str]:
-    if conn.dialect.name == "sqlite":
-        for (message,) in conn.exec_driver_sql("PRAGMA integrity_check(10)"):
+    if conn.is_sqlite:
+        for (message,) in conn.execute("PRAGMA integrity_check(10)"):
             if message != "ok":
                 yield "the file: " + " ".join(message.split())
 
@@ -55,7 +55,7 @@ def _damaged(conn: Connection, numbers: list[int]) -> Iterator[str]:
 
 def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
     expected = fold(ledger.load(conn, numbers))
-    rows = conn.execute(text("SELECT kind, key, version, number FROM lifelore_lore"))
+    rows = conn.execute("SELECT kind, key, version, number FROM lifelore_lore")
     cached = {(row[0], row[1], row[2]): row[3] for row in rows}
     for name in sorted(cached.keys() | expected.keys()):
         label = f"cache of {name[0]}/{name[1]} version {name[2]}"
@@ -70,19 +70,19 @@ def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
 
 def _orphans(conn: Connection) -> Iterator[str]:
     for table in ("lifelore_cells", "lifelore_mentions"):
-        query = text(f"SELECT COUNT(*) FROM {table} WHERE lore NOT IN (SELECT number FROM lifelore_lore)")
-        if count := conn.execute(query).scalar_one():
+        query = f"SELECT COUNT(*) FROM {table} WHERE lore NOT IN (SELECT number FROM lifelore_lore)"
+        if count := conn.value(query):
             yield f"{count} rows of {table} belong to no key; rebuild the memory"
 
 
 def _agrees(conn: Connection, name: LoreKey, lore: int, part: Folded) -> bool:
     record = cache.read(conn, name)
-    rows = conn.execute(text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore"), {"lore": lore})
+    rows = conn.execute("SELECT contribution FROM lifelore_mentions WHERE lore = :lore", {"lore": lore})
     return (
         record is not None
         and record.merge == part.merge
         and record.about == part.about
         and np.array_equal(record.slots, part.slots)
         and np.array_equal(record.values, part.values)
-        and sorted(rows.scalars()) == sorted(part.mentions)
+        and sorted(row[0] for row in rows) == sorted(part.mentions)
     )

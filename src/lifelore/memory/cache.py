@@ -2,18 +2,23 @@
 
 import json
 import secrets
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import chain
 from typing import Any, NamedTuple
 
 import numpy as np
-from sqlalchemy import Connection, text
+from numpy.typing import NDArray
 
+from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import ledger
+from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
 
+_described = json.JSONEncoder(sort_keys=True).encode
 _ROWS_AT_ONCE = 10_000
+_FEW_ROWS = 16
+"""Cells that are written by one statement; a statement of more would be too long for more speed."""
 EVERY_SLOT = -(2**63), 2**63 - 1
 
 # "The contribution of the new row is later than that of the row in place."
@@ -22,31 +27,40 @@ _LATER = """EXISTS (
     WHERE new.number = excluded.origin AND old.number = {table}.origin
     AND (new.stamp, new.robot, new.process, new.seq) > (old.stamp, old.robot, old.process, old.seq))"""
 
-_NOTE = text(
+_NOTE = (
     "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin)"
     " VALUES (:kind, :key, :version, :merge, :about, :origin) ON CONFLICT (kind, key, version)"
     " DO UPDATE SET about = excluded.about, origin = excluded.origin"
     f" WHERE {_LATER.format(table='lifelore_lore')}"
 )
-_CELL = (
-    "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES (:lore, :slot, :value, :origin)"
-    " ON CONFLICT (lore, slot) DO UPDATE SET "
-)
+_CELLS = "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES {} ON CONFLICT (lore, slot) DO UPDATE SET "
+_CELL = "(?, ?, ?, ?)"
 _UPSERT = {
-    "add": text(_CELL + "value = lifelore_cells.value + excluded.value"),
-    "union": text(_CELL + "value = excluded.value WHERE excluded.value > lifelore_cells.value"),
-    "newest": text(
-        _CELL + f"value = excluded.value, origin = excluded.origin WHERE {_LATER.format(table='lifelore_cells')}"
+    "add": _CELLS + "value = lifelore_cells.value + excluded.value",
+    "union": _CELLS + "value = excluded.value WHERE excluded.value > lifelore_cells.value",
+    "newest": (
+        _CELLS + f"value = excluded.value, origin = excluded.origin WHERE {_LATER.format(table='lifelore_cells')}"
     ),
 }
-_MENTION = text("INSERT INTO lifelore_mentions (contribution, lore) VALUES (:contribution, :lore)")
-_STATE = text(
-    "SELECT token, state, about FROM lifelore_lore WHERE kind = :kind AND key = :key AND version = :version"
+_MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
+_MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = ?"
+_NAMED = "kind = ? AND key = ? AND version = ?"
+_ADD = (
+    "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin, token, state)"
+    " VALUES (:kind, :key, :version, :merge, :about, :origin, :token, :first) ON CONFLICT (kind, key, version)"
+    " DO UPDATE SET about = excluded.about, origin = excluded.origin, token = excluded.token, state = {}"
+    " RETURNING number, merge"
 )
-_SET_STATE = text("UPDATE lifelore_lore SET token = :token, state = :state WHERE number = :lore")
-_FIND = text(
-    "SELECT number, merge, about FROM lifelore_lore WHERE kind = :kind AND key = :key AND version = :version"
+_ADD_WITHOUT_STATE = _ADD.format("NULL")
+_ADD_WITH_STATE = _ADD.format("CASE WHEN lifelore_lore.token = :expected THEN :state END")
+_STATES = "SELECT kind, key, version, merge, token, state, about, NULL, NULL FROM lifelore_lore WHERE {}"
+_SLOTS = (
+    " UNION ALL SELECT NULL, NULL, NULL, NULL, NULL, NULL, NULL, slot, value FROM lifelore_cells"
+    f" WHERE lore = (SELECT number FROM lifelore_lore WHERE {_NAMED}) AND slot BETWEEN ? AND ?"
 )
+_FORGET_STATE = "UPDATE lifelore_lore SET token = ?, state = NULL WHERE number = ?"
+_FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
+_READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
 
 
 class KeyState(NamedTuple):
@@ -70,55 +84,92 @@ class StoredState(NamedTuple):
     token : another number after each change of the key's cells, whoever changes them
     content : bytes, or None where the last change brought no state
     about : the newest description of the key
+    record : with the slots that were asked for; None where none were
     """
 
     token: int
     content: bytes | None
     about: Mapping[str, Any]
+    record: Record | None = None
 
 
-def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
-    """Merge folded contributions into the cache; the ledger must hold them already.
+def add(conn: Connection, parts: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
+    """Merge the newest contribution into the cache; the ledger must hold it already.
 
     `state` is stored if nobody else has changed its key since it was computed.
     """
-    before = None if state is None else read_state(conn, state.name)
-    for name, part in sorted(folded.items()):
-        named = _named(name)
-        about = json.dumps(part.about, sort_keys=True)
-        conn.execute(_NOTE, {**named, "merge": part.merge, "about": about, "origin": part.origin})
-        lore, merge, _ = conn.execute(_FIND, named).one()
+    for name, part in sorted(parts.items()):
+        own = state if state is not None and state.name == name else None
+        note = {
+            **_noted(name, part),
+            "token": _new_token(),
+            "first": own.content if own is not None and own.token is None else None,
+        }
+        if own is None or own.token is None:
+            found = conn.first(_ADD_WITHOUT_STATE, note)
+        else:
+            found = conn.first(_ADD_WITH_STATE, note | {"expected": own.token, "state": own.content})
+        lore, merge = found  # pyright: ignore[reportGeneralTypeIssues] - an upsert without condition gives a row
         require_one_merge(name, {merge, part.merge})
-        conn.execute(_MENTION, [{"contribution": number, "lore": lore} for number in part.mentions])
+        conn.execute(_MENTION, (part.origin, lore))
         _write_cells(conn, lore, part)
-        follows = state is not None and state.name == name and state.token == (before.token if before else None)
-        content = state.content if follows and state is not None else None
-        # Random, because a key that is deleted and written again must not get an earlier token again.
-        conn.execute(_SET_STATE, {"lore": lore, "token": secrets.randbits(62), "state": content})
 
 
-def read_state(conn: Connection, name: LoreKey) -> StoredState | None:
-    """The state of a key; None when no contribution has the key."""
-    found = conn.execute(_STATE, _named(name)).one_or_none()
-    return None if found is None else StoredState(found.token, found.state, json.loads(found.about))
+def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
+    """Merge folded contributions of any age into the cache, without states; the ledger must hold them already."""
+    for name, part in sorted(folded.items()):
+        conn.execute(_NOTE, _noted(name, part))
+        lore, merge, _ = conn.execute(_FIND, name).fetchone()
+        require_one_merge(name, {merge, part.merge})
+        conn.execute_many(_MENTION, [(number, lore) for number in part.mentions])
+        _write_cells(conn, lore, part)
+        conn.execute(_FORGET_STATE, (_new_token(), lore))
+
+
+def _noted(name: LoreKey, part: Folded) -> dict[str, Any]:
+    return {**_named(name), "merge": part.merge, "about": _described(part.about), "origin": part.origin}
+
+
+def _new_token() -> int:
+    """A random number, because a key that is deleted and written again must not get an earlier token again."""
+    return secrets.randbits(62)
+
+
+def read_states(
+    conn: Connection, names: Sequence[LoreKey], slots: tuple[int, int] | None = None
+) -> list[StoredState | None]:
+    """The states of keys, and the cells of the first key within `slots`; None where there is no key."""
+    sql, parameters = _STATES.format(" OR ".join([f"({_NAMED})"] * len(names))), list(chain.from_iterable(names))
+    if slots is not None:
+        sql, parameters = sql + _SLOTS, [*parameters, *names[0], *slots]
+    rows = conn.execute(sql, parameters).fetchall()
+    cells = [(slot, value) for *_, slot, value in rows if slot is not None]
+    found: dict[LoreKey, StoredState] = {}
+    for kind, key, version, merge, token, state, about, slot, _ in rows:
+        if slot is None:
+            name, described = (kind, key, version), json.loads(about)
+            wanted = slots is not None and name == names[0]
+            record = Record(*name, merge, *_columns(sorted(cells)), described) if wanted else None
+            found[name] = StoredState(token, state, described, record)
+    return [found.get(name) for name in names]
+
+
+def _columns(cells: Iterable[tuple[int, int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
+    return np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
 
 
 def _write_cells(conn: Connection, lore: int, part: Folded) -> None:
-    """Upsert the cells of a key. Only *newest* needs the origin of a value; the other merges store 0.
-
-    The rows go directly to the driver: a building has a million cells, and SQLAlchemy needs more time to prepare
-    their parameters than the database needs to store them.
-    """
+    """Upsert the cells of a key. Only *newest* needs the origin of a value; the other merges store 0."""
     origins = part.origins if part.merge == "newest" else np.zeros_like(part.origins)
-    upsert: Any = _UPSERT[part.merge].compile(dialect=conn.dialect)
-    columns = {"slot": part.slots.tolist(), "value": part.values.tolist(), "origin": origins.tolist()}
-    columns["lore"] = [lore] * len(origins)
-    names = upsert.positiontup if upsert.positional else list(columns)
-    rows: Iterable = zip(*(columns[name] for name in names), strict=True)
-    if not upsert.positional:
-        rows = (dict(zip(names, row, strict=True)) for row in rows)
+    slots, values = part.slots.tolist(), part.values.tolist()
+    rows = list(zip([lore] * len(slots), slots, values, origins.tolist(), strict=True))
+    upsert = _UPSERT[part.merge]
+    if 0 < len(rows) <= _FEW_ROWS:
+        conn.execute(upsert.format(", ".join([_CELL] * len(rows))), list(chain.from_iterable(rows)))
+        return
     for batch in ledger.in_batches(rows, _ROWS_AT_ONCE):
-        conn.exec_driver_sql(str(upsert), batch)
+        conn.execute_many(upsert.format(_CELL), batch)
 
 
 def read(conn: Connection, name: LoreKey, within: tuple[int, int] = EVERY_SLOT) -> Record | None:
@@ -126,51 +177,44 @@ def read(conn: Connection, name: LoreKey, within: tuple[int, int] = EVERY_SLOT) 
 
     within : first and last slot to read
     """
-    found = conn.execute(_FIND, _named(name)).one_or_none()
+    found = conn.first(_FIND, name)
     if found is None:
         return None
-    cells = conn.execute(
-        text(
-            "SELECT slot, value FROM lifelore_cells WHERE lore = :lore AND slot BETWEEN :first AND :last"
-            " ORDER BY slot"
-        ),
-        {"lore": found.number, "first": within[0], "last": within[1]},
-    )
-    table = np.fromiter(chain.from_iterable(cells), np.int64).reshape(-1, 2)
-    slots, values = np.ascontiguousarray(table[:, 0]), np.ascontiguousarray(table[:, 1])
-    return Record(*name, found.merge, slots, values, json.loads(found.about))
+    lore, merge, about = found
+    return Record(*name, merge, *_columns(conn.execute(_READ, (lore, *within))), json.loads(about))
 
 
 def names(conn: Connection, kind: str) -> list[tuple[str, int, dict]]:
     """(key, version, about) of every key of a kind, sorted."""
-    rows = conn.execute(text("SELECT key, version, about FROM lifelore_lore WHERE kind = :kind"), {"kind": kind})
+    rows = conn.execute("SELECT key, version, about FROM lifelore_lore WHERE kind = ?", (kind,))
     return sorted(((row[0], row[1], json.loads(row[2])) for row in rows), key=lambda row: row[:2])
 
 
 def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
     """The keys of these contributions."""
-    query = text(
+    query = (
         "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_mentions"
-        " ON lore = lifelore_lore.number WHERE contribution = :contribution"
+        " ON lore = lifelore_lore.number WHERE contribution = ?"
     )
-    found = (conn.execute(query, {"contribution": number}) for number in contributions)
+    found = (conn.execute(query, (number,)) for number in contributions)
     return {(row[0], row[1], row[2]) for rows in found for row in rows}
 
 
 def mentions(conn: Connection, name: LoreKey) -> set[int]:
     """Row numbers of the contributions that have a record of this key."""
-    found = conn.execute(_FIND, _named(name)).one_or_none()
-    if found is None:
-        return set()
-    query = text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore")
-    return set(conn.execute(query, {"lore": found.number}).scalars())
+    found = conn.first(_FIND, name)
+    return set() if found is None else _mentions(conn, found[0])
+
+
+def _mentions(conn: Connection, lore: int) -> set[int]:
+    return {row[0] for row in conn.execute(_MENTIONS, (lore,))}
 
 
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
     """Delete the cache, of the keys in `only` or of all keys, and compute it again from the contributions."""
     if only is None:
         for table in ("cells", "mentions", "lore"):
-            conn.execute(text(f"DELETE FROM lifelore_{table}"))
+            conn.execute(f"DELETE FROM lifelore_{table}")
         touched = None
     else:
         touched = _clear(conn, only)
@@ -182,13 +226,13 @@ def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
     """Delete the cache of some keys; return the row numbers of their contributions."""
     numbers: set[int] = set()
     for name in sorted(only):
-        lore = {"lore": conn.execute(_FIND, _named(name)).one().number}
-        numbers.update(
-            conn.execute(text("SELECT contribution FROM lifelore_mentions WHERE lore = :lore"), lore).scalars()
-        )
-        conn.execute(text("DELETE FROM lifelore_cells WHERE lore = :lore"), lore)
-        conn.execute(text("DELETE FROM lifelore_mentions WHERE lore = :lore"), lore)
-        conn.execute(text("DELETE FROM lifelore_lore WHERE number = :lore"), lore)
+        if (found := conn.first(_FIND, name)) is None:
+            raise StoreError(f"cache of {name[0]}/{name[1]} version {name[2]} is missing; rebuild the memory")
+        lore = found[:1]
+        numbers |= _mentions(conn, found[0])
+        conn.execute("DELETE FROM lifelore_cells WHERE lore = ?", lore)
+        conn.execute("DELETE FROM lifelore_mentions WHERE lore = ?", lore)
+        conn.execute("DELETE FROM lifelore_lore WHERE number = ?", lore)
     return numbers
 
 

@@ -53,11 +53,6 @@ class Contribution:
         """The key of a total order; the larger of two contributions is the newer."""
         return self.stamp, self.robot, self.process, self.seq
 
-    def stamped(self, stamp: int) -> "Contribution":
-        """The same contribution with another stamp."""
-        moved = replace(self, stamp=stamp)
-        return replace(moved, digest=_digest(moved, decompress(self.blob)))
-
     def without(self, forgotten: Mapping[LoreKey, int]) -> "Contribution":
         """The contribution without the records whose key was forgotten at its stamp or later."""
         records = self.records()
@@ -65,32 +60,47 @@ class Contribution:
         if len(left) == len(records):
             return self
         stripped = replace(self, blob=compress(payload := pack(left)))
-        return replace(stripped, digest=_digest(stripped, payload))
+        return replace(stripped, digest=_digest(self.identity, self.stamp, self.task, payload))
 
     def records(self) -> list[Record]:
         """The records; StoreError if the contribution has changed since it was stored."""
         payload = decompress(self.blob)
-        if _digest(self, payload) != self.digest:
+        if _digest(self.identity, self.stamp, self.task, payload) != self.digest:
             raise StoreError(f"contribution {self.identity} does not match its SHA-256; the memory is damaged")
         return unpack(payload)
 
 
-def new_contribution(
-    robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]
-) -> Contribution:
-    """A checked contribution without a stamp (stamp 0)."""
-    unsigned = Contribution(
-        robot=check_name("robot", robot),
-        process=check_name("process", process),
-        seq=check_whole("seq", seq),
-        stamp=0,
-        task=canonical_json("task", task),
-        blob=compress(payload := pack(checked_records(records))),
-        digest="",
-    )
-    return replace(unsigned, digest=_digest(unsigned, payload))
+@dataclass(frozen=True)
+class Offer:
+    """Checked records of one robot about one task, before they get a stamp.
+
+    Parameters
+    ----------
+    identity : (robot, process, seq)
+    task : str
+        JSON text.
+    records : list of Record
+    payload : bytes
+        The packed records, not compressed.
+    """
+
+    identity: Identity
+    task: str
+    records: list[Record]
+    payload: bytes
+
+    def stamped(self, stamp: int) -> Contribution:
+        """The contribution with this stamp."""
+        digest = _digest(self.identity, stamp, self.task, self.payload)
+        return Contribution(*self.identity, stamp, self.task, compress(self.payload), digest)
 
 
-def _digest(contribution: Contribution, payload: bytes) -> str:
-    head = [*contribution.identity, contribution.stamp, contribution.task]
-    return hashlib.sha256(json.dumps(head).encode() + b"\n" + payload).hexdigest()
+def new_offer(robot: str, records: Sequence[Record], *, process: str, seq: int, task: Mapping[str, Any]) -> Offer:
+    """Check names and records; InputError where they break a rule."""
+    identity = check_name("robot", robot), check_name("process", process), check_whole("seq", seq)
+    described, checked = canonical_json("task", task), checked_records(records)
+    return Offer(identity, described, checked, pack(checked))
+
+
+def _digest(identity: Identity, stamp: int, task: str, payload: bytes) -> str:
+    return hashlib.sha256(json.dumps([*identity, stamp, task]).encode() + b"\n" + payload).hexdigest()

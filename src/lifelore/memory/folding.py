@@ -84,6 +84,11 @@ def fold(stored: Iterable[Stored], only: set[LoreKey] | None = None) -> dict[Lor
     return {name: _join(name, parts) for name, parts in sorted(waiting.items())}
 
 
+def lift(number: int, records: Iterable[Record]) -> dict[LoreKey, Folded]:
+    """The records of a single contribution in row `number` as `fold` gives them; records are checked."""
+    return {(record.kind, record.key, record.version): _lift(number, record) for record in records}
+
+
 def _records(stored: Stored) -> list[Record]:
     try:
         return stored.contribution.records()

@@ -6,11 +6,10 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TypeVar
 
-from sqlalchemy import Connection, Row, bindparam, text
-
 from lifelore.core.errors import StoreError
 from lifelore.memory import schema
-from lifelore.memory.contribution import Contribution, Identity, LoreKey, Order
+from lifelore.memory.connection import Connection
+from lifelore.memory.contribution import Contribution, Identity, LoreKey, Offer, Order
 from lifelore.memory.folding import Stored
 from lifelore.memory.record_rules import LARGEST
 
@@ -23,29 +22,35 @@ _INSERT = (
     "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
     " VALUES (:robot, :process, :seq, :stamp, :task, :blob, :digest)"
 )
-_INSERT_ONE, _INSERT_MANY = text(_INSERT + " RETURNING number"), text(_INSERT)
-_LAST = text("SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions")
+_LAST = "SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions"
 _SINCE = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions WHERE number > :last"
-_KNOWN = text(
+_KNOWN = (
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
 )
-_LARGEST_STAMP = text(
+_LARGEST_STAMP = (
     "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT stamp FROM lifelore_contributions"
     " UNION ALL SELECT stamp FROM lifelore_forgotten_records) AS stamps"
 )
-_FORGET_RECORD = text(
+# The row is new and the newest; no row is inserted otherwise.
+_INSERT_NEWEST = (
+    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
+    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest"
+    f" WHERE :stamp > ({_LARGEST_STAMP}) AND NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
+    " ON CONFLICT (robot, process, seq) DO NOTHING RETURNING number"
+)
+_FORGET_RECORD = (
     "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
     " ON CONFLICT (kind, key, version) DO UPDATE SET stamp = excluded.stamp"
     " WHERE excluded.stamp > lifelore_forgotten_records.stamp"
 )
-_ADD_TOMBSTONE = text(
+_ADD_TOMBSTONE = (
     "INSERT INTO lifelore_tombstones (robot, process, seq) VALUES (:robot, :process, :seq) ON CONFLICT DO NOTHING"
 )
-_LOAD = text(
+_LOAD = (
     "SELECT number, robot, process, seq, stamp, task, blob, digest FROM lifelore_contributions"
-    " WHERE number IN :numbers"
-).bindparams(bindparam("numbers", expanding=True))
+    " WHERE number IN ({})"
+)
 
 
 @dataclass(frozen=True)
@@ -72,48 +77,55 @@ def in_batches(items: Iterable[Item], size: int = BATCH) -> Iterator[list[Item]]
 
 def is_known(conn: Connection, identity: Identity) -> bool:
     """Whether the memory stores this contribution, or has forgotten it."""
-    return conn.execute(_KNOWN, _named(identity)).first() is not None
+    return conn.first(_KNOWN, _named(identity)) is not None
 
 
 def next_stamp(conn: Connection) -> int:
     """A stamp that is later than the clock and than every stamp in this memory."""
-    largest = conn.execute(_LARGEST_STAMP).scalar_one()
+    largest = conn.value(_LARGEST_STAMP)
     if largest >= LARGEST:
         raise StoreError("a contribution has the largest possible stamp; forget the robot whose clock is wrong")
     return max(time.time_ns(), int(largest) + 1)
 
 
-def insert(conn: Connection, contribution: Contribution) -> Stored:
-    """Insert one contribution."""
-    return Stored(int(conn.execute(_INSERT_ONE, vars(contribution)).scalar_one()), contribution)
+def insert(conn: Connection, offer: Offer) -> int | None:
+    """Insert a contribution as the newest; its row number, or None where it is stored already or was forgotten."""
+    found = conn.first(_INSERT_NEWEST, vars(offer.stamped(time.time_ns())))
+    if found is not None:
+        return int(found[0])
+    if is_known(conn, offer.identity):
+        return None
+    # A stamp in this memory is ahead of the clock.
+    return int(conn.value(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn)))))
 
 
 def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:
     """Insert contributions in batches, with one batch in main memory at a time."""
-    last = conn.execute(_LAST).scalar_one()
+    last = conn.value(_LAST)
     for batch in in_batches(contributions):
-        conn.execute(_INSERT_MANY, [vars(contribution) for contribution in batch])
-    return _entries(conn.execute(text(_SINCE), {"last": last}))
+        conn.execute_many(_INSERT, [vars(contribution) for contribution in batch])
+    return _entries(conn.execute(_SINCE, {"last": last}))
 
 
 def entries(conn: Connection, robot: str | None = None) -> list[ContributionRow]:
     """All contributions, or one robot's, without their blobs, oldest first."""
     query = "SELECT number, robot, process, seq, stamp, digest FROM lifelore_contributions"
     if robot is None:
-        rows = conn.execute(text(query))
+        rows = conn.execute(query)
     else:
-        rows = conn.execute(text(query + " WHERE robot = :robot"), {"robot": robot})
+        rows = conn.execute(query + " WHERE robot = :robot", {"robot": robot})
     return sorted(_entries(rows), key=lambda entry: entry.order)
 
 
-def _entries(rows: Iterable[Row]) -> list[ContributionRow]:
+def _entries(rows: Iterable[tuple]) -> list[ContributionRow]:
     return [ContributionRow(row[0], (row[1], row[2], row[3]), row[4], row[5]) for row in rows]
 
 
 def load(conn: Connection, numbers: Iterable[int]) -> Iterator[Stored]:
     """The contributions of these row numbers, in this order, with one batch in main memory at a time."""
     for batch in in_batches(numbers):
-        rows = {row[0]: Stored(row[0], Contribution(*row[1:])) for row in conn.execute(_LOAD, {"numbers": batch})}
+        found = conn.execute(_LOAD.format(", ".join(map(str, batch))))
+        rows = {row[0]: Stored(row[0], Contribution(*row[1:])) for row in found}
         for number in batch:
             yield _with_bytes(rows[number])
 
@@ -127,22 +139,21 @@ def _with_bytes(stored: Stored) -> Stored:
 def tombstones(conn: Connection) -> set[Identity]:
     """The identities of all forgotten contributions."""
     return {
-        (row[0], row[1], row[2])
-        for row in conn.execute(text("SELECT robot, process, seq FROM lifelore_tombstones"))
+        (row[0], row[1], row[2]) for row in conn.execute("SELECT robot, process, seq FROM lifelore_tombstones")
     }
 
 
 def add_tombstones(conn: Connection, identities: Iterable[Identity]) -> None:
     """Add a tombstone for each identity."""
     for batch in in_batches(sorted(identities), 1000):
-        conn.execute(_ADD_TOMBSTONE, [_named(identity) for identity in batch])
+        conn.execute_many(_ADD_TOMBSTONE, [_named(identity) for identity in batch])
 
 
 def forgotten_records(conn: Connection) -> dict[LoreKey, int]:
     """The keys of forgotten records, and the last stamp of the contributions that lose them."""
     if schema.version(conn) < schema.FORGOTTEN_RECORDS:
         return {}
-    rows = conn.execute(text("SELECT kind, key, version, stamp FROM lifelore_forgotten_records"))
+    rows = conn.execute("SELECT kind, key, version, stamp FROM lifelore_forgotten_records")
     return {(row[0], row[1], int(row[2])): int(row[3]) for row in rows}
 
 
@@ -154,7 +165,7 @@ def add_forgotten_records(conn: Connection, forgotten: Mapping[LoreKey, int]) ->
 
 def strip(conn: Connection, numbers: Iterable[int], forgotten: Mapping[LoreKey, int]) -> list[ContributionRow]:
     """Delete the forgotten records from the contributions of these row numbers; return the changed rows."""
-    update = text("UPDATE lifelore_contributions SET blob = :blob, digest = :digest WHERE number = :number")
+    update = "UPDATE lifelore_contributions SET blob = :blob, digest = :digest WHERE number = :number"
     changed = []
     for stored in load(conn, numbers):
         left = stored.contribution.without(forgotten)
@@ -166,9 +177,9 @@ def strip(conn: Connection, numbers: Iterable[int], forgotten: Mapping[LoreKey, 
 
 def remove(conn: Connection, numbers: Sequence[int]) -> None:
     """Delete contributions by row number."""
-    statement = text("DELETE FROM lifelore_contributions WHERE number = :number")
+    statement = "DELETE FROM lifelore_contributions WHERE number = :number"
     for batch in in_batches(numbers, 1000):
-        conn.execute(statement, [{"number": number} for number in batch])
+        conn.execute_many(statement, [{"number": number} for number in batch])
 
 
 def _named(identity: Identity) -> dict[str, str | int]:

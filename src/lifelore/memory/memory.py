@@ -6,16 +6,15 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
-from sqlalchemy import URL, Connection, text
-
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import audit, cache, ledger, merging, overview
 from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
-from lifelore.memory.contribution import new_contribution
+from lifelore.memory.connection import Connection
+from lifelore.memory.contribution import new_offer
 from lifelore.memory.export import export
-from lifelore.memory.folding import fold
-from lifelore.memory.location import locate
+from lifelore.memory.folding import LoreKey, lift
+from lifelore.memory.location import Server, locate
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 
 NAMED = 10
@@ -101,6 +100,11 @@ class Memory:
         """The file, or the URL without its password."""
         return self._store.location
 
+    @property
+    def statements(self) -> int:
+        """Number of SQL statements since the memory was opened, without those that begin and end transactions."""
+        return self._store.pool.statements
+
     def contribute(
         self,
         robot: str,
@@ -139,13 +143,12 @@ class Memory:
         StoreError
             The disk is full or read-only, a sum exceeds 64 bits, or the key has another merge.
         """
-        offered = new_contribution(robot, records, process=process, seq=seq, task=task)
+        offer = new_offer(robot, records, process=process, seq=seq, task=task)
         with self._store.writing() as conn:
-            if ledger.is_known(conn, offered.identity):
-                return False
-            stored = ledger.insert(conn, offered.stamped(ledger.next_stamp(conn)))
-            cache.write(conn, fold([stored]), state)
-        return True
+            number = ledger.insert(conn, offer)
+            if number is not None:
+                cache.add(conn, lift(number, offer.records), state)
+        return number is not None
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
@@ -164,8 +167,21 @@ class Memory:
         A state saves the time to compute it again from the record. Merging, forgetting, rebuilding, and any
         contribution without a state delete it.
         """
-        with self._store.reading() as conn:
-            return cache.read_state(conn, (kind, key, version))
+        return self.recall_states([(kind, key, version)])[0]
+
+    def recall_states(
+        self, names: Sequence[LoreKey], *, slots: tuple[int, int] | None = None
+    ) -> list[StoredState | None]:
+        """The states of several keys at the same moment, by one statement; None for a key that does not exist.
+
+        Parameters
+        ----------
+        names : sequence of (kind, key, version)
+        slots : (int, int), optional
+            First and last slot to read of the first key, see `StoredState.record`.
+        """
+        with self._store.looking() as conn:
+            return cache.read_states(conn, names, slots)
 
     def keys(self, kind: str) -> list[tuple[str, int, dict[str, Any]]]:
         """(key, version, about) of all records of a kind, sorted."""
@@ -174,9 +190,9 @@ class Memory:
 
     def tasks(self, robot: str) -> int:
         """Number of stored tasks of a robot; 0 for an unknown robot."""
-        count = text("SELECT COUNT(*) FROM lifelore_contributions WHERE robot = :robot")
+        count = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = ?"
         with self._store.reading() as conn:
-            return int(conn.execute(count, {"robot": robot}).scalar_one())
+            return int(conn.value(count, (robot,)))
 
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""
@@ -238,7 +254,9 @@ class Memory:
             union.finish()
         return counts
 
-    def _take(self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | URL") -> dict[str, int]:
+    def _take(
+        self, union: merging.MemoryUnion, here: Connection, place: "Memory | Path | Server"
+    ) -> dict[str, int]:
         if isinstance(place, Memory):
             if place.location == self.location:
                 return union.take(here, self.location)

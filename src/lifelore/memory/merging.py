@@ -10,10 +10,9 @@ the end, so that the cells of a key are written once and not once for each sourc
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
-from sqlalchemy import Connection
-
 from lifelore.core.errors import StoreError
 from lifelore.memory import cache, ledger
+from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import Contribution, Identity
 from lifelore.memory.folding import LoreKey, Stored, fold
 from lifelore.memory.ledger import ContributionRow

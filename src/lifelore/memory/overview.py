@@ -4,16 +4,15 @@ from collections.abc import Callable, Hashable, Iterable
 from datetime import UTC, datetime
 from typing import Any
 
-from sqlalchemy import Connection, text
-
 from lifelore.memory import ledger, schema
+from lifelore.memory.connection import Connection
 
 FEW = 8
 """Maximum number of entries of a group that are listed separately; more are joined to one entry."""
 
-_ROBOTS = text("SELECT robot, COUNT(*), MIN(stamp), MAX(stamp) FROM lifelore_contributions GROUP BY robot")
+_ROBOTS = "SELECT robot, COUNT(*), MIN(stamp), MAX(stamp) FROM lifelore_contributions GROUP BY robot"
 # Sums of halves, because a sum of 64-bit numbers may need more than 64 bits, which is an error in SQLite.
-_LORE = text(
+_LORE = (
     "SELECT kind, key, version, merge, COUNT(slot), COALESCE(SUM(value >> 32), 0),"
     " COALESCE(SUM(value & 4294967295), 0)"
     " FROM lifelore_lore LEFT JOIN lifelore_cells ON lore = number"
@@ -23,7 +22,7 @@ _LORE = text(
 
 def overview(conn: Connection, location: str) -> dict[str, Any]:
     """Location, schema, robots with their tasks, keys with their size, number of tombstones."""
-    tombstones = conn.execute(text("SELECT COUNT(*) FROM lifelore_tombstones")).scalar_one()
+    tombstones = conn.value("SELECT COUNT(*) FROM lifelore_tombstones")
     return {
         "location": location,
         "schema": schema.version(conn),

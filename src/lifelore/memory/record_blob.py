@@ -15,8 +15,11 @@ from lifelore.memory.record_rules import checked_records
 
 _LENGTH = struct.Struct("<I")
 _WORD = np.dtype("<i8")
+_header = json.JSONEncoder(sort_keys=True, separators=(",", ":")).encode
 # Level 1 compresses counts 8-fold; level 6 needs 5 times the time and saves another tenth.
 _LEVEL = 1
+_SMALL = 2**10
+"""Bytes up to which a window of this size is used: to clear a large one takes longer than to compress."""
 # Largest size of an unpacked blob, because a file may come from anyone; a task has about 100 kB.
 LARGEST_PAYLOAD = 2**30
 
@@ -34,7 +37,7 @@ def pack(records: Sequence[Record]) -> bytes:
         }
         for record in records
     ]
-    text = json.dumps(header, sort_keys=True, separators=(",", ":")).encode()
+    text = _header(header).encode()
     arrays = [column.astype(_WORD).tobytes() for record in records for column in (record.slots, record.values)]
     payload = b"".join([_LENGTH.pack(len(text)), text, *arrays])
     if len(payload) > LARGEST_PAYLOAD:
@@ -74,7 +77,10 @@ def _records(header: list[dict[str, Any]], words: NDArray[np.int64]) -> list[Rec
 
 def compress(payload: bytes) -> bytes:
     """Compress the bytes."""
-    return zlib.compress(payload, _LEVEL)
+    if len(payload) > _SMALL:
+        return zlib.compress(payload, _LEVEL)
+    packer = zlib.compressobj(_LEVEL, zlib.DEFLATED, 10, 1)
+    return packer.compress(payload) + packer.flush()
 
 
 def decompress(blob: bytes) -> bytes:

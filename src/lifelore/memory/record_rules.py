@@ -14,6 +14,7 @@ from lifelore.core.protocols import Merge, Record
 LONGEST_NAME = 200
 MERGES: tuple[str, ...] = get_args(Merge)
 LARGEST = 2**63 - 1
+_canonical = json.JSONEncoder(sort_keys=True, allow_nan=False, separators=(",", ":")).encode
 
 
 def check_name(argument: str, name: str) -> str:
@@ -39,7 +40,7 @@ def check_whole(argument: str, number: Any, smallest: int = 0) -> int:
 def canonical_json(argument: str, about: Mapping[str, Any]) -> str:
     """The canonical JSON text of a mapping: sorted keys, ASCII, no NaN."""
     try:
-        return json.dumps(dict(about), sort_keys=True, allow_nan=False, separators=(",", ":"))
+        return _canonical(dict(about))
     except (TypeError, ValueError) as error:
         raise InputError(f"{argument} must hold plain JSON values, but {error}; convert it first") from error
 
@@ -68,8 +69,8 @@ def checked_record(record: Record) -> Record:
     if not np.all(slots[1:] > slots[:-1]):
         ascending = np.argsort(slots, kind="stable")
         slots, values = slots[ascending], values[ascending]
-    if np.any(slots[1:] == slots[:-1]):
-        raise InputError(f"{where}: slots must be unique within a record; add up repeated slots first")
+        if np.any(slots[1:] == slots[:-1]):
+            raise InputError(f"{where}: slots must be unique within a record; add up repeated slots first")
     about = json.loads(canonical_json(f"{where}: about", record.about))
     return Record(record.kind, record.key, version, record.merge, slots, values, about)
 

@@ -2,10 +2,9 @@
 
 import errno
 import sqlite3
+import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-
-from sqlalchemy.exc import SQLAlchemyError
 
 from lifelore.core.errors import StoreError
 
@@ -58,14 +57,18 @@ def one_line_refusals(location: str) -> Iterator[None]:
     """Convert every error of the drivers inside the block to a StoreError about `location`."""
     try:
         yield
-    except SQLAlchemyError as error:
-        raise refusal(location, getattr(error, "orig", None) or error) from error
-    except sqlite3.Error as error:
+    except _drivers_errors() as error:
         raise refusal(location, error) from error
     except (OSError, MemoryError) as error:
         if isinstance(error, StoreError):
             raise
         raise refusal(location, error) from error
+
+
+def _drivers_errors() -> tuple[type[Exception], ...]:
+    """The errors of SQLite, and of psycopg where it has been imported."""
+    psycopg = sys.modules.get("psycopg")
+    return (sqlite3.Error, psycopg.Error) if psycopg else (sqlite3.Error,)
 
 
 def refusal(location: str, cause: BaseException) -> StoreError:

@@ -5,9 +5,8 @@ Contributions, tombstones and forgotten records hold the content; lore, mentions
 
 import time
 
-from sqlalchemy import Connection, inspect, text
-
 from lifelore.core.errors import StoreError
+from lifelore.memory.connection import Connection
 
 APPLICATION_ID = 0x4C4F5245  # "LORE"
 
@@ -62,6 +61,12 @@ FORGOTTEN_RECORDS = 2
 READABLE = 1
 """The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 
+_HAS_NOTES = {
+    True: "SELECT MAX(name) FROM sqlite_master WHERE name = 'lifelore_migrations'",
+    False: "SELECT to_regclass('lifelore_migrations')",
+}
+"""By `Connection.is_sqlite`: NULL where no migration has run."""
+
 # SQLite turns an overflowing sum into a float; the CHECK makes this an error, as it is in PostgreSQL.
 # PostgreSQL must compare names byte by byte, as SQLite and Python do, so that the order is the same.
 _WORDS = {
@@ -78,9 +83,9 @@ _WORDS = {
 
 def version(conn: Connection) -> int:
     """The number of the last migration; 0 for an empty database."""
-    if not inspect(conn).has_table("lifelore_migrations"):
+    if conn.value(_HAS_NOTES[conn.is_sqlite]) is None:
         return 0
-    return int(conn.execute(text("SELECT COALESCE(MAX(number), 0) FROM lifelore_migrations")).scalar_one())
+    return int(conn.value("SELECT COALESCE(MAX(number), 0) FROM lifelore_migrations"))
 
 
 def refuse_newer(location: str, found: int) -> None:
@@ -94,14 +99,14 @@ def refuse_newer(location: str, found: int) -> None:
 
 def take_step(conn: Connection, number: int) -> None:
     """Run migration `number` and note it, in the caller's transaction; do nothing if it was run before."""
-    words = _WORDS[conn.dialect.name]
-    conn.exec_driver_sql(_NOTES.format(**words))
+    words = _WORDS["sqlite" if conn.is_sqlite else "postgresql"]
+    conn.execute(_NOTES.format(**words))
     if version(conn) >= number:
         return
-    if conn.dialect.name == "sqlite":
-        conn.exec_driver_sql(f"PRAGMA application_id = {APPLICATION_ID}")
+    if conn.is_sqlite:
+        conn.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     name, statements = MIGRATIONS[number]
     for statement in statements.format(**words).split(";"):
-        conn.exec_driver_sql(statement)
-    note = text("INSERT INTO lifelore_migrations (number, name, applied) VALUES (:number, :name, :applied)")
+        conn.execute(statement)
+    note = "INSERT INTO lifelore_migrations (number, name, applied) VALUES (:number, :name, :applied)"
     conn.execute(note, {"number": number, "name": name, "applied": time.time_ns()})

@@ -4,13 +4,12 @@ import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
 from pathlib import Path
-from typing import Literal
-
-from sqlalchemy import URL, Connection, Engine, QueuePool, create_engine
+from typing import Any, Literal
 
 from lifelore.core.errors import MissingExtraError, StoreError
 from lifelore.memory import schema
-from lifelore.memory.location import describe
+from lifelore.memory.connection import Connection, Pool
+from lifelore.memory.location import Server, describe
 from lifelore.memory.refusal import BUSY_SECONDS, one_line_refusals
 from lifelore.memory.sqlite_file import connect, connect_source, is_writable, refuse_unless_ours
 
@@ -21,48 +20,51 @@ _WRITERS_LOCK = schema.APPLICATION_ID
 class Store:
     """An open database; `reading` and `writing` give transactions and convert the driver's errors."""
 
-    def __init__(self, engine: Engine, location: str) -> None:
-        self._engine: Engine | None = engine
+    def __init__(self, pool: Pool, location: str, *, is_sqlite: bool) -> None:
+        self._pool: Pool | None = pool
         self.location = location
-        self.is_sqlite = engine.dialect.name == "sqlite"
+        self.is_sqlite = is_sqlite
 
     @property
-    def engine(self) -> Engine:
-        """The engine; StoreError after `close`."""
-        if self._engine is None:
+    def pool(self) -> Pool:
+        """The connections; StoreError after `close`."""
+        if self._pool is None:
             raise StoreError(f"memory {self.location} is closed; open it again")
-        return self._engine
+        return self._pool
 
     def close(self) -> None:
         """Close all connections; a second call does nothing."""
-        if self._engine is not None:
-            engine, self._engine = self._engine, None
-            engine.dispose()
+        if self._pool is not None:
+            pool, self._pool = self._pool, None
+            pool.close()
 
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """A transaction on a snapshot of the database, which never waits for writers."""
-        with one_line_refusals(self.location), self.engine.connect() as conn:
-            if self.is_sqlite:
-                conn.exec_driver_sql("BEGIN")
-            else:
-                conn = conn.execution_options(isolation_level="REPEATABLE READ")
+        with one_line_refusals(self.location), self.pool.connection() as conn:
+            conn.control("BEGIN" if self.is_sqlite else "BEGIN ISOLATION LEVEL REPEATABLE READ")
             yield conn
-            conn.rollback()
+            conn.control("ROLLBACK")
+
+    @contextmanager
+    def looking(self) -> Iterator[Connection]:
+        """A connection to read by a single statement, which is its own snapshot of the database."""
+        with one_line_refusals(self.location), self.pool.connection() as conn:
+            yield conn
 
     @contextmanager
     def writing(self) -> Iterator[Connection]:
         """The only writing transaction; it is committed completely, or after an error not at all."""
-        with one_line_refusals(self.location), self.engine.connect() as conn:
+        with one_line_refusals(self.location), self.pool.connection() as conn:
             if self.is_sqlite:
-                conn.exec_driver_sql("BEGIN IMMEDIATE")
+                conn.control("BEGIN IMMEDIATE")
             else:
-                conn.exec_driver_sql(f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'")
-                conn.exec_driver_sql(f"SELECT pg_advisory_xact_lock({_WRITERS_LOCK})")
+                wait = f"SET LOCAL lock_timeout = '{BUSY_SECONDS}s'"
+                conn.control(f"BEGIN; {wait}; SELECT pg_advisory_xact_lock({_WRITERS_LOCK})")
             yield conn
-            conn.commit()
+            conn.control("COMMIT")
 
-    def lies_at(self, place: Path | URL) -> bool:
+    def lies_at(self, place: Path | Server) -> bool:
         """Whether `place` is the location of this database."""
         if isinstance(place, Path):
             return self.is_sqlite and place.exists() and place.samefile(self.location)
@@ -101,23 +103,22 @@ def open_file(path: Path, *, durable: bool = False, journal: Literal["WAL", "DEL
     with one_line_refusals(str(path)):
         path.parent.mkdir(parents=True, exist_ok=True)
 
-    def creator():
+    def writable() -> Connection:
         conn = connect(path, "rwc")
         conn.execute(f"PRAGMA synchronous = {'FULL' if durable else 'NORMAL'}")
         # Overwrite forgotten content; some builds of SQLite would only unlink it.
         conn.execute("PRAGMA secure_delete = ON")
-        return conn
+        return Connection(conn, is_sqlite=True)
 
-    store = Store(create_engine("sqlite://", creator=creator, poolclass=QueuePool), str(path))
-    return _ready(store, journal)
+    return _ready(Store(Pool(writable), str(path), is_sqlite=True), journal)
 
 
-def open_postgresql(url: URL) -> Store:
+def open_postgresql(server: Server) -> Store:
     """Open the memory in a PostgreSQL database; create it if there is none."""
-    return _ready(_server(url), None)
+    return _ready(_server(server), None)
 
 
-def open_existing(place: Path | URL, *, durable: bool = False) -> Store:
+def open_existing(place: Path | Server, *, durable: bool = False) -> Store:
     """Open a memory that exists; only for reading if its file or folder cannot be written."""
     if isinstance(place, Path):
         check_source(place)
@@ -128,7 +129,7 @@ def open_existing(place: Path | URL, *, durable: bool = False) -> Store:
     return open_file(place, durable=durable) if isinstance(place, Path) else open_postgresql(place)
 
 
-def open_source(place: Path | URL, *, checked: bool = False) -> Store:
+def open_source(place: Path | Server, *, checked: bool = False) -> Store:
     """Open a memory for reading only; `checked`: `check_source` has passed. It is never created or changed."""
     if isinstance(place, Path) and not checked:
         check_source(place)
@@ -149,17 +150,22 @@ def check_source(path: Path) -> None:
 
 
 def _source_file(path: Path) -> Store:
-    return Store(create_engine("sqlite://", creator=lambda: connect_source(path), poolclass=QueuePool), str(path))
+    return Store(Pool(lambda: Connection(connect_source(path), is_sqlite=True)), str(path), is_sqlite=True)
 
 
-def _server(url: URL) -> Store:
-    options = {} if "connect_timeout" in url.query else {"connect_timeout": BUSY_SECONDS}
+def _server(server: Server) -> Store:
     try:
-        return Store(create_engine(url, connect_args=options), describe(url))
+        import psycopg
     except ImportError as error:
         raise MissingExtraError(
             "a postgresql:// memory needs psycopg, which is not installed; pip install 'lifelore[postgres]'"
         ) from error
+
+    def connection() -> Connection:
+        options: dict[str, Any] = {"connect_timeout": BUSY_SECONDS} | server.options
+        return Connection(psycopg.connect(autocommit=True, **options), is_sqlite=False)
+
+    return Store(Pool(connection), server.location, is_sqlite=False)
 
 
 def _ready(store: Store, journal: str | None) -> Store:
@@ -180,10 +186,9 @@ def _set_journal(store: Store, journal: str) -> None:
     give_up = time.monotonic() + BUSY_SECONDS
     while True:
         try:
-            with one_line_refusals(store.location), store.engine.connect() as conn:
-                mode = conn.exec_driver_sql("PRAGMA journal_mode").scalar_one()
-                if mode != journal.lower():
-                    conn.exec_driver_sql(f"PRAGMA journal_mode = {journal}")
+            with one_line_refusals(store.location), store.pool.connection() as conn:
+                if conn.value("PRAGMA journal_mode") != journal.lower():
+                    conn.value(f"PRAGMA journal_mode = {journal}")
                 return
         except StoreError as error:
             if "locked" not in str(error) or time.monotonic() > give_up:

@@ -32,6 +32,13 @@ def study_of(name="s", **settings):
     return Study(name, library, dict.fromkeys(POLICIES, "active"), **settings)
 
 
+def learnt_study(model="categorical", **settings):
+    """A study whose library has seen eight outcomes a pair."""
+    samples = np.random.default_rng(0).integers(0, 2, (3, len(POLICIES), 8))
+    library = PolicyLibrary.from_samples(samples, model=model, policies=POLICIES)
+    return Study("s", library, dict.fromkeys(POLICIES, "active"), **settings)
+
+
 @pytest.fixture
 def memory(tmp_path):
     with open_memory(tmp_path / "m.db") as opened:
@@ -72,7 +79,7 @@ def test_the_same_seed_chooses_the_same_and_another_need_not(memory, tmp_path):
 
 
 def test_the_belief_is_that_of_policy_reuse_bit_for_bit_in_whatever_order_outcomes_come(memory):
-    study, agent = study_of(), BayesianPolicyReuse(study_of().library, models="plug-in")
+    study, agent = study_of(), BayesianPolicyReuse(study_of().library)
     generator = np.random.default_rng(0)
     made = [choose(memory, study, "ann") for _ in range(12)]
     outcomes = generator.normal(4, 3, 12)
@@ -85,7 +92,7 @@ def test_the_belief_is_that_of_policy_reuse_bit_for_bit_in_whatever_order_outcom
 
 def test_types_that_change_are_followed(memory):
     study = study_of(change=0.1)
-    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
     for outcome in (8.0, 7.0, 1.0, 2.0):
         made = choose(memory, study, "ann")
         update(memory, study, made["decision"], outcome)
@@ -290,7 +297,7 @@ def test_a_process_killed_in_between_loses_nothing_it_had_told(tmp_path):
         there = {history.identifier(one): one.outcome for one in history.decisions}
         assert all(decision in there for _, decision in told)
         assert all(there[decision] is not None for what, decision in told if what == "ended")
-        agent = BayesianPolicyReuse(study.library, models="plug-in")
+        agent = BayesianPolicyReuse(study.library)
         for one in history.decisions:
             if one.outcome is not None:
                 agent.update(one.policy, one.outcome)
@@ -325,12 +332,28 @@ def test_the_signal_table_of_the_policies_in_use_comes_back_bit_for_bit(memory, 
     study_of(rule=rule).keep(memory)
     first = open_study(memory, "s")
     assert list(first.tables) == [8]
-    assert first.choice_of.table(8) is first.tables[8]
+    assert first.choice_of.table(8) is first.tables[8].table
     retire(memory, first, "dark")
     for study in (first, open_study(memory, "s")):
         made = study.library.take(policies=[POLICIES.index(policy) for policy in study.active]).table(8)
-        assert study.tables[8].probs.tobytes() == made.probs.tobytes()
-        assert study.tables[8].conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+        assert study.tables[8].table.probs.tobytes() == made.probs.tobytes()
+        assert study.tables[8].table.conditional_entropy.tobytes() == made.conditional_entropy.tobytes()
+
+
+@pytest.mark.parametrize("model", ["gaussian", "categorical"])
+def test_the_table_and_bins_of_uncertain_models_come_back_bit_for_bit(memory, model):
+    study = learnt_study(model, rule="information-directed")
+    study.keep(memory)
+    table, cuts = study.library.task_table(8)
+    stored = open_study(memory, "s").tables[8]
+    assert stored.table.probs.tobytes() == table.probs.tobytes()
+    assert stored.cuts is not None
+    assert all(np.array_equal(*pair) for pair in zip(stored.cuts, cuts, strict=True))
+    said = []
+    for one in (study, open_study(memory, "s")):
+        update(memory, one, choose(memory, one, "ann", seed=1)["decision"], 1.0)
+        said.append({key: choose(memory, one, "ben", seed=1)[key] for key in ("belief", "expected")})
+    assert said[0] == said[1]
 
 
 def test_a_rule_that_reads_no_table_stores_none_nor_is_a_large_one_stored(memory, monkeypatch):
@@ -437,3 +460,40 @@ def test_the_log_of_the_fit_can_be_read_by_it(memory, tmp_path):
     report(memory, study, log=tmp_path / "decisions.csv")
     log = read_log([tmp_path / "decisions.csv"])
     assert (log.users, log.outcomes.tolist(), log.pending) == (["ann"] * 2 + ["bo"] * 2, [8.0, 2.5] * 2, 2)
+
+
+def test_models_of_few_runs_learn_from_the_user_in_the_order_of_decisions(memory):
+    """A late outcome changes the belief to that of an agent that saw all outcomes in order, parameters too."""
+    study = learnt_study()
+    study.keep(memory)
+    made = [choose(memory, study, "ann") for _ in range(6)]
+    outcomes = [1.0, 0.0, 1.0, 1.0, 0.0, 1.0]
+    for number in (0, 3, 1, 5, 2, 4):
+        update(memory, study, made[number]["decision"], outcomes[number])
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
+    for one, outcome in zip(made, outcomes, strict=True):
+        agent.update(one["policy"], outcome)
+    head = open_belief(memory, study, user_key("s", "ann")).state.head
+    assert np.array_equal(head.log_belief, agent.log_belief)
+    assert agent.task is not None
+    assert {name: array.tolist() for name, array in head.task.items()} == {
+        name: array.tolist() for name, array in agent.task.state().items()
+    }
+    answer = choose(memory, study, "ann")
+    assert answer["expected"] == pytest.approx(dict(zip(POLICIES, agent.expected_utility(), strict=True)))
+
+
+def test_a_study_with_plug_in_models_takes_them_for_the_truth(memory):
+    study = learnt_study(models="plug-in")
+    study.keep(memory)
+    study = open_study(memory, "s")
+    assert study.models == "plug-in"
+    made = choose(memory, study, "ann")
+    update(memory, study, made["decision"], 1.0)
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
+    agent.update(made["policy"], 1.0)
+    head = open_belief(memory, study, user_key("s", "ann")).state.head
+    assert np.array_equal(head.log_belief, agent.log_belief)
+    assert not head.task
+    with pytest.raises(InputError, match="models must be one of"):
+        learnt_study(models="exact")

@@ -51,7 +51,7 @@ def stored(memory, user="ann"):
 
 def naive(study, decisions):
     """The slow twin: an agent that takes in every decision in its order."""
-    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, models="plug-in")
+    agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics)
     for one in decisions:
         if one.outcome is None or one.policy not in study.library.policies:
             agent.skip()
@@ -121,16 +121,22 @@ def test_checkpoints_stay_few_and_near_every_open_decision():
 def test_a_belief_of_earlier_decisions_is_not_read_again(memory, monkeypatch):
     """Each choice and each outcome reads the cells of one decision, however many there are."""
     study, read = study_of(), []
-    recall = type(memory).recall
+    recall, recall_states = type(memory).recall, type(memory).recall_states
 
     def counting(self, *name, slots=(0, 0)):
         record = recall(self, *name, slots=slots)
         read.append(0 if record is None else record.slots.size)
         return record
 
+    def counting_states(self, names, *, slots=None):
+        states = recall_states(self, names, slots=slots)
+        read.extend(one.record.slots.size for one in states if one is not None and one.record is not None)
+        return states
+
     for _ in range(30):
         update(memory, study, choose(memory, study, "ann")["decision"], 3.0)
     monkeypatch.setattr(type(memory), "recall", counting)
+    monkeypatch.setattr(type(memory), "recall_states", counting_states)
     update(memory, study, choose(memory, study, "ann")["decision"], 3.0)
     assert read == [5]  # the open decision: five cells, none of the others
 

@@ -53,7 +53,7 @@ def head_of(memory, study, user):
 
 
 def naive(study, rows, prior=None):
-    agent = BayesianPolicyReuse(study.library, prior=prior, dynamics=study.dynamics, models="plug-in")
+    agent = BayesianPolicyReuse(study.library, prior=prior, dynamics=study.dynamics)
     for policy, outcome in rows:
         agent.update(policy, outcome)
     return agent

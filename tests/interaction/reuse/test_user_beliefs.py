@@ -57,7 +57,7 @@ def drawn(model: PolicyLibrary, random: np.random.Generator, n: int):
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_a_batch_agrees_with_one_agent_a_user(kind, dtype):
     model, random = library(kind), np.random.default_rng(0)
-    users = UserBeliefs(model, 40, dtype)
+    users = UserBeliefs(model, 40, dtype, models="plug-in")
     agents = [BayesianPolicyReuse(model, models="plug-in") for _ in range(40)]
     for _ in range(15):
         who, policies = random.integers(0, 40, 60), random.integers(0, N_POLICIES, 60)
@@ -99,14 +99,14 @@ def test_sampling_follows_the_belief():
     users = UserBeliefs(model, 20_000)
     users.update(np.arange(20_000), np.full(20_000, 2), np.full(20_000, 11.0))
     stated = users.probabilities([0], "sampling")[0]
-    for chosen in (users.select(np.arange(20_000)), users.select(np.arange(20_000), BeliefSampling())):
+    for chosen in (users.select(np.arange(20_000), "sampling"), users.select(np.arange(20_000), BeliefSampling())):
         # A share of 20000 has a deviation of at most 0.0035; five of them.
         assert np.bincount(chosen, minlength=N_POLICIES) / 20_000 == pytest.approx(stated, abs=0.018)
 
 
 def test_equal_best_responses_are_sampled_evenly():
     users = UserBeliefs(PolicyLibrary.from_means([[1.0, 1.0, 0.0], [0.0, 1.0, 1.0]], 1.0), 20_000)
-    chosen = np.bincount(users.select(np.arange(20_000)), minlength=3) / 20_000
+    chosen = np.bincount(users.select(np.arange(20_000), "sampling"), minlength=3) / 20_000
     assert chosen == pytest.approx([0.25, 0.5, 0.25], abs=0.018)
     flat = UserBeliefs(PolicyLibrary.from_means(np.eye(4), 1.0), 20_000).select(np.arange(20_000), Greedy())
     assert np.bincount(flat) / 20_000 == pytest.approx(np.full(4, 0.25), abs=0.018)
@@ -206,7 +206,7 @@ def test_types_that_change_and_forgotten_users():
 
 def test_a_library_that_learns_is_taken_anew():
     model = PolicyLibrary.from_means([[0.0, 1.0], [1.0, 0.0]], 1.0, count=10)
-    users = UserBeliefs(model, 1, "f8")
+    users = UserBeliefs(model, 1, "f8", models="plug-in")
     for _ in range(2000):
         model.observe(0, 0, 9.0)
     users.refresh()
@@ -330,10 +330,10 @@ def test_categories_and_models_that_answer_wrongly_are_refused():
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        ({"n_users": 0}, "n_users must be at least 1"),
-        ({"n_users": 2, "dtype": "f2"}, "dtype must be"),
-        ({"n_users": 2, "prior": [0.5, 0.5]}, r"prior must be \(9,\)"),
-        ({"n_users": 2, "dynamics": TypeDynamics.hazard(0.1, [0.5, 0.5])}, "dynamics are for 2 types"),
+        ({"users": 0}, "users must be at least 1"),
+        ({"users": 2, "dtype": "f2"}, "dtype must be"),
+        ({"users": 2, "prior": [0.5, 0.5]}, r"prior must be \(9,\)"),
+        ({"users": 2, "dynamics": TypeDynamics.hazard(0.1, [0.5, 0.5])}, "dynamics are for 2 types"),
     ],
 )
 def test_settings_that_break_their_rule_are_refused(options, message):

@@ -11,6 +11,7 @@ import numpy as np
 def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
     from lifelore.interaction.beliefs.belief import update
+    from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
     from lifelore.interaction.library.policy_library import PolicyLibrary
     from lifelore.interaction.reuse.user_beliefs import UserBeliefs
     from lifelore.interaction.selection import RULES, choose, rule_named, tied_shares
@@ -32,7 +33,22 @@ def all_arrays() -> dict[str, np.ndarray]:
     for name in RULES:
         scores = rule_named(name).scores(library, np.exp(beliefs), generator=np.random.default_rng(2))
         out[f"{name} scores"] = scores
+    runs = random.normal(scale=20, size=(7, 5, 6))
+    learnt = [PolicyLibrary.from_samples(runs), PolicyLibrary.from_samples(runs.round(-1), model="categorical")]
+    learnt.append(PolicyLibrary.from_means(runs.mean(axis=2), 15.0, count=random.integers(3, 9, (7, 5))))
     for dtype in ("f4", "f8"):
+        for number, model in enumerate(learnt):
+            for changing in (TypeDynamics.static(), TypeDynamics.hazard(0.1, model.prior)):
+                users = UserBeliefs(model, 9, dtype, dynamics=changing, seed=4)
+                for rule in ("sampling", "greedy", "sampling"):
+                    who, policies = random.integers(0, 9, 20), random.integers(0, 5, 20)
+                    signals = runs.round(-1)[random.integers(0, 7, 20), policies, 0]
+                    name = f"{dtype} learnt {number} {changing.kind} {rule} {len(out)}"
+                    out[name] = users.update_and_select(who, policies, signals, rule)
+                    out[f"{name} logs"] = users.log_belief.copy()
+                    out[f"{name} available"] = users.select(np.arange(9), rule, available=np.arange(5) % 2 == 0)
+                users.reset([3])
+                out[f"{name} tried"] = np.concatenate([part.astype(float) for part in users.outcomes.tried(who)])
         for model, draw in (
             (library, lambda: random.normal(size=20)),
             (spoken, lambda: random.integers(0, 4, 20)),

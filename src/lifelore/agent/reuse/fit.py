@@ -19,10 +19,11 @@ from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection import DEFAULT_RULE
 from lifelore.memory import Memory
 
 MODELS = ("auto", "gaussian", "student-t", "categorical")
-KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change")
+KEPT_SETTINGS = ("control", "incumbent", "rule", "explore", "change", "models")
 """Settings of a study that a new fit sets anew; where one is another than before, the fit says so."""
 CONTEXT_USERS = 5.0
 """Users of everybody's prior that are mixed into each context's."""
@@ -40,7 +41,7 @@ class FitSettings:
         Of outcomes; ``auto``: categorical for at most 10 different values, else gaussian.
     types : int, optional
         How many types to look for where the log names none; default by the Bayesian criterion.
-    control, incumbent, rule, explore, change
+    control, incumbent, rule, explore, change, models
         As in `Study`.
     seed : int
         For finding types.
@@ -51,9 +52,10 @@ class FitSettings:
     types: int | None = None
     control: float = 0.1
     incumbent: str | None = None
-    rule: str = "information-directed"
+    rule: str = DEFAULT_RULE
     explore: float = 0.0
     change: float = 0.0
+    models: str = "uncertain"
     seed: int = 0
 
     def __post_init__(self) -> None:
@@ -105,6 +107,8 @@ def fit(
     typed = typed_rows(log, settings.model, settings.types, generator)
     library, counts = library_of(log, typed, settings.model)
     earlier = _earlier(memory, settings.name)
+    # Computed once and stored with the library.
+    library.performance.spread  # noqa: B018  # pyright: ignore
     study = _study(log, library, typed, settings, dict(earlier.get("states", {})))
     study.keep(memory)
     keep_fitted_past(memory, study, log)
@@ -124,7 +128,7 @@ def _study(
     fitted["time"] = int(time.time())
     return Study(
         settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
-        settings.incumbent, settings.rule, settings.explore, settings.change, fitted,
+        settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
     )  # fmt: skip
 
 
@@ -189,4 +193,5 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "rule": study.rule,
         "explore": study.explore,
         "change": study.change,
+        "models": study.models,
     }

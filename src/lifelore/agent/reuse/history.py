@@ -112,8 +112,16 @@ def open_history(memory: Memory, study: Study, key: str, user: str = "") -> Hist
 
 def read_decisions(memory: Memory, study: Study, key: str, first: int = 0) -> tuple[Decision, ...]:
     """The decisions for a user from number `first` on; the time depends on their number alone."""
-    slots = FIELDS * first, LAST_SLOT
-    record = memory.recall(KIND, f"{study.name}/{key}", VERSION, slots=slots)
+    return decisions_in(study, memory.recall(KIND, f"{study.name}/{key}", VERSION, slots=slots_from(first)))
+
+
+def slots_from(number: int) -> tuple[int, int]:
+    """First and last slot of the decisions from a number on."""
+    return FIELDS * number, LAST_SLOT
+
+
+def decisions_in(study: Study, record: Record | None) -> tuple[Decision, ...]:
+    """The decisions in a user's record, or in a part of it."""
     return () if record is None else _decisions(study, record)
 
 

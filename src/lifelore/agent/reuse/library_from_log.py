@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from lifelore.agent.reuse.log import ReuseLog
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
+from lifelore.interaction.outcomes.spread import spread_between
 
 FEW_VALUES = 10
 """Outcomes of at most so many different values are categories, not amounts, unless the settings name a model."""
@@ -46,6 +47,10 @@ def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibra
     library = PolicyLibrary.from_rows(
         _lent(rows), typed.names, names, model_of(log, model), prior=prior / prior.sum()
     )
+    # Users are the tasks: those of one type may differ.
+    spread = spread_between(rows.pair, log.user.codes[typed.rows], rows.values)
+    if spread is not None:
+        library.performance.spread = spread  # pyright: ignore[reportAttributeAccessIssue]
     return library, rows.sums()
 
 

@@ -13,13 +13,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
-from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
 from lifelore.agent.reuse.user_belief import UserBelief, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.memory import KeyState, Memory
 
@@ -83,11 +84,12 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     head, user = known.state.head, known.history.user
     belief = study.algorithm.belief(head.log_belief)
     control = study.holds_out(user)
-    odds = _control_odds(study) if control else _odds(study, belief)
+    known_of_user = study.choice_for(head.task)
+    odds = _control_odds(study) if control else _odds(study, known_of_user, belief)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
-    expected = expected_utility(belief, study.choice_of.performance.mean)
+    expected = expected_utility(belief, known_of_user.performance.mean)
     answer = {
         "user": user,
         "policy": policy,
@@ -103,9 +105,9 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     return decision, answer
 
 
-def _odds(study: Study, belief: NDArray[np.float64]) -> _Odds:
+def _odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64]) -> _Odds:
     """What the rule does, and a share of anything."""
-    probs = study.selection.probabilities(study.choice_of, belief)
+    probs = study.selection.probabilities(library, belief)
     probs = (1 - study.explore) * probs + study.explore / len(probs)
     return _Odds(study.active, probs / probs.sum())
 
@@ -133,7 +135,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         The outcome is no finite number, none of the values a categorical library knows, or another one was taken.
     """
     key, number, attempt = parse_identifier(decision)
-    known = open_belief(memory, study, key)
+    known = open_belief(memory, study, key, number=number)
     found = known.find(memory, study, number, attempt)
     if found is None:
         raise NotFoundError(f"no decision {decision} in study '{study.name}': never made here, or forgotten")
@@ -148,7 +150,7 @@ def update(memory: Memory, study: Study, decision: str, outcome: float) -> dict[
         )  # fmt: skip
     if not taken:
         # The outcome was there before, or another process was faster.
-        known = open_belief(memory, study, key)
+        known = open_belief(memory, study, key, number=number)
         again, after = known.find(memory, study, number, attempt), known.state
         if again is None or again.decision.outcome != outcome:
             there = f"ended with {again.decision.outcome:g} already" if again else "was forgotten"

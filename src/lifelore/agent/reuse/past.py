@@ -139,8 +139,13 @@ class Past:
 
 def read_index(memory: Memory, study: str) -> Mapping[str, Any]:
     """What the past of a study is described by; empty where there is none."""
-    found = memory.recall_state(KIND, study, VERSION)
+    found = memory.recall_state(*index_name(study))
     return found.about if found else {}
+
+
+def index_name(study: str) -> tuple[str, str, int]:
+    """Kind, key and version of the record whose description `read_index` gives."""
+    return KIND, study, VERSION
 
 
 def read_past_user(memory: Memory, study: str, index: Mapping[str, Any], key: str) -> PastUser:

@@ -19,11 +19,10 @@ import numpy as np
 from lifelore.agent.reuse.history import Decision, History, histories
 from lifelore.agent.reuse.past import Past, PastUser, read_past
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_belief import last_belief
+from lifelore.agent.reuse.user_belief import expected_outcomes
 from lifelore.core.atomic_write import atomic_write
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.metrics import mean_estimate
-from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.memory import Memory
 
 COLUMNS = (
@@ -197,8 +196,7 @@ def _policies(study: Study, control: list[History]) -> list[dict[str, Any]]:
 def _regret(study: Study, history: History, every_past: Past, control: bool) -> float:
     """Mean over decisions of what the best policy under the last belief is expected to bring more."""
     past = every_past.users.get(history.key, PastUser())
-    expected_utilities = expected_utility(last_belief(study, history, past), study.library.performance.mean)
-    expected = dict(zip(study.library.policies, expected_utilities, strict=True))
+    expected = dict(zip(study.library.policies, expected_outcomes(study, history, past), strict=True))
     best = max(expected[policy] for policy in study.active)
     lost = [best - expected[one.policy] for one in _ended(history, control) if one.policy in expected]
     return float(np.mean(lost)) if lost else 0.0

@@ -8,29 +8,39 @@ fit counts. Nothing of any single user is in here.
 import hashlib
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field, replace
-from functools import cached_property
-from typing import Any, NoReturn
+from functools import cached_property, lru_cache
+from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log import check_word
+from lifelore.agent.reuse.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import SelectionRule, restored_rule, rule_named
+from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
 
 KIND, VERSION = "reuse_study", 1
 ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
 """A policy is chosen from; or given to the control group alone, till a fit knows it; or given to nobody."""
 LONGEST_NAME = 60
+MODELS = ("uncertain", "plug-in")
+"""Whether models of few runs are known to be uncertain, or taken for the truth."""
 LARGEST_TABLE = 1 << 16
 """Numbers of the largest signal table that is stored; reading a larger one costs more than making it."""
+
+
+class StoredTable(NamedTuple):
+    """A signal table in memory, and each policy's bins where models are uncertain: outcomes change them."""
+
+    table: SignalTable
+    cuts: list[Any] | None
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,9 +66,11 @@ class Study:
         Share of the others' choices that are any active policy, in [0, 1].
     change : float
         Probability that a user's type is another at the next choice, in [0, 1].
+    models : {"uncertain", "plug-in"}
+        As for `BayesianPolicyReuse`.
     fitted : dict
         What it was learnt from, plain data.
-    tables : dict of int to SignalTable
+    tables : dict of int to StoredTable
         Signal tables of the active policies, by number of bins, as far as memory has them.
     rule_settings : dict
         Settings of the rule by name; its defaults for those left out.
@@ -70,11 +82,12 @@ class Study:
     contexts: dict[str, NDArray[np.float64]] = field(default_factory=dict)
     control: float = 0.1
     incumbent: str | None = None
-    rule: str = "information-directed"
+    rule: str = DEFAULT_RULE
     explore: float = 0.0
     change: float = 0.0
+    models: str = "uncertain"
     fitted: dict[str, Any] = field(default_factory=dict)
-    tables: dict[int, SignalTable] = field(default_factory=dict)
+    tables: dict[int, StoredTable] = field(default_factory=dict)
     rule_settings: dict[str, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
@@ -83,6 +96,8 @@ class Study:
         _check_share("explore", self.explore)
         _check_share("change", self.change)
         rule_named(self.rule, **self.rule_settings)
+        if self.models not in MODELS:
+            raise InputError(f"models must be one of {', '.join(MODELS)}, got {self.models!r}")
         if self.incumbent is not None and self.states.get(self.incumbent) != ACTIVE:
             raise NotFoundError(
                 f"incumbent must be a policy in use, got '{self.incumbent}'; there are {', '.join(self.active)}"
@@ -107,8 +122,11 @@ class Study:
     def choice_of(self) -> PolicyLibrary:
         """The library of the active policies."""
         chosen = self.library.take(policies=[self.library.index_of_policy(policy) for policy in self.active])
-        for n_bins, table in self.tables.items():
-            chosen.keep_table(n_bins, table)
+        for n_bins, (table, cuts) in self.tables.items():
+            if cuts is None:
+                chosen.keep_table(n_bins, table)
+            else:
+                chosen.keep_task_table(n_bins, table, cuts)
         return chosen
 
     @cached_property
@@ -126,10 +144,31 @@ class Study:
         """Algorithm 7 with this library and these dynamics, for single beliefs."""
         return ReuseAlgorithm(self.library, self.dynamics)
 
+    def algorithm_for(self, task: TaskLibrary | None) -> ReuseAlgorithm:
+        """Algorithm 7 with the library as one user's outcomes leave it, which it teaches."""
+        return self.algorithm if task is None else ReuseAlgorithm(task, self.dynamics)
+
+    def task(self, state: Mapping[str, NDArray[Any]] | None = None) -> TaskLibrary | None:
+        """The library as one user's outcomes leave it; None where models are exact or taken for the truth."""
+        task = self.library.for_task() if self.models == "uncertain" else None
+        if task is not None and state:
+            task.restore(state)
+        return task
+
+    def choice_for(self, state: Mapping[str, NDArray[Any]] | None) -> PolicyLibrary:
+        """The library of the active policies as one user's outcomes leave it."""
+        task = self.choice_of.for_task() if self.models == "uncertain" else None
+        if task is None:
+            return self.choice_of
+        if state:
+            task.restore_some(state, [self.library.index_of_policy(policy) for policy in self.active])
+        return task
+
     @cached_property
     def fingerprint(self) -> str:
         """Hash of the library and the dynamics: of all that turns the evidence of a user into a belief."""
-        return hashlib.sha256(self.library.to_bytes() + repr(self.change).encode()).hexdigest()[:32]
+        settings = repr(self.change) if self.models == "plug-in" else repr((self.change, self.models))
+        return hashlib.sha256(self.library.to_bytes() + settings.encode()).hexdigest()[:32]
 
     @cached_property
     def policy_names(self) -> dict[int, str]:
@@ -157,7 +196,7 @@ class Study:
 
         A larger share holds out the same users and more.
         """
-        return bool(stream(0, "reuse control", self.name, user).random() < self.control)
+        return _control_draw(self.name, user) < self.control
 
     def with_state(self, policy: str, state: str) -> "Study":
         """The study with another state of one policy."""
@@ -171,7 +210,8 @@ class Study:
         about = {
             "study": self.name,
             "bytes": len(packed),
-            "table": None if table is None else [self.selection.n_bins, *table.probs.shape],  # pyright: ignore
+            "table": None if table is None else [self.selection.n_bins, *table.table.probs.shape],  # pyright: ignore
+            "cuts": None if table is None or table.cuts is None else _packed_cuts(table.cuts).shape,
             "states": self.states,
             "contexts": {context: prior.tolist() for context, prior in self.contexts.items()},
             "control": self.control,
@@ -180,18 +220,22 @@ class Study:
             "rule_settings": asdict(self.selection),  # pyright: ignore[reportArgumentType]
             "explore": self.explore,
             "change": self.change,
+            "models": self.models,
             "fitted": self.fitted,
         }
         if table is not None:
-            values = np.concatenate([values, table.probs.astype(np.float64).ravel().view(np.int64)])
+            parts = [table.table.probs, *([] if table.cuts is None else [_packed_cuts(table.cuts)])]
+            values = np.concatenate([values, *(part.astype(np.float64).ravel().view(np.int64) for part in parts)])
         return Record(KIND, self.name, VERSION, "newest", np.arange(len(values)), values, about)
 
-    def _stored_table(self) -> SignalTable | None:
+    def _stored_table(self) -> StoredTable | None:
         """The signal table that the rule reads; None where it reads none, or one too large to store."""
         n_bins = getattr(self.selection, "n_bins", None)
         if n_bins is None or len(self.active) * self.library.n_types * n_bins > LARGEST_TABLE:
             return None
-        return self.choice_of.table(n_bins)
+        if self.models == "uncertain" and self.choice_of.for_task() is not None:
+            return StoredTable(*self.choice_of.task_table(n_bins))
+        return StoredTable(self.choice_of.table(n_bins), None)
 
     def keep(self, memory: Memory) -> None:
         """Make it the newest in memory."""
@@ -201,6 +245,13 @@ class Study:
             seq += 1
 
 
+@lru_cache(maxsize=10_000)
+def _control_draw(study: str, user: str) -> float:
+    """A number in [0, 1) that is the same for ever; users come again, so the last ones are stored."""
+    return stream(0, "reuse control", study, user).random()
+
+
+@lru_cache(maxsize=10_000)
 def policy_number(policy: str) -> int:
     """A number that stands for a policy's name in records, the same in every memory."""
     return int.from_bytes(hashlib.sha256(policy.encode()).digest()[:7], "big")
@@ -226,17 +277,35 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     packed = record.values[:length].astype("<i8").tobytes()[: about["bytes"]]
     try:
         library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
-        tables = _tables(record.values[length:], about.get("table"))
+        tables = _tables(record.values[length:], about.get("table"), about.get("cuts"))
     except InputError as error:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
     settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
-    # A study of an earlier Lifelore has no settings of its rule.
+    # A study of an earlier Lifelore has no settings of its rule, and took its models for the truth.
     rule = asdict(restored_rule(about["rule"], about.get("rule_settings", {})))  # pyright: ignore[reportArgumentType]
-    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables, rule_settings=rule)
+    models = about.get("models", "plug-in")
+    return Study(
+        name,
+        library,
+        dict(about["states"]),
+        contexts,
+        **settings,
+        models=models,
+        tables=tables,
+        rule_settings=rule,
+    )
 
 
-def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, SignalTable]:
+def _packed_cuts(cuts: list[Any]) -> NDArray[np.float64]:
+    """The bins of each policy as rows of one length, filled up with NaN."""
+    packed = np.full((len(cuts), max(len(row) for row in cuts)), np.nan)
+    for row, found in zip(packed, cuts, strict=True):
+        row[: len(found)] = found
+    return packed
+
+
+def _tables(cells: NDArray[np.int64], stored: list[int] | None, cuts: list[int] | None) -> dict[int, StoredTable]:
     """The signal tables behind the library; none in a study of an earlier Lifelore."""
     if stored is None:
         return {}
@@ -244,7 +313,11 @@ def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, Sig
     size = int(np.prod(shape))
     if len(cells) < size:
         raise InputError(f"the study's signal table must have {size} numbers, got {len(cells)}")
-    return {n_bins: SignalTable.restored(cells[:size].view(np.float64).reshape(shape))}
+    table = SignalTable.restored(cells[:size].view(np.float64).reshape(shape))
+    if cuts is None:
+        return {n_bins: StoredTable(table, None)}
+    rows = cells[size : size + int(np.prod(cuts))].view(np.float64).reshape(cuts)
+    return {n_bins: StoredTable(table, [row[~np.isnan(row)] for row in rows])}
 
 
 def study_names(memory: Memory) -> list[str]:

@@ -14,10 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, read_decisions
-from lifelore.agent.reuse.past import PastUser, read_index, read_past_user
+from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, decisions_in, read_decisions, slots_from
+from lifelore.agent.reuse.past import PastUser, index_name, read_past_user
 from lifelore.agent.reuse.study import Study
-from lifelore.agent.reuse.user_state import Checkpoint, UserState, from_bytes, learn
+from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
+from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.memory import Memory
 
 NAMED_TYPE = 0.99
@@ -32,12 +33,14 @@ class UserBelief:
     context : whose prior counts, or None
     token : of the cells in memory that the belief follows; None where there are none
     state : the belief
+    late : the decisions from the number on that `open_belief` was asked for
     """
 
     history: History
     context: str | None
     token: int | None
     state: UserState
+    late: tuple[Decision, ...] = ()
 
     @property
     def name(self) -> tuple[str, str, int]:
@@ -45,10 +48,14 @@ class UserBelief:
         return KIND, f"{self.history.study}/{self.history.key}", VERSION
 
     def find(self, memory: Memory, study: Study, number: int, attempt: int) -> "Found | None":
-        """A decision as memory has it; None where there is none."""
-        start = self.state.before(number)
-        decisions = read_decisions(memory, study, self.history.key, number if start is None else start.number)
-        found = [one for one in decisions if (one.number, one.attempt) == (number, attempt)]
+        """A decision as memory has it; None where there is none. `late` must begin with its number."""
+        found = [one for one in self.late if (one.number, one.attempt) == (number, attempt)]
+        if not found:
+            return None
+        start, decisions = self.state.before(number), self.late
+        if start is not None and start.number < number:
+            decisions = read_decisions(memory, study, self.history.key, start.number)
+            found = [one for one in decisions if (one.number, one.attempt) == (number, attempt)]
         return Found(found[0], start, decisions) if found else None
 
 
@@ -72,8 +79,15 @@ class Found(NamedTuple):
         return state.after(study, ended, self.start)
 
 
-def open_belief(memory: Memory, study: Study, key: str, user: str = "", context: str | None = None) -> UserBelief:
-    """The belief about a user.
+def open_belief(
+    memory: Memory,
+    study: Study,
+    key: str,
+    user: str = "",
+    context: str | None = None,
+    number: int | None = None,
+) -> UserBelief:
+    """The belief about a user, by a single statement where the stored state still holds.
 
     Parameters
     ----------
@@ -81,13 +95,17 @@ def open_belief(memory: Memory, study: Study, key: str, user: str = "", context:
         Name of the user; that in memory counts where memory knows the user.
     context : str, optional
         Context of the user; by default the one in memory.
+    number : int, optional
+        Read the decisions from this number on too.
     """
-    stored = memory.recall_state(KIND, f"{study.name}/{key}", VERSION)
+    names = [(KIND, f"{study.name}/{key}", VERSION), index_name(study.name)]
+    slots = None if number is None else slots_from(number)
+    stored, past_index = memory.recall_states(names, slots=slots)
     about = stored.about if stored else {"user": user}
     context = context or about.get("context")
     history = History(study.name, key, about["user"], context, ())
     state = from_bytes(stored.content) if stored else None
-    index = read_index(memory, study.name)
+    index = past_index.about if past_index else {}
     origin = {"study": study.fingerprint, "past": index.get("token"), "context": context}
     if state is None or state.origin != origin:
         past = read_past_user(memory, study.name, index, key)
@@ -96,23 +114,26 @@ def open_belief(memory: Memory, study: Study, key: str, user: str = "", context:
         if state is None or state.basis != basis:
             state = replayed(study, context, past, read_decisions(memory, study, key) if stored else ())
         state = replace(state, origin=origin, context=context)
-    return UserBelief(history, state.context, stored.token if stored else None, state)
+    late = decisions_in(study, stored.record) if stored else ()
+    return UserBelief(history, state.context, stored.token if stored else None, state, late)
 
 
 def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    log_belief, surprise = study.algorithm.start(prior_of(study, context, past)), 0.0
+    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past)), 0.0)
+    belief = WorkingBelief(study, prior)
     for policy, outcome in past.outcomes:
-        surprise += learn(study, log_belief, policy, outcome)
-    start = Checkpoint(0, log_belief, surprise)
+        belief.learn(policy, outcome)
+    start = belief.checkpoint(0)
     state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
     return state.after(study, decisions, start)
 
 
-def last_belief(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
-    """The belief after all decisions of a history, (n_types,)."""
-    state = replayed(study, history.context or past.context, past, history.decisions)
-    return study.algorithm.belief(state.head.log_belief)
+def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
+    """Expected outcome of each policy of the library after all decisions of a history, (n_policies,)."""
+    head = replayed(study, history.context or past.context, past, history.decisions).head
+    known = study.task(head.task) or study.library
+    return expected_utility(study.algorithm.belief(head.log_belief), known.performance.mean)
 
 
 def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:

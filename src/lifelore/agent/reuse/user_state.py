@@ -13,8 +13,9 @@ bits.
 import json
 import struct
 import zlib
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
     from lifelore.agent.reuse.study import Study
 
-FORMAT = 1
+FORMAT = 2
 _HEAD = struct.Struct("<II")
 
 
@@ -36,11 +37,13 @@ class Checkpoint(NamedTuple):
     number : of the decision
     log_belief : (n_types,) float64, never changed in place
     surprise : of the outcomes before it, in nats
+    task : what the outcomes say of the user's own parameters (`TaskLibrary.state`); empty where models are exact
     """
 
     number: int
     log_belief: NDArray[np.float64]
     surprise: float
+    task: Mapping[str, NDArray[Any]] = MappingProxyType({})
 
 
 @dataclass(frozen=True, eq=False)
@@ -89,15 +92,19 @@ class UserState:
         decisions = list(decisions)
         end = decisions[-1].number + 1 if decisions else start.number
         points = [point for point in self.checkpoints if point.number < start.number]
-        log_belief, surprise = start.log_belief.copy(), start.surprise
+        belief = WorkingBelief(study, start)
         for decision in decisions:
             if decision.number == start.number or _lasts(decision.number, end):
-                points.append(Checkpoint(decision.number, log_belief.copy(), surprise))
-            surprise += learn(study, log_belief, decision.policy, decision.outcome)
-        points.append(Checkpoint(end, log_belief, surprise))
+                points.append(belief.checkpoint(decision.number))
+            belief.learn(decision.policy, decision.outcome)
+        points.append(belief.checkpoint(end))
         still_open = [decision.number for decision in decisions if decision.outcome is None]
         first_open = self.first_open if self.first_open < start.number else (still_open or [end])[0]
         return replace(self, first_open=first_open, checkpoints=_thinned(points, first_open))
+
+    def _task_arrays(self) -> list[tuple[tuple[int, str], NDArray[Any]]]:
+        points = enumerate(self.checkpoints)
+        return [((place, name), array) for place, point in points for name, array in point.task.items()]
 
     def to_bytes(self) -> bytes:
         """The state as bytes; `from_bytes` restores every bit."""
@@ -108,12 +115,33 @@ class UserState:
             "context": self.context,
             "open": self.first_open,
         }
-        text = json.dumps(header | {"n": len(self.checkpoints)}).encode()
+        tasks = [[number, name, array.dtype.str, array.shape] for (number, name), array in self._task_arrays()]
+        text = json.dumps(
+            header
+            | {
+                "n": len(self.checkpoints),
+                "types": len(self.head.log_belief),
+                "tasks": tasks,
+            }
+        ).encode()
         numbers = np.array([point.number for point in self.checkpoints], "<i8")
         surprise = np.array([point.surprise for point in self.checkpoints], "<f8")
         beliefs = np.array([point.log_belief for point in self.checkpoints], "<f8")
         body = text + numbers.tobytes() + surprise.tobytes() + beliefs.tobytes()
+        body += b"".join(array.astype(array.dtype.newbyteorder("<")).tobytes() for _, array in self._task_arrays())
         return _HEAD.pack(len(text), zlib.crc32(body)) + body
+
+
+def _tasks_from(body: bytes, offset: int, listed: list[Any], n: int) -> list[dict[str, NDArray[Any]]]:
+    """The task's arrays of each of n checkpoints."""
+    found: list[dict[str, NDArray[Any]]] = [{} for _ in range(n)]
+    for place, name, kind, shape in listed:
+        dtype, size = np.dtype(kind), int(np.prod(shape, dtype=np.int64))
+        found[place][name] = (
+            np.frombuffer(body, dtype, size, offset).reshape(shape).astype(dtype.newbyteorder("="))
+        )
+        offset += size * dtype.itemsize
+    return found
 
 
 def from_bytes(content: bytes | None) -> UserState | None:
@@ -130,22 +158,44 @@ def from_bytes(content: bytes | None) -> UserState | None:
     n = header["n"]
     numbers = np.frombuffer(body, "<i8", n, length).tolist()
     surprise = np.frombuffer(body, "<f8", n, length + 8 * n).tolist()
-    beliefs = np.frombuffer(body, "<f8", -1, length + 16 * n).reshape(n, -1).astype(np.float64)
-    points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, strict=True))
+    n_types, offset = header["types"], length + 16 * n
+    beliefs = np.frombuffer(body, "<f8", n * n_types, offset).reshape(n, n_types).astype(np.float64)
+    tasks = _tasks_from(body, offset + 8 * n * n_types, header["tasks"], n)
+    points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, tasks, strict=True))
     return UserState(header["basis"], header["origin"], header["context"], header["open"], points)
 
 
-def learn(study: "Study", log_belief: NDArray[np.float64], policy: str | None, outcome: float | None) -> float:
-    """Update a log belief (n_types,) in place by an outcome of a policy; the surprise in nats.
+class WorkingBelief:
+    """A belief that takes in decisions one after the other.
 
-    Without an outcome, or with a policy that the library does not know, there is no evidence. The user's type may
-    change all the same.
+    Parameters
+    ----------
+    study : Study
+    start : Checkpoint
+        The belief before the first of them.
     """
-    if outcome is None or policy not in study.library.policies:
-        study.algorithm.step_row(log_belief)
-        return 0.0
-    index = study.library.index_of_policy(policy)
-    return surprise_of(study.algorithm.update_row(log_belief, index, outcome)[1])
+
+    def __init__(self, study: "Study", start: Checkpoint) -> None:
+        self._study, self._log_belief, self._surprise = study, start.log_belief.copy(), start.surprise
+        self._task = study.task(start.task)
+        self._algorithm = study.algorithm_for(self._task)
+
+    def learn(self, policy: str | None, outcome: float | None) -> None:
+        """Learn from an outcome of a policy.
+
+        Without an outcome, or with a policy that the library does not know, there is no evidence. The user's type
+        may change all the same.
+        """
+        if outcome is None or policy not in self._study.library.policies:
+            self._algorithm.step_row(self._log_belief)
+            return
+        index = self._study.library.index_of_policy(policy)
+        self._surprise += surprise_of(self._algorithm.update_row(self._log_belief, index, outcome)[1])
+
+    def checkpoint(self, number: int) -> Checkpoint:
+        """The belief as it is now, before the decision of that number."""
+        task = {} if self._task is None else self._task.state()
+        return Checkpoint(number, self._log_belief.copy(), self._surprise, task)
 
 
 def _lasts(number: int, end: int) -> bool:

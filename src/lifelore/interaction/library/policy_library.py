@@ -180,6 +180,11 @@ class PolicyLibrary:
         """The number of a type, by name or number; NotFoundError where there is no such type."""
         return index_of(type_, self.types, "type")
 
+    @property
+    def has_table(self) -> bool:
+        """Whether `table` can list the signals, or bin them."""
+        return all(hasattr(signal, "table") for signal in (self.signal, *getattr(self.signal, "factors", ())))
+
     def table(self, n_bins: int = 8) -> SignalTable:
         """The table of signals from a finite alphabet, computed once for each `n_bins`; see `forget_tables`.
 
@@ -197,6 +202,10 @@ class PolicyLibrary:
                 )
             self._tables[n_bins] = make(n_bins)
         return self._tables[n_bins]
+
+    def keep_task_table(self, n_bins: int, table: SignalTable, cuts: list[Any]) -> None:
+        """Store what `task_table(n_bins)` of this library computed earlier, so that it is not computed again."""
+        self._task_tables[n_bins] = table, cuts
 
     def keep_table(self, n_bins: int, table: SignalTable) -> None:
         """Store a table that `table(n_bins)` of this library computed earlier, so that it is not computed again.
@@ -242,9 +251,7 @@ class PolicyLibrary:
             cuts = task.evidence.cuts(n_bins)
             width = max(len(found) for found in cuts) + 1
             rows = [task.evidence.table_rows(policy, found, width) for policy, found in enumerate(cuts)]
-            widest = max(row.shape[1] for row in rows)
-            padded = [np.pad(row, ((0, 0), (0, widest - row.shape[1]))) for row in rows]
-            self._task_tables[n_bins] = SignalTable(np.stack(padded)), cuts
+            self._task_tables[n_bins] = SignalTable(np.stack(rows)), cuts
         return self._task_tables[n_bins]
 
     def with_type(

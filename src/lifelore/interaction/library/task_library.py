@@ -6,6 +6,7 @@ numbers of each policy that was tried describe. With exact models there is nothi
 task needs no library of its own.
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -94,7 +95,18 @@ class TaskLibrary(PolicyLibrary):
             for key, array in model.state().items()
         }
 
-    def restore(self, state: dict[str, NDArray[Any]]) -> None:
+    def restore_some(self, state: Mapping[str, NDArray[Any]], policies: list[int]) -> None:
+        """Take over the part of a `state` that is of `policies`, this library's 0, 1, … in that order."""
+        place = {policy: number for number, policy in enumerate(policies)}
+        own = dict(state)
+        for name in self._models():
+            tried = state[f"{name}.policies"].tolist()
+            here = [row for row, policy in enumerate(tried) if policy in place]
+            own[f"{name}.policies"] = np.array([place[tried[row]] for row in here], np.int64)
+            own[f"{name}.shown"] = state[f"{name}.shown"][here]
+        self.restore(own)
+
+    def restore(self, state: Mapping[str, NDArray[Any]]) -> None:
         """Take over a `state`; the library then has the same bits.
 
         Raises

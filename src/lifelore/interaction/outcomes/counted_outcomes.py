@@ -78,12 +78,20 @@ class CountedOutcomes:
         cell = int(self._cells(np.array([value], np.float64))[0])
         return None if cell < 0 else cell
 
+    def cells_of(self, values: Array) -> NDArray[np.int64]:
+        """The cells of outcomes (n,), -1 where an outcome has none."""
+        return self._cells(values)
+
     @property
     def spread(self) -> Spread:
         """How much the tasks of a type differ; estimated at the first call where it is not given."""
         if self._spread is None:
             self._spread = Spread.known(0.0) if self.exact else spread_of_counts(self.counts, self.pseudo_count)
         return self._spread
+
+    @spread.setter
+    def spread(self, spread: Spread) -> None:
+        self._spread = spread
 
     def for_task(self) -> TaskCounts | None:
         """A model of one task, which its own outcomes change; None where all is known exactly."""

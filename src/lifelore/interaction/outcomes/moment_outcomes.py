@@ -87,6 +87,10 @@ class MomentOutcomes:
             self.moments.spread = spread_of(self.moments)
         return self.moments.spread
 
+    @spread.setter
+    def spread(self, spread: Spread) -> None:
+        self.moments.spread = spread
+
     def for_task(self) -> TaskNormals | None:
         """A model of one task, which its own outcomes change; None where all is known exactly."""
         if np.isinf(self.moments.count).all() and not self.spread.values.any():

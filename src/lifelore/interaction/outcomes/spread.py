@@ -24,6 +24,8 @@ SHARES = np.array([0.0, 1 / 16, 1 / 4, 1.0])
 """Spreads that a task holds possible, as shares of the largest."""
 WEIGHTS = np.array([0.5, 1 / 6, 1 / 6, 1 / 6])
 """Their probabilities before the task: half for a task that is just like its type."""
+LEAST_FREEDOM = 30
+"""Least comparisons between tasks, and within them, that an analysis of variance needs."""
 GRID = np.concatenate([[0.0], np.geomspace(1e-3, 1e3, 25)])
 """Spreads among which the likeliest is looked for."""
 NUMBERS = 1 << 21
@@ -59,6 +61,38 @@ class Spread(NamedTuple):
         if (found[0] < 0).any() or (found[1] <= 0).any() or not np.isclose(found[1].sum(), 1):
             raise InputError("a spread's values must be at least 0 and its weights positive, with sum 1")
         return cls(found[0], found[1])
+
+
+def spread_between(pairs: NDArray[np.int64], tasks: NDArray[np.int64], values: Array) -> Spread | None:
+    """The spread by the variance of outcomes between tasks of the same pair (one-way analysis of variance).
+
+    Parameters
+    ----------
+    pairs, tasks : (n,) int
+        Number of the pair of type and policy, and of the task, of each outcome.
+    values : (n,) float
+
+    Returns
+    -------
+    Spread or None
+        None where fewer than `LEAST_FREEDOM` comparisons between tasks, or within a task, are possible.
+    """
+    groups, of_group, sizes = np.unique(np.stack([pairs, tasks]), axis=1, return_inverse=True, return_counts=True)
+    of_group = of_group.ravel()
+    _, of_pair, pair_groups = np.unique(groups[0], return_inverse=True, return_counts=True)
+    between, within = (pair_groups - 1).sum(), len(values) - len(sizes)
+    if min(between, within) < LEAST_FREEDOM:
+        return None
+    totals = np.bincount(of_pair, sizes)
+    group_means = np.bincount(of_group, values) / sizes
+    pair_means = np.bincount(of_pair, sizes * group_means) / totals
+    noise = ((values - group_means[of_group]) ** 2).sum() / within
+    apart = (sizes * (group_means - pair_means[of_pair]) ** 2).sum() / between
+    if not noise > 0:
+        return None
+    # Mean size of a group where groups differ in size, as the analysis of variance counts it.
+    size = (len(values) - (np.bincount(of_pair, sizes**2) / totals).sum()) / between
+    return Spread.known(max(0.0, (apart / noise - 1) / size))
 
 
 def held_out(n_types: int, numbers: int) -> NDArray[np.int64]:

@@ -171,7 +171,8 @@ class TaskCounts(TaskOutcomes):
 
     def table_rows(self, policy: int, cuts: NDArray[np.int64], n_bins: int) -> Array:
         """P(bin | type) of the next outcome of a policy, (n_types, n_bins)."""
-        return joined_to(self._probs()[policy], cuts)
+        rows = joined_to(self._probs()[policy], np.asarray(cuts, np.int64))
+        return np.pad(rows, ((0, 0), (0, max(0, n_bins - rows.shape[1]))))
 
     def _probs(self) -> Array:
         return self.expected.counts / self.expected.totals[:, :, None]

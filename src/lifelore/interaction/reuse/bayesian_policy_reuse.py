@@ -28,7 +28,7 @@ from lifelore.interaction.reuse.explanation import (
     two_best,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
-from lifelore.interaction.selection import ExpectedImprovement, SelectionRule
+from lifelore.interaction.selection import SelectionRule, default_rule
 
 Array = NDArray[np.float64]
 Models = Literal["uncertain", "plug-in"]
@@ -43,7 +43,7 @@ class BayesianPolicyReuse:
         Not copied. With plug-in models the agent uses what the library's models learn in place; with uncertain
         models it reads them once, at its start.
     rule : SelectionRule, optional
-        `ExpectedImprovement` by default.
+        `InformationDirected` by default, `ExpectedImprovement` where the signals have no table.
     prior : (n_types,) float, optional
         At least 0, sums to 1 to 1e-9; the library's prior by default.
     dynamics : TypeDynamics, optional
@@ -86,7 +86,7 @@ class BayesianPolicyReuse:
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
         self.library, self.models = library, models
         self.task: TaskLibrary | None = library.for_task() if models == "uncertain" else None
-        self.rule: SelectionRule = rule or ExpectedImprovement(of="outcome")
+        self.rule: SelectionRule = rule or default_rule(library)
         self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0

@@ -28,6 +28,7 @@ from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.outcomes.batch_likelihood import batch_likelihood
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 from lifelore.interaction.reuse.task_step import learn
+from lifelore.interaction.reuse.user_outcomes import UserOutcomes
 from lifelore.interaction.selection import BeliefSampling, Greedy, SelectionRule
 from lifelore.interaction.selection.choice import choose, tied_shares
 
@@ -175,7 +176,8 @@ class ReuseAlgorithm:
         users: Numbers,
         policies: Numbers,
         signals: Any,
-        select: Callable[[NDArray[Any]], Numbers] | None = None,
+        select: Callable[[NDArray[Any], slice], Numbers] | None = None,
+        outcomes: UserOutcomes | None = None,
     ) -> tuple[Array, Numbers]:
         """Learn from a signal for each of `users`, in blocks and in order, and select in the same pass.
 
@@ -188,7 +190,10 @@ class ReuseAlgorithm:
         signals : sequence of length k
             Numbers for returns, category numbers for categories.
         select : callable, optional
-            Beliefs of a block of users after the update, (m, n_types), to the policies to run next, (m,).
+            Beliefs of a block of users after the update, (m, n_types), and the users' places in `users` to the
+            policies to run next, (m,).
+        outcomes : UserOutcomes, optional
+            What the users have shown: likelihoods are then given that, and the signals are added to it.
 
         Returns
         -------
@@ -202,12 +207,14 @@ class ReuseAlgorithm:
         InputError
             The model cannot have made a signal, or gave NaN. Blocks before that signal are updated.
         """
-        signals = self._likelihood.checked(signals)
+        signals = (self._likelihood if outcomes is None else outcomes.law).checked(signals)
         if not len(users) == len(policies) == len(signals):
             raise InputError(
                 f"users, policies and signals must be equally many, got {len(users)}, {len(policies)} and "
                 f"{len(signals)}"
             )
+        if outcomes is not None and self.dynamics.kind == "hazard" and self.dynamics.rate:
+            return self._update_changing(log_beliefs, users, policies, signals, select, outcomes)
         if self._changing and len(np.unique(users)) < len(users):
             raise InputError("users must be distinct where types change between episodes; update them in turn")
         log_evidence, chosen = np.empty(len(users)), np.empty(len(users) if select else 0, np.int64)
@@ -215,7 +222,10 @@ class ReuseAlgorithm:
         linear = np.empty_like(work, np.float32) if self.dtype == "f4" else None
         for at, own in blocks(users):
             here = len(own)
-            self._likelihood.write(policies[at], signals[at], work[:here])
+            if outcomes is None:
+                self._likelihood.write(policies[at], signals[at], work[:here])
+            else:
+                outcomes.write(own, policies[at], signals[at], work[:here])
             if linear is None:
                 (_loaded or _load()).bayes_users(log_beliefs, own, work[:here], log_evidence[at])
             else:
@@ -224,7 +234,33 @@ class ReuseAlgorithm:
                 log_beliefs[own] = self.dynamics.step(log_beliefs[own].astype(np.float64))
             if select is not None:
                 known = linear is not None and not self._changing
-                chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own))  # pyright: ignore
+                chosen[at] = select(linear[:here] if known else self.belief(log_beliefs, own), at)  # pyright: ignore
+        return log_evidence, chosen
+
+    def _update_changing(
+        self,
+        log_beliefs: NDArray[Any],
+        users: Numbers,
+        policies: Numbers,
+        signals: Array,
+        select: Callable[[NDArray[Any], slice], Numbers] | None,
+        outcomes: UserOutcomes,
+    ) -> tuple[Array, Numbers]:
+        """`update` of users whose types change by a hazard and whose models are uncertain."""
+        log_evidence, chosen = np.empty(len(users)), np.empty(len(users) if select else 0, np.int64)
+        shown, keeps = np.empty((min(BLOCK, len(users)), self.library.n_types)), np.empty(BLOCK)
+        new, rate = np.empty_like(shown), self.dynamics.rate
+        with np.errstate(divide="ignore"):
+            log_stay, log_anew = float(np.log1p(-rate)), np.log(rate) + np.log(self.dynamics.law)  # pyright: ignore
+        for at, own in distinct_blocks(users):
+            n = len(own)
+            outcomes.predict(own, policies[at], signals[at], shown[:n], new[:n])
+            _user_step_kernels().changing_users(
+                log_beliefs, own, shown[:n], new[:n], log_stay, log_anew, log_evidence[at], keeps[:n]
+            )
+            outcomes.add(own, policies[at], signals[at], keeps[:n])
+            if select is not None:
+                chosen[at] = select(self.belief(log_beliefs, own), at)
         return log_evidence, chosen
 
     def update_row(
@@ -345,6 +381,21 @@ def blocks(users: Numbers) -> Iterator[tuple[slice, Numbers]]:
         yield at, users[at]
 
 
+def distinct_blocks(users: Numbers) -> Iterator[tuple[slice, Numbers]]:
+    """`blocks` in none of which a user comes twice; a user's second signal needs what the first has changed."""
+    for at, own in blocks(users):
+        if len(np.unique(own)) == len(own):
+            yield at, own
+            continue
+        start, inside = at.start, set[int]()
+        for place, user in enumerate(own.tolist(), at.start):
+            if user in inside:
+                yield slice(start, place), users[start:place]
+                start, inside = place, set()
+            inside.add(user)
+        yield slice(start, at.stop), users[start : at.stop]
+
+
 # Modules of kernels are imported at their first use: the import starts Numba.
 
 
@@ -365,6 +416,13 @@ def _user_kernels() -> ModuleType:
     from lifelore.interaction.reuse import user_kernels
 
     return user_kernels
+
+
+@cache
+def _user_step_kernels() -> ModuleType:
+    from lifelore.interaction.reuse import user_step_kernels
+
+    return user_step_kernels
 
 
 @cache

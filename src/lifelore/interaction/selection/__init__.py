@@ -10,6 +10,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from lifelore.core.errors import NotFoundError
+from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.belief_entropy import BeliefEntropy
 from lifelore.interaction.selection.belief_sampling import BeliefSampling
 from lifelore.interaction.selection.choice import choose, tied_shares
@@ -36,6 +37,10 @@ RULES: dict[str, type] = {
 }
 """Every rule by the name that sessions and the command line use."""
 
+DEFAULT_RULE = "information-directed"
+"""Name of the rule where none is given, for agents, many users and `lifelore reuse`; claim C4.17 decides it."""
+WITHOUT_TABLE = "expected-improvement"
+"""Name of the rule in its place where the signals have no table."""
 BEFORE: dict[str, dict[str, Any]] = {
     "expected-improvement": {"of": "outcome"},
     "knowledge-gradient": {"candidates": "responses"},
@@ -43,9 +48,9 @@ BEFORE: dict[str, dict[str, Any]] = {
 """Settings that rules had before they could be chosen or before their defaults changed, for files without them."""
 
 __all__ = [
-    "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
+    "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
     "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule", "choose",
-    "restored_rule", "rule_named", "tied_shares",
+    "default_rule", "restored_rule", "rule_named", "tied_shares",
 ]  # fmt: skip
 
 
@@ -60,6 +65,17 @@ def rule_named(name: str, **settings) -> SelectionRule:
     if name not in RULES:
         raise NotFoundError(f"rule must be one of {', '.join(RULES)}, got {name!r}")
     return RULES[name](**settings)
+
+
+def default_rule(library: PolicyLibrary) -> SelectionRule:
+    """The rule for a library where none is given: `DEFAULT_RULE`, or `WITHOUT_TABLE` where signals have no table.
+
+    Examples
+    --------
+    >>> default_rule(PolicyLibrary.from_means([[10.0, 6.0]], 1.0))
+    InformationDirected(mass=0.999, n_bins=8)
+    """
+    return rule_named(DEFAULT_RULE if library.has_table else WITHOUT_TABLE)
 
 
 def restored_rule(name: str, settings: Mapping[str, Any]) -> SelectionRule:

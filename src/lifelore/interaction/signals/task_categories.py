@@ -69,11 +69,14 @@ class TaskCategories(SpreadWeights):
 
     def table_rows(self, policy: int, cuts: NDArray[np.int64], n_bins: int) -> Array:
         """P(bin | type) of the next signal of a policy, (n_types, n_bins)."""
-        return joined_to(self._probs(policy), cuts)
+        rows = joined_to(self._probs(policy), np.asarray(cuts, np.int64))
+        return np.pad(rows, ((0, 0), (0, max(0, n_bins - rows.shape[1]))))
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """All categories where they are at most `n_bins`; otherwise neighbours are joined."""
-        rows = [self.table_rows(policy, cuts, n_bins) for policy, cuts in enumerate(self.cuts(n_bins))]
+        cuts = self.cuts(n_bins)
+        width = max(len(found) for found in cuts)
+        rows = [self.table_rows(policy, found, width) for policy, found in enumerate(cuts)]
         return SignalTable(np.stack(rows))
 
     def state(self) -> dict[str, NDArray[Any]]:

@@ -25,6 +25,7 @@ from lifelore.experiments.bench.interaction.reuse_peers import (
     installed,
     mabwiser_ucb1,
 )
+from lifelore.experiments.bench.interaction.reuse_users import bench_users
 from lifelore.experiments.bench.rounds import Rates, at_least, at_most, interleaved, paired_ratio, row
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
@@ -80,7 +81,7 @@ def bench_reuse(repeats: int, progress: Progress) -> dict:
 
     rows: list[dict[str, Any]] = []
     goals: list[dict[str, Any]] = []
-    parts = (_beside_loops, _uncertain, _beside_peers, _growth, _screened, _many_users)
+    parts = (_beside_loops, _uncertain, _beside_peers, _growth, _screened, _many_users, bench_users)
     with threadpool_limits(1):
         for number, part in enumerate(parts):
             done = 0
@@ -356,7 +357,7 @@ def _screened(repeats: int, after: Callable[[str], None]) -> Result:
 def _many_users(repeats: int, after: Callable[[str], None]) -> Result:
     """Users in random order: learn from the last outcome and select the next policy, in one pass."""
     case = Reserve(SIGNALS)
-    users = UserBeliefs(case.library, USERS, "f4")
+    users = UserBeliefs(case.library, USERS, "f4", models="plug-in")
     random = stream(0, "bench", "reuse", "users")
     contenders = {name: _serving(case, users, name, random) for name in ("sampling", "greedy")}
     if installed(MABWISER):

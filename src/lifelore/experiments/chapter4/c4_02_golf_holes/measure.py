@@ -7,7 +7,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter4.c4_02_golf_holes.run import GREEDY
 from lifelore.experiments.chapter4.golf.rounds import WOOD
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
 from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -22,7 +22,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     single, best = (table.values(key, part="clubs")[0] for key in ("club", "best"))
     single = single[:, single.mean(axis=0).argmin()]
     measured = {}
-    for model in (LEARNT, EXACT):
+    for model in (LEARNT, EXACT, UNCERTAIN):
         greedy = {"model": model, "rule": GREEDY, "first": None}
         error, entropy = (table.values(key, **greedy)[0] for key in ("error", "entropy"))
         wood = table.values("error", **{**greedy, "first": WOOD})[0]

@@ -8,8 +8,8 @@ from lifelore.core.errors import InputError
 from lifelore.domains.golf.golf import CLUBS, Golf
 from lifelore.experiments.chapter4.golf import rounds
 from lifelore.experiments.chapter4.golf.rounds import WOOD
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
-from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
+from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN, STANDARD
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
 
 GREEDY = "greedy"
@@ -24,6 +24,7 @@ def cells(settings: Mapping) -> list[dict]:
     """Each rule on each kind of model, greedy also with the 3-wood first, single clubs, and the program."""
     ways = [(m, name, None) for m in (LEARNT, EXACT) for name in RULES_SHOWN]
     ways += [(m, GREEDY, WOOD) for m in (LEARNT, EXACT)]
+    ways += [(UNCERTAIN, name, None) for name in STANDARD] + [(UNCERTAIN, GREEDY, WOOD)]
     played = [{"part": "rule", "model": model, "rule": name, "first": first} for model, name, first in ways]
     return [*played, {"part": "clubs"}, {"part": "program"}]
 
@@ -40,7 +41,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 def _play_rule(settings: Mapping, cell: Mapping, seed: int, group: int) -> dict:
     distance, luck = rounds.draw_group(settings, seed, group)
     library = rounds.library_of(settings, cell["model"], seed, group)
-    found = rounds.play_holes(RULES_SHOWN[cell["rule"]], library, distance, luck, seed + group, cell["first"])
+    rule = RULES_SHOWN[cell["rule"]]
+    found = rounds.play_holes(rule, library, distance, luck, seed + group, cell["first"], cell["model"])
     return {
         "error": np.abs(found.error).mean(axis=0).round(5).tolist(),
         "entropy": found.entropy.mean(axis=0).round(6).tolist(),

@@ -7,7 +7,7 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter4.c4_03_telephone_signals.run import DEFAULT_READING, SIGNALS
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, grouped_mean
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, grouped_mean
 from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -29,7 +29,10 @@ def orders(sums: Mapping[str, np.ndarray]) -> dict[str, Estimate]:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    table = ResultsTable(results, ("reading", "models", "samples", "signal"))
+    doubting = [result for result in results if result["model"] == UNCERTAIN]
+    table = ResultsTable(
+        [r for r in results if r["model"] != UNCERTAIN], ("reading", "models", "samples", "signal")
+    )
     few, n, call = settings["samples"], settings["default_models"], settings["by_call"]
 
     def order(models: int, samples: int | None, reading: str = DEFAULT_READING) -> dict[str, Estimate]:
@@ -46,6 +49,12 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             measured[f"zero_from_call_{call}_{name}"] = exact_share(ended <= call)
             measured[f"zero_at_call_{call}_{name}"] = exact_share(np.arange(ended.size) < row["free"])
             measured[f"zero_at_end_{name}"] = exact_share(ended <= settings["calls"])
+    sums = {}
+    for row in doubting:
+        ended, name = np.array(row["ended"]), f"{SHORT[row['signal']]}_{UNCERTAIN}"
+        measured[f"zero_at_end_{name}"] = exact_share(ended <= settings["calls"])
+        sums[row["signal"]] = np.array(row["sums"]).reshape(-1, settings["users"])
+    measured |= {f"{name}_{UNCERTAIN}": number for name, number in orders(sums).items()}
     grid = [order(models, samples) for models in settings["models"] for samples in (few, None)]
     measured["grid_order_of_means"] = share_of(
         [all(number.value > 0 for number in found.values()) for found in grid]

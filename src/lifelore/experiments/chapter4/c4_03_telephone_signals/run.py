@@ -15,7 +15,15 @@ from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.telephone import telephone
 from lifelore.domains.telephone.telephone import PATHS, REWARDS_OF_PATH, UTILITIES, UTILITY_OF_PATH, Telephone
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, SETTLED, converged_after, play_rule
+from lifelore.experiments.chapter4.reuse.many_tasks import (
+    EXACT,
+    LEARNT,
+    SETTLED,
+    UNCERTAIN,
+    converged_after,
+    play_doubting,
+    play_rule,
+)
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.reuse.regret import library_regret
@@ -40,11 +48,14 @@ def check(settings: Mapping) -> None:
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every signal, by number of models and kind of model under reading A, and for the default number under B."""
+    """Every signal, by number of models and kind of model under reading A, and for the default number under B.
+
+    A service that doubts its models has fewer groups of callers, and sees the utility beside the signal.
+    """
     few, many, default = settings["samples"], settings["more_samples"], settings["default_models"]
     kinds = ((LEARNT, few), (EXACT, None))
     ways = [(DEFAULT_READING, n, *kind) for n in settings["models"] for kind in kinds]
-    ways += [(DEFAULT_READING, default, LEARNT, many)]
+    ways += [(DEFAULT_READING, default, LEARNT, many), (DEFAULT_READING, default, UNCERTAIN, few)]
     ways += [("B", default, *kind) for kind in kinds if "B" in settings["readings"]]
     return [
         {"reading": reading, "models": n, "model": model, "samples": samples, "signal": signal}
@@ -64,6 +75,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     luck = stream(seed, "callers", cell["models"])
     types = luck.integers(phone.n_models, size=(n_groups, settings["users"]))
     uniforms = luck.random((*types.shape, n_calls))
+    if cell["model"] == UNCERTAIN:
+        n_groups = min(n_groups, settings["doubting_groups"])
+        types, uniforms = types[:n_groups], uniforms[:n_groups]
     if cell["model"] == EXACT:
         libraries = [exact_library(phone, signal)]
         types, uniforms = types.reshape(1, -1), uniforms.reshape(1, -1, n_calls)
@@ -72,9 +86,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         known = (cell["samples"], settings["pseudo_count"])
         libraries = [learnt_library(phone, signal, stream(seed, *name, g), *known) for g in range(n_groups)]
     parts = [
-        _serve(phone, library, types[group], uniforms[group], signal, stream(seed, "service", group))
+        _serve(
+            phone, library, types[group], uniforms[group], signal, (seed, "service", group),
+            cell["model"] == UNCERTAIN,
+        )
         for group, library in enumerate(libraries)
-    ]
+    ]  # fmt: skip
     regret = np.concatenate(parts)
     return {
         **cell,
@@ -106,12 +123,21 @@ def learnt_library(
     )
 
 
-def _serve(phone: Telephone, library: PolicyLibrary, types, uniforms, signal: str, generator) -> NDArray:
+def _serve(
+    phone: Telephone, library: PolicyLibrary, types, uniforms, signal: str, stream_of: tuple, doubting: bool
+) -> NDArray:
     """Regret of each call, (n_users, n_calls)."""
-    signal_of = np.array(SIGNAL_OF_PATH[signal])
+    signal_of, paid = np.array(SIGNAL_OF_PATH[signal]), np.array(UTILITIES)[np.array(UTILITY_OF_PATH)]
 
     def signals(call: int, models: NDArray[np.int64]) -> NDArray[np.int64]:
         return signal_of[phone.path_of(uniforms[:, call], types, models)]
 
-    played = play_rule(BeliefSampling(), library, signals, len(types), uniforms.shape[1], generator)
+    def outcomes(call: int, models: NDArray[np.int64]) -> NDArray[np.float64]:
+        return paid[phone.path_of(uniforms[:, call], types, models)]
+
+    rule, size = BeliefSampling(), (len(types), uniforms.shape[1])
+    if doubting:
+        played = play_doubting(rule, library, signals, *size, stream_of, outcomes=outcomes)
+    else:
+        played = play_rule(rule, library, signals, *size, stream(*stream_of))
     return library_regret(phone.mean[types], played.policies)

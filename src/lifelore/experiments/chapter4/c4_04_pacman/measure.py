@@ -9,6 +9,7 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.domains.pacman.pacman import STRATEGIES
 from lifelore.experiments.chapter4.c4_04_pacman.run import (
     BPR,
+    BPR_DOUBTING,
     BPR_MORE,
     DISCOUNTED,
     LEARNERS,
@@ -27,13 +28,16 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     def mean_over_layouts(key: str, number: Callable[[Mapping], float]) -> Estimate:
         return mean_estimate([np.mean([number(task) for task in cell[key]]) for cell in results])
 
-    def orders(kind: str, names: Sequence[str], reuser: str = BPR) -> Estimate:
-        """Mean power of ten between the fastest of some learners on each task and a form of BPR; over layouts."""
+    def orders(kind: str, names: Sequence[str], reuser: str = BPR, yardstick: str = "needed") -> Estimate:
+        """Mean power of ten between the fastest of some learners on each task and a form of BPR; over layouts.
+
+        `yardstick`: "needed", every expected return lasts, or "stretch", the learners' own: a mean of returns.
+        """
 
         def power(task: Mapping) -> float:
             # All episodes where they were not enough.
             slow = min(task[kind][name] or settings["episodes"] for name in names)
-            return np.log10(slow / (task["needed"][reuser] or settings["episodes"]))
+            return np.log10(slow / (task[yardstick][reuser] or settings["episodes"]))
 
         return mean_over_layouts("tasks", power)
 
@@ -47,6 +51,16 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             found[f"orders_{title}{extra}"] = orders("needed", variants)
             found[f"orders_greedy_{title}{extra}"] = orders("greedy", variants)
         found[f"orders_{title}_more_samples"] = orders("needed", names, BPR_MORE)
+        for yardstick in ("needed", "stretch"):
+            found[f"orders_{title}_doubting_{yardstick}"] = orders("needed", names, BPR_DOUBTING, yardstick)
+        found[f"orders_{title}_stretch"] = orders("needed", names, yardstick="stretch")
+    for name in REUSERS:
+        found[f"reached_stretch_{name}"] = mean_over_layouts(
+            "tasks", lambda t, n=name: t["stretch"][n] is not None
+        )
+        found[f"regret_{name}"] = mean_over_layouts("tasks", lambda t, n=name: t["regret"][n])
+        needed = [task["needed"][name] or settings["episodes"] for cell in results for task in cell["tasks"]]
+        found[f"median_needed_{name}"] = exact_value(float(np.median(needed)), len(needed))
     found["orders_prq_as_returned"] = orders("needed", [PRQ])
     found["library_return"] = mean_over_layouts("tasks", itemgetter("best"))
     spent = len(STRATEGIES) * settings["training_episodes"] + len(STRATEGIES) ** 2 * settings["samples"]
@@ -60,7 +74,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     found: list[dict] = [{key: cell[key] for key in ("layout", "foods", "mean", "deviation")} for cell in results]
     for cell in results:
         for task, moved in zip(cell["tasks"], cell["moved"], strict=True):
-            row = {key: task[key] for key in ("type", "best", "needed", "greedy")}
+            row = {key: task[key] for key in ("type", "best", "needed", "stretch", "regret", "greedy")}
             found.append({"task_of": cell["layout"], **row, "moved": moved})
     found.append({"curve_edges": block_edges(settings["episodes"]).tolist()})
     for name in (BPR, PRQ, Q):

@@ -17,18 +17,23 @@ from lifelore.experiments.chapter4.c4_04_pacman import pacman_library
 from lifelore.experiments.chapter4.c4_04_pacman.pacman_library import GREATEST, Arena, falling_schedule, greedy
 from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement
+from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement, InformationDirected
 
 Array = NDArray[np.float64]
 BPR, BPR_EI, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_more", "bpr_exact"
 """Belief sampling; expected improvement; sampling with models of more samples; with exact means and deviations."""
+BPR_DOUBTING, BPR_IDS_DOUBTING = "bpr_doubting", "bpr_ids_doubting"
+"""Sampling, and information-directed selection, with a belief over types and the parameters of their models."""
 REUSERS = {
     BPR: ("learnt", BeliefSampling()),
     BPR_EI: ("learnt", ExpectedImprovement(of="outcome")),
     BPR_MORE: ("more", BeliefSampling()),
     BPR_EXACT: ("exact", BeliefSampling()),
+    BPR_DOUBTING: ("learnt", BeliefSampling()),
+    BPR_IDS_DOUBTING: ("learnt", InformationDirected()),
 }
 """The models and the rule of each form of reuse."""
 PRQ, PRQ_SCALED, Q = "prq", "prq_scaled", "q"
@@ -80,12 +85,14 @@ def _task(settings: Mapping, arena: Arena, policies: Array, mean: Array, known: 
     """All methods on one task: episodes needed, and their mean return in blocks of episodes."""
     n, window, target = settings["episodes"], settings["window"], mean.max() - settings["tolerance"] * GREATEST
     drawn = arena.returns_of_each(policies, n, (*stream_of, "reuse"))
-    needed, first_greedy, curves = {}, {}, {}
+    needed, stretch, regret, first_greedy, curves = {}, {}, {}, {}, {}
     for name, (model, rule) in REUSERS.items():
         returns = drawn if name == BPR else drawn[:, : settings["peer_episodes"]]
-        chosen = reused(known[model], rule, returns, (*stream_of, name))
+        chosen = reused(known[model], rule, returns, (*stream_of, name), doubting=name.endswith("doubting"))
         needed[name] = first_lasting(mean[chosen], target, window)
         curves[name] = returns[chosen, np.arange(len(chosen))]
+        stretch[name] = first_stretch(curves[name], target, window)
+        regret[name] = round(float((mean.max() - mean[chosen[: settings["peer_episodes"]]]).sum()), 1)
     for name in LEARNERS:
         curves[name], first_greedy[name] = _learn(settings, name, arena, policies, target, stream_of)
         needed[name] = first_stretch(curves[name], target, window)
@@ -93,6 +100,8 @@ def _task(settings: Mapping, arena: Arena, policies: Array, mean: Array, known: 
         "type": arena.task.strategy,
         "best": float(mean.max()),
         "needed": needed,
+        "stretch": stretch,
+        "regret": regret,
         "greedy": first_greedy,
         "curves": {name: np.round(block_means(curves[name]), 1).tolist() for name in (BPR, PRQ, Q)},
     }
@@ -110,9 +119,14 @@ def _moved(settings: Mapping, arena: Arena, policies: Array, known: Mapping, str
     return {"type": arena.task.strategy} | {name: round(float(value), 2) for name, value in found.items()}
 
 
-def reused(library: PolicyLibrary, rule, returns: Array, stream_of: tuple) -> NDArray[np.int64]:
+def reused(
+    library: PolicyLibrary, rule, returns: Array, stream_of: tuple, doubting: bool = False
+) -> NDArray[np.int64]:
     """The policies that BPR selects, given the return of each in each episode, (n_policies, n_episodes)."""
-    agent = BayesianPolicyReuse(library, rule, seed=stream(*stream_of), models="plug-in")
+    models = "uncertain" if doubting else "plug-in"
+    agent = BayesianPolicyReuse(
+        library, rule, dynamics=TypeDynamics.static(), seed=stream(*stream_of), models=models
+    )
     chosen = np.empty(returns.shape[1], np.int64)
     for episode in range(returns.shape[1]):
         policy = chosen[episode] = agent.select()

@@ -6,9 +6,9 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter4.reuse.many_tasks import STUCK
-from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
+from lifelore.experiments.chapter4.reuse.rules import OF_THESIS, STANDARD
 from lifelore.experiments.chapter4.surveillance import runs
-from lifelore.experiments.chapter4.surveillance.runs import CASES, RULES, find, name_of, summary
+from lifelore.experiments.chapter4.surveillance.runs import CASES, DOUBTING, RULES, by_seen, find, name_of, summary
 from lifelore.experiments.engine.estimates import exact_share, exact_value, share_of
 
 ALL = 68
@@ -35,7 +35,13 @@ def verdicts(found: Mapping[str, Mapping[str, Estimate]], printed: bool = False)
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """When regret ended and how much was left, by case; the share of reserves and of small runs that agree."""
     measured: dict[str, Estimate] = {}
+    for name in STANDARD:
+        for case in (*DOUBTING, "learnt", "headline"):
+            numbers = by_seen(find(results, name, case))
+            measured |= {f"{key}_{name_of(name, case)}": number for key, number in numbers.items()}
     for case in CASES:
+        if case in DOUBTING:
+            continue
         found = {name: summary(find(results, name, case)) for name in RULES}
         for name, numbers in found.items():
             if key := READ.get(name.partition(",")[0]):

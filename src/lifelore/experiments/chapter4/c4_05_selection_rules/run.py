@@ -2,7 +2,8 @@
 
 from collections.abc import Mapping
 
-from lifelore.experiments.chapter4.surveillance.runs import CASES, RULES, reserve_cells
+from lifelore.experiments.chapter4.reuse.rules import STANDARD
+from lifelore.experiments.chapter4.surveillance.runs import CASES, DOUBTING, RULES, reserve_cells
 from lifelore.experiments.chapter4.surveillance.runs import check_reserves as check
 from lifelore.experiments.chapter4.surveillance.runs import run_method as run_cell
 
@@ -10,5 +11,9 @@ __all__ = ["cells", "check", "run_cell"]
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every rule in every case of the default reserve, and with exact models on targets in every other."""
-    return reserve_cells(settings, CASES, RULES, RULES)
+    """Every rule in every case of the default reserve, and with exact models on targets in every other.
+
+    Of rules that doubt their models the standard forms.
+    """
+    trusting = [case for case in CASES if case not in DOUBTING]
+    return [*reserve_cells(settings, trusting, RULES, RULES), *reserve_cells(settings, DOUBTING, STANDARD, ())]

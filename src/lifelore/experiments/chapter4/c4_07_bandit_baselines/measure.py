@@ -5,10 +5,18 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, REUSE
+from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, DOUBTING, REUSE
 from lifelore.experiments.chapter4.reuse.many_tasks import grouped_mean
 from lifelore.experiments.chapter4.surveillance.peers import GIVEN, GP_PEERS, PEERS
-from lifelore.experiments.chapter4.surveillance.runs import by_group, find, is_default, name_of, row_of, worlds
+from lifelore.experiments.chapter4.surveillance.runs import (
+    by_group,
+    by_seen,
+    find,
+    is_default,
+    name_of,
+    row_of,
+    worlds,
+)
 from lifelore.experiments.engine.estimates import exact_value, is_above, share_of
 
 PAIRS = (
@@ -35,6 +43,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     measured: dict[str, Estimate] = {}
     for case in CASES_SHOWN:
         measured |= _comparisons(settings, results, case)
+    measured |= _unseen(results)
 
     def above(worse: str, better: str) -> list[bool]:
         every = worlds(settings)
@@ -44,6 +53,25 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         measured[f"grid_EI_below_{name_of(peer, '')[:-1]}"] = share_of(above(peer, "EI"))
     between = np.logical_and(above("UCB1", "GP-UCB"), above("interval estimation", "GP-UCB"))
     return measured | {"grid_GP_UCB_between": share_of(between)}
+
+
+def _unseen(results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Learnt models, tasks never in training: rules that doubt their models beside the best GP-UCB."""
+    best = best_gp(results, "headline")
+    shown = [("best GP-UCB", best, "headline"), *((name, name, "uncertain, with unseen") for name in DOUBTING)]
+    found, sums = {}, {}
+    for label, name, case in shown:
+        result = find(results, name, case)
+        unseen = by_group(result, "seen") == 0
+        sums[label] = by_group(result, "sums")[unseen].reshape(len(unseen), -1).mean(axis=1)
+        place = name_of(label, "unseen" if label == "best GP-UCB" else "doubting_unseen")
+        numbers = by_seen(result)
+        found |= {f"{key}_{place}": numbers[f"{key}_unseen"] for key in ("cumulative", "stuck")}
+        if label != "best GP-UCB":
+            found[f"{name_of(label, 'doubting')}_over_best_GP_UCB_unseen"] = ratio_estimate(
+                sums[label], sums["best GP-UCB"]
+            )
+    return found
 
 
 def _comparisons(settings: Mapping, results: Sequence[Mapping], case: str) -> dict[str, Estimate]:

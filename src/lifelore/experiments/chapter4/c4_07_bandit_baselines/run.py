@@ -12,10 +12,16 @@ from lifelore.experiments.chapter4.surveillance.runs import run_method as run_ce
 
 __all__ = ["cells", "check", "run_cell"]
 REUSE = ("EI", "EI, printed", "IDS", "sampling")
+DOUBTING = ("EI", "IDS", "sampling")
+"""Rules that also run with a belief over types and the parameters of their models."""
 CASES_SHOWN = ("headline", "exact")
 IN_GRID = ("EI", "UCB1", "UCB1, tuned", *GP_PEERS, "interval estimation", "eps-greedy on means")
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every method in the default reserve, learnt and exact; in the other reserves the methods of the thesis."""
-    return reserve_cells(settings, CASES_SHOWN, (*REUSE, *PEERS), IN_GRID)
+    """Every method in the default reserve, learnt and exact; in the other reserves the methods of the thesis.
+
+    Rules that doubt their models run in the default reserve, with every second task unseen.
+    """
+    doubting = reserve_cells(settings, ["uncertain, with unseen"], DOUBTING, ())
+    return [*reserve_cells(settings, CASES_SHOWN, (*REUSE, *PEERS), IN_GRID), *doubting]

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate, difference_estimate
-from lifelore.experiments.chapter4.c4_08_library_size.run import AGAINST
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
+from lifelore.experiments.chapter4.c4_08_library_size.run import AGAINST, RULE
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
 from lifelore.experiments.engine.estimates import share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -15,7 +15,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     table = ResultsTable(results, ("rule", "model", "share"))
     measured: dict[str, Estimate] = {}
     for rule in settings["rules"]:
-        for model in (LEARNT, EXACT):
+        for model in (LEARNT, EXACT, UNCERTAIN) if rule == RULE else (LEARNT, EXACT):
             for against in AGAINST:
                 cells = (table.values(against, rule=rule, model=model, share=x)[0] for x in settings["shares"])
                 found = _savings(np.stack([regret.T for regret in cells]))

@@ -12,7 +12,7 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, play_rule
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, play_doubting, play_rule
 from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
 from lifelore.experiments.chapter4.surveillance.runs import SEEN, draw_tasks, library_of
 from lifelore.interaction.reuse.regret import library_regret
@@ -33,7 +33,8 @@ def check(settings: Mapping) -> None:
 
 def cells(settings: Mapping) -> list[dict]:
     """Every rule, kind of model and size of the library."""
-    every = product(settings["rules"], (LEARNT, EXACT), settings["shares"])
+    every = [*product(settings["rules"], (LEARNT, EXACT), settings["shares"])]
+    every += product([RULE], [UNCERTAIN], settings["shares"])
     return [{"rule": name, "model": model, "share": share} for name, model, share in every]
 
 
@@ -56,8 +57,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         def pays(episode: int, policies: np.ndarray, mean=mean, task=task) -> np.ndarray:
             return mean[0, policies] + world.deviation * task.noise[:, episode]
 
-        generator = stream(seed, "chooser", cell["rule"], trial)
-        chosen = play_rule(RULES_SHOWN[cell["rule"]], library, pays, 1, n_episodes[-1], generator).policies
+        rule, stream_of = RULES_SHOWN[cell["rule"]], (seed, "chooser", cell["rule"], trial)
+        if cell["model"] == UNCERTAIN:
+            played = play_doubting(rule, library, pays, 1, n_episodes[-1], stream_of)
+        else:
+            played = play_rule(rule, library, pays, 1, n_episodes[-1], stream(*stream_of))
+        chosen = played.policies
         regrets = {"all": library_regret(task.mean, part[chosen]), "library": library_regret(mean, chosen)}
         for against, regret in regrets.items():
             found[against].append([round(float(regret[0, :k].mean()), 3) for k in n_episodes])

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CATEGORIES, CLUBS, DEVIATIONS, YARDS, Golf, category_of
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, play_rule
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, UNCERTAIN, play_doubting, play_rule
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
 from lifelore.interaction.selection import SelectionRule
@@ -65,9 +65,18 @@ def library_of(settings: Mapping, model: str, seed: int, group: int) -> PolicyLi
 
 
 def play_holes(
-    rule: SelectionRule, library: PolicyLibrary, distance: Array, luck: Array, seed: int, first: int | None = None
+    rule: SelectionRule,
+    library: PolicyLibrary,
+    distance: Array,
+    luck: Array,
+    seed: int,
+    first: int | None = None,
+    model: str = EXACT,
 ) -> Round:
-    """Play holes at `distance` (n_holes,) with `luck` (n_holes, n_shots), standard normal."""
+    """Play holes at `distance` (n_holes,) with `luck` (n_holes, n_shots), standard normal.
+
+    A golfer who doubts its models learns from the error in yards beside the category.
+    """
     n_holes, n_shots = luck.shape
     error = np.empty((n_holes, n_shots))
 
@@ -75,8 +84,14 @@ def play_holes(
         error[:, shot] = errors_of(clubs, distance, luck[:, shot])
         return category_of(error[:, shot])
 
-    generator = stream(seed, "golfer", rule.name)
-    played = play_rule(rule, library, signals, n_holes, n_shots, generator, first)
+    def outcomes(shot: int, clubs: NDArray[np.int64]) -> Array:
+        return -np.abs(error[:, shot])
+
+    stream_of = (seed, "golfer", rule.name)
+    if model == UNCERTAIN:
+        played = play_doubting(rule, library, signals, n_holes, n_shots, stream_of, outcomes=outcomes, first=first)
+    else:
+        played = play_rule(rule, library, signals, n_holes, n_shots, stream(*stream_of), first)
     return Round(played.policies, error, played.entropy)
 
 

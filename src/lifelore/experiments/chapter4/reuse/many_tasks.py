@@ -15,7 +15,9 @@ from lifelore.core.metrics import RESAMPLES, Estimate, mean_estimate
 from lifelore.core.streams import stream
 from lifelore.interaction.baselines import Baseline
 from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule
 
@@ -23,8 +25,8 @@ Array = NDArray[np.float64]
 Signals = Callable[[int, NDArray[np.int64]], NDArray]
 """``signals(episode, policies)``: the signals of the policies (n_tasks,) in that episode, (n_tasks,)."""
 
-EXACT, LEARNT = "exact", "learnt"
-"""Kinds of models that rules know."""
+EXACT, LEARNT, UNCERTAIN = "exact", "learnt", "uncertain"
+"""Kinds of models that rules know: true, learnt and taken for the truth, learnt and known to be uncertain."""
 SETTLED = 1e-9
 """Regret below this is none."""
 STUCK = 5.0
@@ -72,6 +74,42 @@ def play_rule(
         policies[:, t] = chosen
         reuse.update(log_belief, every, chosen, signals(t, chosen))
     entropies[:, -1] = entropy(np.exp(log_belief))
+    return Played(policies, entropies)
+
+
+def play_doubting(
+    rule: SelectionRule,
+    library: PolicyLibrary,
+    signals: Signals,
+    n_tasks: int,
+    n_episodes: int,
+    stream_of: tuple,
+    *,
+    outcomes: Signals | None = None,
+    first: int | None = None,
+) -> Played:
+    """`play_rule` with a belief over types and the parameters of their models, task by task.
+
+    `stream_of` names the streams of the agents. `outcomes` are the returns where signals are something else.
+    """
+    agents = [
+        BayesianPolicyReuse(
+            library, rule, horizon=n_episodes, seed=stream(*stream_of, task), dynamics=TypeDynamics.static()
+        )
+        for task in range(n_tasks)
+    ]
+    policies = np.empty((n_tasks, n_episodes), np.int64)
+    entropies = np.empty((n_tasks, n_episodes + 1))
+    for t in range(n_episodes):
+        entropies[:, t] = [entropy(agent.belief) for agent in agents]
+        fixed = t == 0 and first is not None
+        policies[:, t] = first if fixed else [agent.select() for agent in agents]
+        shown = signals(t, policies[:, t])
+        paid = None if outcomes is None else outcomes(t, policies[:, t])
+        for task, agent in enumerate(agents):
+            outcome = None if paid is None else float(paid[task])
+            agent.update(int(policies[task, t]), shown[task].item(), outcome)
+    entropies[:, -1] = [entropy(agent.belief) for agent in agents]
     return Played(policies, entropies)
 
 

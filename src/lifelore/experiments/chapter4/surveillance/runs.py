@@ -20,7 +20,13 @@ from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import NOISES, Surveillance
 from lifelore.experiments.chapter4.reuse import many_tasks
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, grouped_mean, grouped_quantile
+from lifelore.experiments.chapter4.reuse.many_tasks import (
+    EXACT,
+    LEARNT,
+    UNCERTAIN,
+    grouped_mean,
+    grouped_quantile,
+)
 from lifelore.experiments.chapter4.reuse.rules import NEAR_GREEDY, RULES_SHOWN
 from lifelore.experiments.chapter4.surveillance.peers import kernel_of, make_peer, tuning_grid
 from lifelore.experiments.engine.estimates import exact_share
@@ -34,8 +40,12 @@ CASES = {
     "learnt": {"model": LEARNT, "tasks": SEEN},
     "exact": {"model": EXACT, "tasks": SEEN},
     "exact, with unseen": {"model": EXACT, "tasks": MIXED},
+    "uncertain": {"model": UNCERTAIN, "tasks": SEEN},
+    "uncertain, with unseen": {"model": UNCERTAIN, "tasks": MIXED},
 }
 """The models and the tasks of a case: `MIXED` puts every second task's poachers at a cell that is no target."""
+DOUBTING = ("uncertain", "uncertain, with unseen")
+"""The cases whose rules doubt the models that those of "learnt" and "headline" take for the truth."""
 DEFAULT_WORLD = {"layout": "X", "metric": "chebyshev", "noise": "deviation 20"}
 RULES = RULES_SHOWN | NEAR_GREEDY
 
@@ -108,14 +118,21 @@ def play(
     generator: np.random.Generator,
     tuned: Mapping[str, float] | None = None,
     kernel: Array | None = None,
+    doubting: tuple | None = None,
 ) -> tuple[NDArray[np.int64], Array | None]:
-    """Policies that a rule or peer chooses, (n_tasks, n_episodes), and the belief's entropy where there is one."""
+    """Policies that a rule or peer chooses, (n_tasks, n_episodes), and the belief's entropy where there is one.
+
+    `doubting` names the streams of agents that doubt their models; None where models are taken for the truth.
+    """
     n_tasks, n_episodes = tasks.noise.shape
     every = np.arange(n_tasks)
 
     def pays(episode: int, policies: NDArray[np.int64]) -> Array:
         return tasks.mean[every, policies] + world.deviation * tasks.noise[:, episode]
 
+    if doubting is not None:
+        played = many_tasks.play_doubting(RULES[name], library, pays, n_tasks, n_episodes, doubting)
+        return played.policies, played.entropy
     if name in RULES:
         played = many_tasks.play_rule(RULES[name], library, pays, n_tasks, n_episodes, generator)
         return played.policies, played.entropy
@@ -141,10 +158,11 @@ def run_method(settings: Mapping, cell: Mapping, seed: int) -> dict:
     kernels = [kernel_of(name, library) for library in libraries]
     best: dict = {}
     for tuned in tuning_grid(name):
-        played = [
-            play(name, library, world, batch, stream(seed, "chooser", name, group), tuned, kernel)
-            for group, (library, batch, kernel) in enumerate(zip(libraries, batches, kernels, strict=True))
-        ]
+        played = []
+        for group, (library, batch, kernel) in enumerate(zip(libraries, batches, kernels, strict=True)):
+            doubting = (seed, "doubting", name, group) if case["model"] == UNCERTAIN else None
+            generator = stream(seed, "chooser", name, group)
+            played.append(play(name, library, world, batch, generator, tuned, kernel, doubting))
         found = _regrets(settings, world, tasks, np.concatenate([policies for policies, _ in played]))
         entropies = [entropy for _, entropy in played if entropy is not None]
         if entropies:
@@ -192,6 +210,18 @@ def summary(result: Mapping) -> dict[str, Estimate]:
 def row_of(result: Mapping) -> dict:
     """The keys of a cell and its summary, as rows hold them."""
     return {key: result[key] for key in ("method", "case", *DEFAULT_WORLD)} | many_tasks.plain(summary(result))
+
+
+def by_seen(result: Mapping) -> dict[str, Estimate]:
+    """Summed regret and share of stuck tasks, of tasks at targets and of others where there are some."""
+    found, late = {}, by_group(result, "late") > many_tasks.STUCK
+    sums, seen = by_group(result, "sums"), by_group(result, "seen") > 0
+    for word, which in (("seen", seen), ("unseen", ~seen)):
+        if which.any():
+            # Every group has as many tasks of each kind.
+            own = [values[which].reshape(len(sums), -1) for values in (sums, late)]
+            found |= {f"cumulative_{word}": grouped_mean(own[0]), f"stuck_{word}": grouped_mean(own[1])}
+    return found
 
 
 def is_default(row: Mapping) -> bool:

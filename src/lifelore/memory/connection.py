@@ -1,0 +1,119 @@
+"""`Connection` runs the same SQL text on SQLite and on PostgreSQL; `Pool` holds the open connections of a memory.
+
+The drivers are used directly: a library above them would need most of the time of a start and of a choice.
+"""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from functools import cache
+from typing import Any
+
+Parameters = Mapping[str, Any] | Sequence[Any]
+
+
+class Connection:
+    """A connection of `sqlite3` or `psycopg` that begins and ends transactions by SQL statements.
+
+    Parameters
+    ----------
+    driver : sqlite3.Connection or psycopg.Connection
+        Without transactions of its own.
+    is_sqlite : bool
+
+    Attributes
+    ----------
+    statements : int
+        Number of statements so far, without those that begin and end transactions.
+    """
+
+    def __init__(self, driver: Any, *, is_sqlite: bool) -> None:
+        self._driver = driver
+        self.is_sqlite = is_sqlite
+        self.statements = 0
+
+    def control(self, sql: str) -> None:
+        """Begin or end a transaction."""
+        self._driver.execute(sql)
+
+    def execute(self, sql: str, parameters: Parameters = ()) -> Any:
+        """Run a statement; the cursor gives rows as tuples.
+
+        Parameters are ``:name`` or ``?``. The text has no other colon or question mark.
+        """
+        self.statements += 1
+        if self.is_sqlite:
+            return self._driver.execute(sql, parameters)
+        return self._driver.execute(_for_psycopg(sql), parameters) if parameters else self._driver.execute(sql)
+
+    def execute_many(self, sql: str, rows: Sequence[Parameters]) -> None:
+        """Run a statement once for each row of parameters."""
+        self.statements += len(rows)
+        if self.is_sqlite:
+            self._driver.executemany(sql, rows)
+        else:
+            with self._driver.cursor() as cursor:
+                cursor.executemany(_for_psycopg(sql), rows)
+
+    def first(self, sql: str, parameters: Parameters = ()) -> tuple[Any, ...] | None:
+        """The first row; None where there is none."""
+        # All rows are read, because a statement in progress would keep the transaction from its end.
+        rows = self.execute(sql, parameters).fetchall()
+        return rows[0] if rows else None
+
+    def value(self, sql: str, parameters: Parameters = ()) -> Any:
+        """The first column of the first row, which there must be."""
+        return self.execute(sql, parameters).fetchall()[0][0]
+
+    def close(self) -> None:
+        """Close the connection; what is not committed is lost."""
+        self._driver.close()
+
+
+@cache
+def _for_psycopg(sql: str) -> str:
+    """`sql` with psycopg's ``%(name)s`` and ``%s`` in place of ``:name`` and ``?``."""
+    return re.sub(r":(\w+)", r"%(\1)s", sql.replace("%", "%%").replace("?", "%s"))
+
+
+class Pool:
+    """Connections that wait for their next use; one that met an error is closed.
+
+    Parameters
+    ----------
+    connect : callable
+        Opens another connection.
+    """
+
+    def __init__(self, connect: Callable[[], Connection]) -> None:
+        self._connect = connect
+        self._waiting: list[Connection] = []
+        self._ended = 0
+
+    @property
+    def statements(self) -> int:
+        """Number of statements of all connections that are not in use now."""
+        return self._ended + sum(conn.statements for conn in self._waiting)
+
+    @contextmanager
+    def connection(self) -> Iterator[Connection]:
+        """A connection that no other thread uses in the meantime."""
+        try:
+            conn = self._waiting.pop()
+        except IndexError:
+            conn = self._connect()
+        try:
+            yield conn
+        except BaseException:
+            self._end(conn)
+            raise
+        self._waiting.append(conn)
+
+    def close(self) -> None:
+        """Close the waiting connections."""
+        while self._waiting:
+            self._end(self._waiting.pop())
+
+    def _end(self, conn: Connection) -> None:
+        self._ended += conn.statements
+        conn.close()

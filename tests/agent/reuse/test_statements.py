@@ -1,0 +1,57 @@
+"""How many SQL statements a choice and its outcome take, and that both back ends answer alike."""
+
+import numpy as np
+import pytest
+
+from lifelore.agent.reuse.one_user import choose, update
+from lifelore.agent.reuse.study import Study
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.memory import open_memory
+
+EACH = 5
+"""One to read; the others write the contribution, its key, the mention of the key and the cells."""
+
+
+@pytest.fixture
+def study():
+    library = PolicyLibrary.from_means(np.array([[8.0, 1.0, 4.0], [1.0, 8.0, 4.0]]), 2.0)
+    return Study("s", library, dict.fromkeys(library.policies, "active"), rule="sampling")
+
+
+@pytest.mark.parametrize("back_end", ["sqlite", "postgresql"])
+def test_a_known_users_choice_and_outcome_take_five_statements_each(back_end, new_place, study):
+    with open_memory(new_place(back_end)) as memory:
+        for number in range(20):
+            began = memory.statements
+            made = choose(memory, study, "ann")
+            chosen = memory.statements
+            update(memory, study, made["decision"], float(number % 3))
+            assert (number, chosen - began, memory.statements - chosen) == (number, EACH, EACH)
+        assert memory.check() == []
+
+
+def test_the_database_is_asked_no_more_than_is_counted(tmp_path, study):
+    asked: list[str] = []
+    with open_memory(tmp_path / "m.db") as memory:
+        made = choose(memory, study, "ann")
+        with memory._store.pool.connection() as conn:
+            conn._driver.set_trace_callback(asked.append)
+        before = memory.statements
+        update(memory, study, made["decision"], 1.0)
+        choose(memory, study, "ann")
+        counted = memory.statements - before
+    words = [statement.split()[0] for statement in asked[: asked.index("COMMIT", asked.index("COMMIT") + 1) + 1]]
+    assert words == 2 * ["SELECT", "BEGIN", *["INSERT"] * (EACH - 1), "COMMIT"]
+    assert counted == 2 * EACH
+
+
+def test_both_back_ends_give_the_same_answers_bit_for_bit(new_place, study):
+    def lived(back_end):
+        answers = []
+        with open_memory(new_place(back_end)) as memory:
+            made = [choose(memory, study, "ann", context="phone", seed=3) for _ in range(6)]
+            for one in [made[2], *made[4:], *made[:2]]:
+                answers.append(update(memory, study, one["decision"], len(answers) / 3))
+            return [made, answers, choose(memory, study, "ann", seed=3)]
+
+    assert lived("sqlite") == lived("postgresql")

@@ -1,0 +1,140 @@
+"""Users by name, users added while running, masks of available policies, and the best few policies."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+from lifelore.interaction.selection import RULES, rule_named
+
+MEAN = np.random.default_rng(3).normal(scale=30, size=(7, 5))
+
+
+def exact() -> PolicyLibrary:
+    return PolicyLibrary.from_means(MEAN, 20.0)
+
+
+def learnt() -> PolicyLibrary:
+    noise = np.random.default_rng(4).normal(scale=20, size=(7, 5, 6))
+    return PolicyLibrary.from_samples(MEAN[..., None] + noise)
+
+
+@pytest.mark.parametrize("make", [exact, learnt])
+def test_names_and_numbers_are_the_same_users(make):
+    random = np.random.default_rng(0)
+    names = [f"u{i}" for i in range(40)]
+    named, numbered = UserBeliefs(make(), names), UserBeliefs(make(), 40)
+    for _ in range(5):
+        who, policies = random.integers(0, 40, 25), random.integers(0, 5, 25)
+        signals = random.normal(scale=40, size=25)
+        assert np.array_equal(
+            named.update([names[i] for i in who], policies, signals), numbered.update(who, policies, signals)
+        )
+        assert np.array_equal(named.select(np.array(names)), numbered.select(np.arange(40)))
+    assert np.array_equal(named.select(who), numbered.select(who))
+    assert named.belief("u3").shape == (1, 7)
+
+
+@pytest.mark.parametrize("make", [exact, learnt])
+def test_users_come_while_the_others_go_on(make):
+    random = np.random.default_rng(0)
+    few, many = UserBeliefs(make(), [], "f8", unknown="add"), UserBeliefs(make(), 300, "f8")
+    for turn in range(300):
+        name, policy, signal = f"u{turn % 100}", int(random.integers(5)), float(random.normal())
+        few.update([name], [policy], [signal])
+        many.update([turn % 100], [policy], [signal])
+    assert few.n_users == 100
+    assert np.array_equal(few.log_belief, many.log_belief[:100])
+    assert few.add_users(["x", "y"]).tolist() == [100, 101]
+    assert np.array_equal(few.belief(["y"])[0], np.exp(few.log_prior) / np.exp(few.log_prior).sum())
+    assert many.add_users(3).tolist() == [300, 301, 302]
+    many.update([302], [0], [1.0])
+    with pytest.raises(NotFoundError, match="unknown user 303"):
+        many.update([303], [0], [1.0])
+
+
+def test_unknown_names_are_an_error_by_default():
+    users = UserBeliefs(exact(), ["ada"])
+    for call in (users.select, users.belief, users.reset):
+        with pytest.raises(NotFoundError, match="unknown user 'ben'; there are 1; add_users adds it"):
+            call(["ben"])
+    with pytest.raises(InputError, match="'ada' is there already"):
+        users.add_users(["ada"])
+    with pytest.raises(InputError, match="must be texts"):
+        users.add_users([3])  # type: ignore[list-item]
+    with pytest.raises(InputError, match="by names; got a number"):
+        users.add_users(3)
+    with pytest.raises(InputError, match="made without names"):
+        UserBeliefs(exact(), 2).select(["ada"])
+    with pytest.raises(InputError, match="unknown must be"):
+        UserBeliefs(exact(), 2, unknown="maybe")  # type: ignore[arg-type]
+    assert users.n_users == 1
+
+
+@pytest.mark.parametrize("name", RULES)
+@pytest.mark.parametrize("make", [exact, learnt])
+def test_only_available_policies_are_selected_and_as_if_there_were_no_others(make, name):
+    random, n = np.random.default_rng(1), 30
+    model = make()
+    users, rule = UserBeliefs(model, n, "f8"), rule_named(name)
+    users.update(np.arange(n), random.integers(0, 5, n), random.normal(scale=40, size=n))
+    mask = random.random((n, 5)) < 0.5
+    mask[:, 1] |= ~mask.any(axis=1)
+    every = np.arange(n)
+    for available in (mask, mask[0]):
+        rows = np.broadcast_to(available, (n, 5))
+        chosen = users.select(every, rule, available=available, episodes_left=3)
+        assert rows[every, chosen].all()
+        stated = users.probabilities(every, rule, available=available, episodes_left=3)
+        assert stated.sum(axis=1) == pytest.approx(np.ones(n))
+        assert (stated[~rows] == 0).all()
+        assert (stated[every, chosen] > 0).all()
+    if make is exact:
+        for user in range(n):
+            part = model.take(policies=np.flatnonzero(mask[user]).tolist())
+            alone = rule.probabilities(part, users.belief([user])[0], episodes_left=3)
+            assert users.probabilities([user], rule, available=mask[user], episodes_left=3)[0][
+                mask[user]
+            ] == pytest.approx(alone, abs=1e-9)
+    again = users.update_and_select(every, np.zeros(n, int), np.zeros(n), rule, available=mask, episodes_left=2)
+    assert mask[every, again].all()
+
+
+@pytest.mark.parametrize("make", [exact, learnt])
+def test_a_mask_of_all_policies_changes_no_probability(make):
+    users, every = UserBeliefs(make(), 6, "f8"), np.arange(6)
+    users.update(every, [0, 1, 2, 3, 4, 0], np.linspace(-40, 40, 6))
+    for name in RULES:
+        whole = users.probabilities(every, name, episodes_left=3)
+        assert users.probabilities(every, name, available=np.ones(5, bool), episodes_left=3) == pytest.approx(
+            whole
+        )
+
+
+@pytest.mark.parametrize("make", [exact, learnt])
+@pytest.mark.parametrize("dtype", ["f4", "f8"])
+def test_the_best_few_are_in_order_and_begin_with_the_best(make, dtype):
+    random, n = np.random.default_rng(1), 50
+    users, every = UserBeliefs(make(), n, dtype), np.arange(n)
+    users.update(every, random.integers(0, 5, n), random.normal(scale=40, size=n))
+    best = users.select_top(every, 3, "greedy")
+    assert np.array_equal(best[:, 0], users.select(every, "greedy"))
+    assert all(len(set(row)) == 3 for row in best.tolist())
+    whole = users.select_top(every, 5, "greedy")
+    assert np.array_equal(whole[:, :3], best)
+    mask = np.array([True, False, True, False, True])
+    assert set(users.select_top(every, 3, "greedy", available=mask).ravel().tolist()) == {0, 2, 4}
+    assert users.select_top(every, 2).shape == users.select_top(every, 2, "expected-improvement").shape == (n, 2)
+    for k, available in ((0, None), (6, None), (4, mask)):
+        with pytest.raises(InputError, match="k must be 1 to"):
+            users.select_top(every, k, available=available)
+
+
+def test_masks_of_another_form_are_refused():
+    users = UserBeliefs(exact(), 3)
+    for bad in (np.ones(4, bool), np.ones((2, 5), bool), np.ones(5, int), "all"):
+        with pytest.raises(InputError, match="available must be bool"):
+            users.select([0, 1, 2], available=bad)
+    with pytest.raises(InputError, match="a policy for every user"):
+        users.select([0, 1, 2], available=np.eye(3, 5, -1) > 0)
