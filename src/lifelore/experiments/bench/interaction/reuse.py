@@ -77,6 +77,7 @@ Result = tuple[list[dict[str, Any]], list[dict[str, Any]]]
 
 def bench_reuse(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
+    import scipy.linalg.blas  # noqa: F401  kernels call it: a library that is loaded later keeps its threads
     from threadpoolctl import threadpool_limits
 
     rows: list[dict[str, Any]] = []
