@@ -132,7 +132,7 @@ def test_choices_of_ten_thousand_random_beliefs_at_the_size_of_the_reserve():
             exact = rule.scores(library, belief[None])[0]
             assert rule.scores(library, belief).argmax() == exact.argmax()
         if number % 10 == 0:
-            exact = belief @ mean + 7 * knowledge_gain(belief, mean, table, MASS, "responses")
+            exact = belief @ mean + 7 * knowledge_gain(belief, mean, table, MASS, "auto")
             assert gradient.scores(library, belief, episodes_left=7).argmax() == exact.argmax()
 
 

@@ -46,7 +46,7 @@ SIZES = ((30, 50), (68, 50), (100, 50), (300, 50), (1000, 100))
 """Types (and as many policies) and signals of the rows on growth."""
 SCREENED = (1000, 100)
 """Types (and as many policies) and signals at which screened and exact knowledge gradients are compared."""
-CHECKED, EPISODES_BEFORE = 8, (0, 1, 3, 10)
+CHECKED, EPISODES_BEFORE = 6, (0, 1, 3, 10)
 """Number of tasks, and of episodes before the compared decisions of each."""
 USERS, AT_ONCE = 1_000_000, 100_000
 TASKS = 4
@@ -78,6 +78,7 @@ Result = tuple[list[dict[str, Any]], list[dict[str, Any]]]
 
 def bench_reuse(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
+    import scipy.linalg.blas  # noqa: F401  kernels call it: a library that is loaded later keeps its threads
     from threadpoolctl import threadpool_limits
 
     rows: list[dict[str, Any]] = []
