@@ -1,5 +1,7 @@
 """Uncertain models for many users: as the formulas and as one agent a user, hostile outcomes, saved to the bit."""
 
+import json
+
 import numpy as np
 import pytest
 from scipy.special import gammaln
@@ -300,3 +302,25 @@ def test_statistics_that_do_not_fit_are_refused(tmp_path):
     spoil(lambda arrays: arrays["chunks"].view(np.int32).__setitem__((2, 35), 2))
     spoil(lambda arrays: arrays["chunks"].view(np.int32).__setitem__((2, 30), 77))
     spoil(lambda arrays: arrays.pop("sizes"))
+
+
+def test_files_older_than_uncertain_models_load_with_plug_in_models(tmp_path):
+    model, path = library(), tmp_path / "users.npz"
+    users = UserBeliefs(model, 4, "f8", models="plug-in")
+    users.update([0, 1], [2, 3], [5.0, -8.0])
+    save_users(users, path)
+    with np.load(path) as packed:
+        arrays = {name: packed[name] for name in packed.files}
+    header = json.loads(arrays["about"].tobytes())
+    old = {key: value for key, value in header.items() if key not in ("models", "spread", "unknown")}
+    arrays["about"] = np.frombuffer(json.dumps(old | {"version": 1}).encode(), np.uint8)
+    np.savez(path, **arrays)
+    loaded = load_users(path)
+    assert (loaded.models, loaded.outcomes, loaded.names, loaded.unknown) == ("plug-in", None, None, "error")
+    for one in (users, loaded):
+        one.update([0, 3], [1, 1], [30.0, 2.0])
+    assert users.log_belief.tobytes() == loaded.log_belief.tobytes()
+    arrays["about"] = np.frombuffer(json.dumps(header | {"version": 3}).encode(), np.uint8)
+    np.savez(path, **arrays)
+    with pytest.raises(InputError, match="has version 3, this Lifelore reads 2"):
+        load_users(path)

@@ -10,13 +10,28 @@ import math
 
 import numpy as np
 
-from lifelore.core.compiled.jit import kernel
+from lifelore.core.compiled.jit import inlined, kernel
 from lifelore.core.compiled.vector_log import plain_exp, plain_log, plain_log1p
 from lifelore.interaction.beliefs.bayes_rule import LOWEST
+from lifelore.interaction.reuse.user_kernels import _total
 
 LEAST = 1e-290
 """Beliefs below this are computed by their logarithms."""
 FAR = -1e300
+
+
+@inlined
+def _largest(row):
+    """The largest number of a row, four at a time."""
+    b0, b1, b2, b3 = -np.inf, -np.inf, -np.inf, -np.inf
+    n = row.shape[0]
+    fours = n - n % 4
+    for i in range(0, fours, 4):
+        b0, b1 = max(b0, row[i]), max(b1, row[i + 1])
+        b2, b3 = max(b2, row[i + 2]), max(b3, row[i + 3])
+    for i in range(fours, n):
+        b0 = max(b0, row[i])
+    return max(max(b0, b1), max(b2, b3))
 
 
 @kernel
@@ -38,29 +53,33 @@ def changing_users(log_beliefs, users, shown, new, log_stay, log_anew, log_evide
         for i in range(n):
             joint[i] = float(row[i])
         for i in range(n):
+            share[i] = plain_exp(min(log_anew[i] - max(joint[i], FAR), 0.0))
+        for i in range(n):
             # With a density of 0 all differences are taken from a number that is far below.
             a, b = max(old[i], FAR), max(fresh[i], FAR)
-            changed = plain_exp(min(log_anew[i] - max(joint[i], FAR), 0.0))
-            top = max(a, b)
-            weight = changed * plain_exp(b - top)
-            mixed = (1.0 - changed) * plain_exp(a - top) + weight
-            share[i] = np.divide(weight, max(mixed, LEAST))
-            old[i] = top + plain_log(max(mixed, LEAST)) if top > FAR else -np.inf
-        best, top, total, changes = -np.inf, -np.inf, 0.0, 0.0
+            fresh[i] = max(a, b)
+            # Only the smaller density needs an exponential: the larger counts as 1.
+            less = plain_exp(-abs(a - b))
+            out[i] = (1.0 - share[i]) * (1.0 if a >= b else less)
+            share[i] *= less if a >= b else 1.0
         for i in range(n):
-            if joint[i] > -np.inf:
-                best = max(best, old[i])
+            mixed = max(out[i] + share[i], LEAST)
+            share[i] = np.divide(share[i], mixed)
+            out[i] = fresh[i] + plain_log(mixed)
+        for i in range(n):
+            old[i] = out[i] if fresh[i] > FAR and joint[i] > -np.inf else -np.inf
+        best = _largest(old)
         explained = best > -np.inf
         if explained:
             for i in range(n):
                 joint[i] += old[i] - best
-        for i in range(n):
-            top = max(top, joint[i])
+        top = _largest(joint)
         for i in range(n):
             out[i] = plain_exp(max(joint[i] - top, FAR))
+        total = _total(out)
         for i in range(n):
-            total += out[i]
-            changes += out[i] * share[i]
+            share[i] *= out[i]
+        changes = _total(share)
         shift = math.log(total)
         log_evidence[k] = max(top + shift + best, LOWEST) if explained else -np.inf
         keeps[k] = 1.0 - min(changes / total, 1.0) if explained else np.nan
