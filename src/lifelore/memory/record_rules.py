@@ -14,6 +14,7 @@ from lifelore.core.protocols import Merge, Record
 LONGEST_NAME = 200
 MERGES: tuple[str, ...] = get_args(Merge)
 LARGEST = 2**63 - 1
+_sorted = json.JSONEncoder(sort_keys=True).encode
 _canonical = json.JSONEncoder(sort_keys=True, allow_nan=False, separators=(",", ":")).encode
 
 
@@ -43,6 +44,11 @@ def canonical_json(argument: str, about: Mapping[str, Any]) -> str:
         return _canonical(dict(about))
     except (TypeError, ValueError) as error:
         raise InputError(f"{argument} must hold plain JSON values, but {error}; convert it first") from error
+
+
+def described(about: Mapping[str, Any]) -> str:
+    """The JSON text of a checked description as the cache has it."""
+    return _sorted(dict(about))
 
 
 def checked_records(records: Sequence[Record]) -> list[Record]:
