@@ -72,7 +72,7 @@ def checked_record(record: Record) -> Record:
     slots, values = _column(where, "slots", record.slots), _column(where, "values", record.values)
     if slots.shape != values.shape:
         raise InputError(f"{where}: slots and values must be equally long, got {slots.size} and {values.size}")
-    if not np.all(slots[1:] > slots[:-1]):
+    if not (slots[1:] > slots[:-1]).all():
         ascending = np.argsort(slots, kind="stable")
         slots, values = slots[ascending], values[ascending]
         if np.any(slots[1:] == slots[:-1]):
@@ -83,7 +83,7 @@ def checked_record(record: Record) -> Record:
 
 def _column(where: str, name: str, column: Any) -> NDArray[np.int64]:
     array = np.asarray(column)
-    whole = array.dtype.kind in "iu" and np.can_cast(array.dtype, np.int64)
+    whole = array.dtype == np.int64 or (array.dtype.kind in "iu" and np.can_cast(array.dtype, np.int64))
     if array.ndim != 1 or (array.size and not whole):
         got = f"shape {array.shape} of {array.dtype}"
         raise InputError(f"{where}: {name} must be a one-dimensional int64 array, got {got}; convert it first")
