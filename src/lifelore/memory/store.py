@@ -6,7 +6,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
-from lifelore.core.errors import MissingExtraError, StoreError
+from lifelore.core.errors import StoreError
 from lifelore.memory import schema
 from lifelore.memory.connection import Connection, Pool
 from lifelore.memory.location import Server, describe
@@ -162,12 +162,7 @@ def _source_file(path: Path) -> Store:
 
 
 def _server(server: Server) -> Store:
-    try:
-        import psycopg
-    except ImportError as error:
-        raise MissingExtraError(
-            "a postgresql:// memory needs psycopg, which is not installed; pip install 'lifelore[postgres]'"
-        ) from error
+    import psycopg
 
     def connection() -> Connection:
         options: dict[str, Any] = {"connect_timeout": BUSY_SECONDS} | server.options
