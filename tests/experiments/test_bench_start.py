@@ -10,7 +10,7 @@ from lifelore.experiments.bench import bench
 from lifelore.experiments.bench.lives import buildings
 from lifelore.experiments.bench.startup import start, start_cases
 from lifelore.experiments.bench.startup.process_cost import Cost, installed_environment, process_cost
-from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study
+from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study, open_decisions
 
 
 def checked(result: dict, told: list) -> dict:
@@ -41,6 +41,7 @@ def stand_ins(monkeypatch):
         start, "clouds_to_perceive", lambda folder: ([Path(f"{k}.pcd") for k in range(4)], "a cloud")
     )
     monkeypatch.setattr(start, "fitted_study", lambda folder: folder / "study.db")
+    monkeypatch.setattr(start, "open_decisions", lambda place, n: [f"{place}-{k}" for k in range(n)])
     return asked
 
 
@@ -60,13 +61,18 @@ def test_start_times_every_state_and_judges_it(stand_ins):
         "lifelore perceive of a cloud, warm, s": True,  # 1.25 s
         "lifelore reuse choose, first after setup, s": True,
         "lifelore reuse choose, warm, s": False,  # 0.75 s
+        "lifelore reuse update, first after setup, s": True,
+        "lifelore reuse update, warm, s": False,
         "each further cloud in one process, s": True,
     }
     assert goals["each further cloud in one process, s"]["measured"] == pytest.approx(0.5)
     # What is measured after setup reads the kernels that the warm-up left; what is first ever finds none.
     warmed = [environment["NUMBA_CACHE_DIR"] for arguments, environment in stand_ins if "--warm" in arguments]
     used = {environment["NUMBA_CACHE_DIR"] for arguments, environment in stand_ins}
-    assert used - set(warmed) == {environment["NUMBA_CACHE_DIR"] for _, environment in stand_ins[-4:]}
+    assert used - set(warmed) == {environment["NUMBA_CACHE_DIR"] for _, environment in stand_ins[-5:]}
+    # Each outcome is of another decision, so that none is a repetition.
+    ended = [arguments[3] for arguments, _ in stand_ins if "update" in arguments]
+    assert len(ended) == len(set(ended)) == 4
 
 
 def test_what_the_verbs_are_given_can_be_used(monkeypatch, tmp_path):
@@ -77,7 +83,12 @@ def test_what_the_verbs_are_given_can_be_used(monkeypatch, tmp_path):
     assert what == "a simulated camera's PCD"
     environment = installed_environment(tmp_path)
     study = fitted_study(tmp_path)
-    for arguments in (["perceive", *clouds, "--json"], ["reuse", "choose", "--user", "ann", "--memory", study]):
+    (decision,) = open_decisions(study, 1)
+    for arguments in (
+        ["perceive", *clouds, "--json"],
+        ["reuse", "choose", "--user", "ann", "--memory", study],
+        ["reuse", "update", "--decision", decision, "--outcome", 1, "--memory", study],
+    ):
         cost = process_cost(arguments, environment)
         assert cost.cpu > 0
         assert cost.wall > 0

@@ -22,8 +22,8 @@ def lived(memory):
 CACHE_DAMAGE = [
     "UPDATE lifelore_cells SET value = value + 1 WHERE slot = 1",
     "DELETE FROM lifelore_cells WHERE slot = 2",
-    "INSERT INTO lifelore_cells SELECT number, 77, 1, 0 FROM lifelore_lore",
-    "INSERT INTO lifelore_cells VALUES (99, 1, 1, 0)",
+    "INSERT INTO lifelore_cells (lore, slot, value, origin) SELECT number, 77, 1, 0 FROM lifelore_lore",
+    "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES (99, 1, 1, 0)",
     "DELETE FROM lifelore_mentions WHERE contribution = 1",
     "DELETE FROM lifelore_lore WHERE key = 'add'",
     "UPDATE lifelore_lore SET about = '[]' WHERE key = 'add'",

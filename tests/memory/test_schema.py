@@ -18,9 +18,16 @@ def first_schema():
         with open_memory(where) as memory:
             fill(memory)
             with memory._store.writing() as conn:
-                conn.execute("DROP TABLE lifelore_forgotten_records")
-                for column in ("token", "state"):
-                    conn.execute(f"ALTER TABLE lifelore_lore DROP COLUMN {column}")
+                for statement in (
+                    "INSERT INTO lifelore_mentions SELECT number, lore FROM lifelore_contributions"
+                    " WHERE lore IS NOT NULL",
+                    "DROP INDEX lifelore_contributions_lore",
+                    "ALTER TABLE lifelore_contributions DROP COLUMN lore",
+                    "DELETE FROM lifelore_cells WHERE lore < 0",
+                    "ALTER TABLE lifelore_cells DROP COLUMN state",
+                    "DROP TABLE lifelore_forgotten_records",
+                ):
+                    conn.execute(statement)
                 conn.execute("DELETE FROM lifelore_migrations WHERE number > 1")
             assert steps(memory) == [1]
 
@@ -70,6 +77,18 @@ def test_a_memory_of_the_first_schema_gets_states(where, first_schema):
         assert memory.recall("prior", "b7", 1).values.tolist() == [30, 10]
         assert memory.recall_state("prior", "b7", 1) == (0, None, {}, None)
         assert memory.check() == []
+
+
+def test_a_memory_of_the_first_schema_is_read_and_checked_as_it_is(file, first_schema):
+    first_schema(file, fill)
+    before = file.read_bytes()
+    with open_memory(file, read_only=True) as memory:
+        known, unknown = memory.recall_states([("prior", "b7", 1), ("prior", "b8", 1)], slots=(3, 9))
+        assert (known.token, known.content, known.about, unknown) == (0, None, {}, None)
+        assert (known.record.slots.tolist(), known.record.values.tolist()) == ([4], [10])
+        assert memory.check() == []
+        assert memory.show()["schema"] == 1
+    assert file.read_bytes() == before
 
 
 def test_a_source_of_the_first_schema_is_merged_as_it_is(file, tmp_path, first_schema):

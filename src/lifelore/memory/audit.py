@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from lifelore.core.errors import StoreError
-from lifelore.memory import cache, ledger
+from lifelore.memory import cache, ledger, schema
 from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold
 
@@ -69,20 +69,21 @@ def _cache_problems(conn: Connection, numbers: list[int]) -> Iterator[str]:
 
 
 def _orphans(conn: Connection) -> Iterator[str]:
-    for table in ("lifelore_cells", "lifelore_mentions"):
-        query = f"SELECT COUNT(*) FROM {table} WHERE lore NOT IN (SELECT number FROM lifelore_lore)"
-        if count := conn.value(query):
-            yield f"{count} rows of {table} belong to no key; rebuild the memory"
+    tables = ["cells", "mentions", *(["contributions"] if schema.version(conn) >= schema.BESIDE else [])]
+    for table in tables:
+        # The state of a key has the negative of its number.
+        known = "ABS(lore) IN (SELECT number FROM lifelore_lore)"
+        if count := conn.value(f"SELECT COUNT(*) FROM lifelore_{table} WHERE lore IS NOT NULL AND NOT {known}"):
+            yield f"{count} rows of lifelore_{table} belong to no key; rebuild the memory"
 
 
 def _agrees(conn: Connection, name: LoreKey, lore: int, part: Folded) -> bool:
     record = cache.read(conn, name)
-    rows = conn.execute("SELECT contribution FROM lifelore_mentions WHERE lore = :lore", {"lore": lore})
     return (
         record is not None
         and record.merge == part.merge
         and record.about == part.about
         and np.array_equal(record.slots, part.slots)
         and np.array_equal(record.values, part.values)
-        and sorted(row[0] for row in rows) == sorted(part.mentions)
+        and cache.mentions_of(conn, lore) == set(part.mentions)
     )

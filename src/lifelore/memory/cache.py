@@ -1,4 +1,7 @@
-"""The cache of merged records that `Memory.recall` reads, updated by additive upserts."""
+"""The cache of merged records that `Memory.recall` reads, updated by additive upserts.
+
+The state of key number n is cell 0 of lore −n, and its value is the token: one statement writes state and cells.
+"""
 
 import json
 import secrets
@@ -11,11 +14,11 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import ledger
+from lifelore.memory import ledger, schema
 from lifelore.memory.connection import Connection
 from lifelore.memory.folding import Folded, LoreKey, fold, require_one_merge
+from lifelore.memory.record_rules import described
 
-_described = json.JSONEncoder(sort_keys=True).encode
 _ROWS_AT_ONCE = 10_000
 _FEW_ROWS = 16
 """Cells that are written by one statement; a statement of more would be too long for more speed."""
@@ -27,11 +30,17 @@ _LATER = """EXISTS (
     WHERE new.number = excluded.origin AND old.number = {table}.origin
     AND (new.stamp, new.robot, new.process, new.seq) > (old.stamp, old.robot, old.process, old.seq))"""
 
+# "No contribution that has its key beside it is later than the new row."
+_NEWEST = """NOT EXISTS (
+    SELECT 1 FROM lifelore_contributions AS new, lifelore_contributions AS other
+    WHERE new.number = excluded.origin AND other.lore = lifelore_lore.number
+    AND (other.stamp, other.robot, other.process, other.seq) > (new.stamp, new.robot, new.process, new.seq))"""
+
 _NOTE = (
     "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin)"
     " VALUES (:kind, :key, :version, :merge, :about, :origin) ON CONFLICT (kind, key, version)"
     " DO UPDATE SET about = excluded.about, origin = excluded.origin"
-    f" WHERE {_LATER.format(table='lifelore_lore')}"
+    f" WHERE {_LATER.format(table='lifelore_lore')} AND {_NEWEST}"
 )
 _CELLS = "INSERT INTO lifelore_cells (lore, slot, value, origin) VALUES {} ON CONFLICT (lore, slot) DO UPDATE SET "
 _CELL = "(?, ?, ?, ?)"
@@ -43,22 +52,25 @@ _UPSERT = {
     ),
 }
 _MENTION = "INSERT INTO lifelore_mentions (contribution, lore) VALUES (?, ?)"
-_MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = ?"
+_MENTIONS = "SELECT contribution FROM lifelore_mentions WHERE lore = :lore"
+_BESIDE = " UNION SELECT number FROM lifelore_contributions WHERE lore = :lore"
 _NAMED = "kind = ? AND key = ? AND version = ?"
+# Cells of the newest contribution, and the state; a state stays only if its key has the token it was computed for.
 _ADD = (
-    "INSERT INTO lifelore_lore (kind, key, version, merge, about, origin, token, state)"
-    " VALUES (:kind, :key, :version, :merge, :about, :origin, :token, :first) ON CONFLICT (kind, key, version)"
-    " DO UPDATE SET about = excluded.about, origin = excluded.origin, token = excluded.token, state = {}"
-    " RETURNING number, merge"
+    "INSERT INTO lifelore_cells (lore, slot, value, origin, state) VALUES {} ON CONFLICT (lore, slot)"
+    " DO UPDATE SET value = excluded.value, origin = excluded.origin,"
+    " state = CASE WHEN lifelore_cells.value = ? THEN excluded.state END"
 )
-_ADD_WITHOUT_STATE = _ADD.format("NULL")
-_ADD_WITH_STATE = _ADD.format("CASE WHEN lifelore_lore.token = :expected THEN :state END")
-_STATES = "SELECT kind, key, version, merge, token, state, about, NULL, NULL FROM lifelore_lore WHERE {}"
+_ADDED = "(?, ?, ?, ?, ?)"
+_TOKEN = "SELECT value FROM lifelore_cells WHERE lore = ? AND slot = 0"
+_STATES = (
+    "SELECT kind, key, version, merge, COALESCE(own.value, 0), own.state, about, NULL, NULL FROM lifelore_lore"
+    " LEFT JOIN lifelore_cells AS own ON own.lore = -lifelore_lore.number AND own.slot = 0 WHERE {}"
+)
 _SLOTS = (
     " UNION ALL SELECT NULL, NULL, NULL, NULL, NULL, NULL, NULL, slot, value FROM lifelore_cells"
     f" WHERE lore = (SELECT number FROM lifelore_lore WHERE {_NAMED}) AND slot BETWEEN ? AND ?"
 )
-_FORGET_STATE = "UPDATE lifelore_lore SET token = ?, state = NULL WHERE number = ?"
 _FIND = f"SELECT number, merge, about FROM lifelore_lore WHERE {_NAMED}"
 _READ = "SELECT slot, value FROM lifelore_cells WHERE lore = ? AND slot BETWEEN ? AND ? ORDER BY slot"
 
@@ -93,41 +105,46 @@ class StoredState(NamedTuple):
     record: Record | None = None
 
 
-def add(conn: Connection, parts: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
+def add(
+    conn: Connection, parts: dict[LoreKey, Folded], lore: int | None = None, state: KeyState | None = None
+) -> None:
     """Merge the newest contribution into the cache; the ledger must hold it already.
 
-    `state` is stored if nobody else has changed its key since it was computed.
+    `lore` is the number of its only key, see `ledger.Inserted`. `state` is stored if nobody else has changed its
+    key since it was computed.
     """
-    for name, part in sorted(parts.items()):
-        own = state if state is not None and state.name == name else None
-        note = {
-            **_noted(name, part),
-            "token": _new_token(),
-            "first": own.content if own is not None and own.token is None else None,
-        }
-        if own is None or own.token is None:
-            found = conn.first(_ADD_WITHOUT_STATE, note)
-        else:
-            found = conn.first(_ADD_WITH_STATE, note | {"expected": own.token, "state": own.content})
-        lore, merge = found  # pyright: ignore[reportGeneralTypeIssues] - an upsert without condition gives a row
-        require_one_merge(name, {merge, part.merge})
-        conn.execute(_MENTION, (part.origin, lore))
-        _write_cells(conn, lore, part)
+    if lore is None or len(parts) != 1:
+        return write(conn, parts, state)
+    ((name, part),) = parts.items()
+    if len(part.slots) >= _FEW_ROWS:
+        return write(conn, parts, state)
+    own = state if state is not None and state.name == name else None
+    cells = zip(part.slots.tolist(), part.values.tolist(), strict=True)
+    token = -lore, 0, _new_token(), part.origin, own.content if own else None
+    rows = [token, *((lore, slot, value, part.origin, None) for slot, value in cells)]
+    values = [number for row in rows for number in row]
+    conn.execute(_ADD.format(", ".join([_ADDED] * len(rows))), [*values, own.token if own else None])
+    return None
 
 
-def write(conn: Connection, folded: dict[LoreKey, Folded]) -> None:
-    """Merge folded contributions of any age into the cache, without states; the ledger must hold them already."""
+def write(conn: Connection, folded: dict[LoreKey, Folded], state: KeyState | None = None) -> None:
+    """Merge folded contributions of any age into the cache; the ledger must hold them already.
+
+    `state` as in `add`.
+    """
     for name, part in sorted(folded.items()):
-        conn.execute(_NOTE, _noted(name, part))
+        note = {**_named(name), "merge": part.merge, "about": described(part.about), "origin": part.origin}
+        conn.execute(_NOTE, note)
         lore, merge, _ = conn.execute(_FIND, name).fetchone()
         require_one_merge(name, {merge, part.merge})
         conn.execute_many(_MENTION, [(number, lore) for number in part.mentions])
         _write_cells(conn, lore, part)
-        conn.execute(_FORGET_STATE, (_new_token(), lore))
-
-
-def _noted(name: LoreKey, part: Folded) -> dict[str, Any]:
-    return {**_named(name), "merge": part.merge, "about": _described(part.about), "origin": part.origin}
+        token = conn.first(_TOKEN, (-lore,))
+        follows = state is not None and state.name == name and (state.token or 0) == (token[0] if token else 0)
+        content = state.content if follows and state is not None else None
+        conn.execute(
+            _ADD.format(_ADDED), [-lore, 0, _new_token(), part.origin, content, token[0] if token else None]
+        )
 
 
 def _new_token() -> int:
@@ -152,6 +169,18 @@ def read_states(
             record = Record(*name, merge, *_columns(sorted(cells)), described) if wanted else None
             found[name] = StoredState(token, state, described, record)
     return [found.get(name) for name in names]
+
+
+def read_without_states(
+    conn: Connection, names: Sequence[LoreKey], slots: tuple[int, int] | None = None
+) -> list[StoredState | None]:
+    """As `read_states` of a memory of an older schema that is only read: its states are left out."""
+    found = [read(conn, name, slots or (0, 0)) for name in names]
+    wanted = [slots is not None and place == 0 for place in range(len(names))]
+    return [
+        one and StoredState(0, None, one.about, one if asked else None)
+        for one, asked in zip(found, wanted, strict=True)
+    ]
 
 
 def _columns(cells: Iterable[tuple[int, int]]) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
@@ -196,18 +225,24 @@ def mentioned(conn: Connection, contributions: Iterable[int]) -> set[LoreKey]:
         "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_mentions"
         " ON lore = lifelore_lore.number WHERE contribution = ?"
     )
-    found = (conn.execute(query, (number,)) for number in contributions)
+    beside = (
+        "SELECT kind, key, version FROM lifelore_lore JOIN lifelore_contributions AS own"
+        " ON own.lore = lifelore_lore.number WHERE own.number = ?"
+    )
+    found = (conn.execute(sql, (number,)) for number in contributions for sql in (query, beside))
     return {(row[0], row[1], row[2]) for rows in found for row in rows}
 
 
 def mentions(conn: Connection, name: LoreKey) -> set[int]:
     """Row numbers of the contributions that have a record of this key."""
     found = conn.first(_FIND, name)
-    return set() if found is None else _mentions(conn, found[0])
+    return set() if found is None else mentions_of(conn, found[0])
 
 
-def _mentions(conn: Connection, lore: int) -> set[int]:
-    return {row[0] for row in conn.execute(_MENTIONS, (lore,))}
+def mentions_of(conn: Connection, lore: int) -> set[int]:
+    """`mentions` by the number of the key."""
+    sql = _MENTIONS + (_BESIDE if schema.version(conn) >= schema.BESIDE else "")
+    return {row[0] for row in conn.execute(sql, {"lore": lore})}
 
 
 def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
@@ -215,6 +250,7 @@ def rebuild(conn: Connection, only: set[LoreKey] | None = None) -> None:
     if only is None:
         for table in ("cells", "mentions", "lore"):
             conn.execute(f"DELETE FROM lifelore_{table}")
+        conn.execute("UPDATE lifelore_contributions SET lore = NULL WHERE lore IS NOT NULL")
         touched = None
     else:
         touched = _clear(conn, only)
@@ -229,8 +265,9 @@ def _clear(conn: Connection, only: set[LoreKey]) -> set[int]:
         if (found := conn.first(_FIND, name)) is None:
             raise StoreError(f"cache of {name[0]}/{name[1]} version {name[2]} is missing; rebuild the memory")
         lore = found[:1]
-        numbers |= _mentions(conn, found[0])
-        conn.execute("DELETE FROM lifelore_cells WHERE lore = ?", lore)
+        numbers |= mentions_of(conn, found[0])
+        conn.execute("UPDATE lifelore_contributions SET lore = NULL WHERE lore = ?", lore)
+        conn.execute("DELETE FROM lifelore_cells WHERE lore IN (?, ?)", (found[0], -found[0]))
         conn.execute("DELETE FROM lifelore_mentions WHERE lore = ?", lore)
         conn.execute("DELETE FROM lifelore_lore WHERE number = ?", lore)
     return numbers

@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import islice
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 from lifelore.core.errors import StoreError
 from lifelore.memory import schema
@@ -32,12 +32,14 @@ _LARGEST_STAMP = (
     "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT stamp FROM lifelore_contributions"
     " UNION ALL SELECT stamp FROM lifelore_forgotten_records) AS stamps"
 )
-# The row is new and the newest; no row is inserted otherwise.
+# Inserts nothing unless the row is new and the newest. The row gets the number of its key where the cache has that
+# key with the same description.
 _INSERT_NEWEST = (
-    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest)"
-    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest"
+    "INSERT INTO lifelore_contributions (robot, process, seq, stamp, task, blob, digest, lore)"
+    " SELECT :robot, :process, :seq, :stamp, :task, :blob, :digest, (SELECT number FROM lifelore_lore"
+    " WHERE kind = :kind AND key = :key AND version = :version AND merge = 'newest' AND about = :about)"
     f" WHERE :stamp > ({_LARGEST_STAMP}) AND NOT EXISTS (SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY})"
-    " ON CONFLICT (robot, process, seq) DO NOTHING RETURNING number"
+    " ON CONFLICT (robot, process, seq) DO NOTHING RETURNING number, lore"
 )
 _FORGET_RECORD = (
     "INSERT INTO lifelore_forgotten_records (kind, key, version, stamp) VALUES (:kind, :key, :version, :stamp)"
@@ -88,15 +90,26 @@ def next_stamp(conn: Connection) -> int:
     return max(time.time_ns(), int(largest) + 1)
 
 
-def insert(conn: Connection, offer: Offer) -> int | None:
-    """Insert a contribution as the newest; its row number, or None where it is stored already or was forgotten."""
-    found = conn.first(_INSERT_NEWEST, vars(offer.stamped(time.time_ns())))
+class Inserted(NamedTuple):
+    """The row of a new contribution.
+
+    number : of the row
+    lore : number of the key of its only record where the cache needs no change but in cells; else None
+    """
+
+    number: int
+    lore: int | None
+
+
+def insert(conn: Connection, offer: Offer) -> Inserted | None:
+    """Insert a contribution as the newest; None where it is stored already or was forgotten."""
+    found = conn.first(_INSERT_NEWEST, vars(offer.stamped(time.time_ns())) | offer.only)
     if found is not None:
-        return int(found[0])
+        return Inserted(*found)
     if is_known(conn, offer.identity):
         return None
     # A stamp in this memory is ahead of the clock.
-    return int(conn.value(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn)))))
+    return Inserted(conn.value(_INSERT + " RETURNING number", vars(offer.stamped(next_stamp(conn)))), None)
 
 
 def insert_many(conn: Connection, contributions: Iterable[Contribution]) -> list[ContributionRow]:

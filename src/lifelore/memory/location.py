@@ -1,20 +1,13 @@
 """Parses the location of a memory: a file, or the URL of a PostgreSQL database."""
 
-import re
 from dataclasses import dataclass, field
 from pathlib import Path
-from urllib.parse import parse_qsl, unquote
+from urllib.parse import quote
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, MissingExtraError
 
 _SCHEMES = ("postgresql", "postgres", "postgresql+psycopg")
 _SECRETS = ("password", "sslpassword", "passfile")
-_PARTS = re.compile(
-    r"""(?:(?P<user>[^:/]*)(?::(?P<password>[^@]*))?@)?
-    (?:\[(?P<address>[^\]/?]+)\]|(?P<host>[^/:?]*))(?::(?P<port>\d+))?
-    (?:/(?P<dbname>[^?]*))?(?:\?(?P<query>.*))?""",
-    re.VERBOSE,
-)
 
 
 @dataclass(frozen=True)
@@ -70,24 +63,33 @@ def _postgresql_url(where: str) -> Server:
         raise InputError(
             f"memory takes a file or a postgresql:// URL, got {scheme}://; for SQLite give the file itself"
         )
-    found = _PARTS.fullmatch(rest)
-    if found is None:
-        # The text may contain a password, so the message does not repeat it.
+    try:
+        from psycopg import ProgrammingError
+        from psycopg.conninfo import conninfo_to_dict
+    except ImportError as error:
+        raise MissingExtraError(
+            "a postgresql:// memory needs psycopg, which is not installed; pip install 'lifelore[postgres]'"
+        ) from error
+    try:
+        options = {name: str(value) for name, value in conninfo_to_dict(f"postgresql://{rest}").items()}
+    except ProgrammingError:
+        # The text may contain a password, so neither the message nor its cause repeats it.
         raise InputError(
-            "memory: this postgresql:// URL cannot be read; write postgresql://user:password@host:5432/database"
-        )
-    parts = {name: unquote(text) for name, text in found.groupdict().items() if text}
-    query = parse_qsl(found["query"] or "", keep_blank_values=True)
-    options = {{"address": "host"}.get(name, name): text for name, text in parts.items() if name != "query"}
-    return Server(f"postgresql://{_without_secrets(rest, found)}", options | dict(query))
+            "memory: this postgresql:// URL cannot be read; write postgresql://user:password@host:5432/database, "
+            "with %23 for #, %2F for / and %3F for ? in a password"
+        ) from None
+    return Server(_without_secrets(options), options)
 
 
-def _without_secrets(rest: str, found: re.Match[str]) -> str:
-    """The URL behind its scheme, with *** in place of passwords."""
-    head = rest if found["query"] is None else rest[: found.start("query")]
-    if found["password"] is not None:
-        head = head[: found.start("password")] + "***" + head[found.end("password") :]
-    pairs = (pair.partition("=") for pair in (found["query"] or "").split("&"))
-    return head + "&".join(
-        name + equals + ("***" if unquote(name) in _SECRETS else text) for name, equals, text in pairs
-    )
+def _without_secrets(options: dict[str, str]) -> str:
+    """The URL of a database, with *** in place of passwords."""
+    shown = {name: "***" if name in _SECRETS else quote(text, safe="/:") for name, text in options.items()}
+    user = "".join([shown.pop("user", ""), ":***" if shown.pop("password", None) else ""])
+    # A folder of sockets cannot stand in the place of a host.
+    host = "" if "/" in shown.get("host", "") else shown.pop("host", "")
+    place = f"{f'{user}@' if user else ''}{f'[{host}]' if ':' in host else host}"
+    if "port" in shown:
+        place += f":{shown.pop('port')}"
+    rest = f"/{shown.pop('dbname')}" if "dbname" in shown else ""
+    query = "&".join(f"{name}={text}" for name, text in shown.items())
+    return f"postgresql://{place}{rest}{'?' if query else ''}{query}"

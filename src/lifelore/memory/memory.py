@@ -8,7 +8,7 @@ from typing import Any, Self
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import audit, cache, ledger, merging, overview
+from lifelore.memory import audit, cache, ledger, merging, overview, schema
 from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
 from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import new_offer
@@ -145,10 +145,10 @@ class Memory:
         """
         offer = new_offer(robot, records, process=process, seq=seq, task=task)
         with self._store.writing() as conn:
-            number = ledger.insert(conn, offer)
-            if number is not None:
-                cache.add(conn, lift(number, offer.records), state)
-        return number is not None
+            row = ledger.insert(conn, offer)
+            if row is not None:
+                cache.add(conn, lift(row.number, offer.records), row.lore, state)
+        return row is not None
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
@@ -180,6 +180,9 @@ class Memory:
         slots : (int, int), optional
             First and last slot to read of the first key, see `StoredState.record`.
         """
+        if self._store.schema < schema.BESIDE:
+            with self._store.reading() as conn:
+                return cache.read_without_states(conn, names, slots)
         with self._store.looking() as conn:
             return cache.read_states(conn, names, slots)
 

@@ -14,6 +14,7 @@ from lifelore.core.protocols import Merge, Record
 LONGEST_NAME = 200
 MERGES: tuple[str, ...] = get_args(Merge)
 LARGEST = 2**63 - 1
+_sorted = json.JSONEncoder(sort_keys=True).encode
 _canonical = json.JSONEncoder(sort_keys=True, allow_nan=False, separators=(",", ":")).encode
 
 
@@ -45,6 +46,11 @@ def canonical_json(argument: str, about: Mapping[str, Any]) -> str:
         raise InputError(f"{argument} must hold plain JSON values, but {error}; convert it first") from error
 
 
+def described(about: Mapping[str, Any]) -> str:
+    """The JSON text of a checked description as the cache has it."""
+    return _sorted(dict(about))
+
+
 def checked_records(records: Sequence[Record]) -> list[Record]:
     """The records with int64 arrays sorted by slot, each (kind, key, version) at most once."""
     checked = [checked_record(record) for record in records]
@@ -66,7 +72,7 @@ def checked_record(record: Record) -> Record:
     slots, values = _column(where, "slots", record.slots), _column(where, "values", record.values)
     if slots.shape != values.shape:
         raise InputError(f"{where}: slots and values must be equally long, got {slots.size} and {values.size}")
-    if not np.all(slots[1:] > slots[:-1]):
+    if not (slots[1:] > slots[:-1]).all():
         ascending = np.argsort(slots, kind="stable")
         slots, values = slots[ascending], values[ascending]
         if np.any(slots[1:] == slots[:-1]):
@@ -77,7 +83,7 @@ def checked_record(record: Record) -> Record:
 
 def _column(where: str, name: str, column: Any) -> NDArray[np.int64]:
     array = np.asarray(column)
-    whole = array.dtype.kind in "iu" and np.can_cast(array.dtype, np.int64)
+    whole = array.dtype == np.int64 or (array.dtype.kind in "iu" and np.can_cast(array.dtype, np.int64))
     if array.ndim != 1 or (array.size and not whole):
         got = f"shape {array.shape} of {array.dtype}"
         raise InputError(f"{where}: {name} must be a one-dimensional int64 array, got {got}; convert it first")

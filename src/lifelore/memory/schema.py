@@ -50,14 +50,25 @@ ALTER TABLE lifelore_lore ADD COLUMN token {int} NOT NULL DEFAULT 0;
 ALTER TABLE lifelore_lore ADD COLUMN state {blob}
 """
 
+_TOGETHER = """
+ALTER TABLE lifelore_lore DROP COLUMN token;
+ALTER TABLE lifelore_lore DROP COLUMN state;
+ALTER TABLE lifelore_cells ADD COLUMN state {blob};
+ALTER TABLE lifelore_contributions ADD COLUMN lore {int};
+CREATE INDEX lifelore_contributions_lore ON lifelore_contributions (lore, stamp)
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
     3: ("states that learners compute from a key's cells", _STATES),
+    4: ("states beside the cells, and the only key of a contribution beside it", _TOGETHER),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2
 """The first schema that knows forgotten records."""
+BESIDE = 4
+"""The first schema with states beside the cells and keys beside contributions."""
 READABLE = 1
 """The oldest schema whose contributions, tombstones and cells are as now: such a source is read as it is."""
 

@@ -6,7 +6,7 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any, Literal
 
-from lifelore.core.errors import MissingExtraError, StoreError
+from lifelore.core.errors import StoreError
 from lifelore.memory import schema
 from lifelore.memory.connection import Connection, Pool
 from lifelore.memory.location import Server, describe
@@ -18,12 +18,19 @@ _WRITERS_LOCK = schema.APPLICATION_ID
 
 
 class Store:
-    """An open database; `reading` and `writing` give transactions and convert the driver's errors."""
+    """An open database; `reading` and `writing` give transactions and convert the driver's errors.
+
+    Attributes
+    ----------
+    schema : int
+        The number of its last migration; an older memory that is only read keeps its own.
+    """
 
     def __init__(self, pool: Pool, location: str, *, is_sqlite: bool) -> None:
         self._pool: Pool | None = pool
         self.location = location
         self.is_sqlite = is_sqlite
+        self.schema = schema.LATEST
 
     @property
     def pool(self) -> Pool:
@@ -86,6 +93,7 @@ class Store:
         schema.refuse_newer(self.location, found)
         if found == 0:
             raise StoreError(f"memory {self.location} holds no Lifelore memory; check the name")
+        self.schema = found
         return found
 
     def require_current(self) -> None:
@@ -154,12 +162,7 @@ def _source_file(path: Path) -> Store:
 
 
 def _server(server: Server) -> Store:
-    try:
-        import psycopg
-    except ImportError as error:
-        raise MissingExtraError(
-            "a postgresql:// memory needs psycopg, which is not installed; pip install 'lifelore[postgres]'"
-        ) from error
+    import psycopg
 
     def connection() -> Connection:
         options: dict[str, Any] = {"connect_timeout": BUSY_SECONDS} | server.options

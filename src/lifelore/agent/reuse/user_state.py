@@ -152,7 +152,7 @@ def from_bytes(content: bytes | None) -> UserState | None:
     body = content[_HEAD.size :]
     if zlib.crc32(body) != checksum:
         return None
-    header = json.loads(body[:length])
+    header = json.loads(body[:length].decode())
     if header["format"] != FORMAT:
         return None
     n = header["n"]

@@ -6,7 +6,8 @@ programs on the machine count little; what a verb waits for the disk is not in t
 """
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import repeat
 from pathlib import Path
 from statistics import median
 
@@ -14,23 +15,26 @@ from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.rounds import at_most, row
 from lifelore.experiments.bench.startup.first_result import LEARNERS, first_result_seconds
 from lifelore.experiments.bench.startup.process_cost import Cost, installed_environment, process_cost
-from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study
+from lifelore.experiments.bench.startup.start_cases import clouds_to_perceive, fitted_study, open_decisions
 
 COLD, WARM, AFTER_SETUP = 3.0, 0.15, 3.0
 """Most seconds of a learner's first result with and without compiling, and of a verb's first use after setup."""
-HELP, LIVE, PERCEIVE, CHOOSE = "--help", "live", "perceive", "reuse choose"
-VERB_GOALS = {HELP: 0.3, PERCEIVE: 1.4, CHOOSE: 0.6}
+HELP, LIVE, PERCEIVE, CHOOSE, UPDATE = "--help", "live", "perceive", "reuse choose", "reuse update"
+VERB_GOALS = {HELP: 0.3, PERCEIVE: 1.4, CHOOSE: 0.6, UPDATE: 0.6}
 """Most seconds of a warm process."""
 FURTHER = 0.5
 """Most seconds of each further cloud in one process."""
 COLD_ROUNDS = 3
 """Compiling costs seconds a time and differs little: at most this many rounds of it."""
 
+Arguments = Iterator[Sequence[object]]
+"""The arguments of each process of a verb."""
+
 
 def bench_start(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
     cold = min(repeats, COLD_ROUNDS)
-    total = cold * len(LEARNERS) + 1 + 4 + 5 * repeats + 4
+    total = cold * len(LEARNERS) + 1 + 5 + 6 * repeats + 5
     done = 0
 
     def after(label: str) -> None:
@@ -60,14 +64,19 @@ def _learners(rounds: int, after: Callable[[str], None]) -> dict[str, list[dict]
 
 def _verbs(folder: Path, repeats: int, after: Callable[[str], None]) -> dict[str, list[dict]]:
     clouds, what = clouds_to_perceive(folder)
-    verbs: dict[str, list[object]] = {
-        HELP: ["--help"],
-        LIVE: ["live", "--tasks", 1, "--memory", folder / "life.db"],
-        PERCEIVE: ["perceive", clouds[0], "--json"],
-        CHOOSE: ["reuse", "choose", "--user", "ann", "--memory", fitted_study(folder)],
+    study = fitted_study(folder)
+    verbs: dict[str, Arguments] = {
+        HELP: repeat(["--help"]),
+        LIVE: repeat(["live", "--tasks", 1, "--memory", folder / "life.db"]),
+        PERCEIVE: repeat(["perceive", clouds[0], "--json"]),
+        CHOOSE: repeat(["reuse", "choose", "--user", "ann", "--memory", study]),
+        UPDATE: (
+            ["reuse", "update", "--decision", decision, "--outcome", 1, "--memory", study]
+            for decision in open_decisions(study, repeats + 2)
+        ),
     }
     ready = installed_environment(folder, folder / "setup")
-    process_cost(verbs[HELP], ready)
+    process_cost(next(verbs[HELP]), ready)
     setup = process_cost(["doctor", "--warm"], ready)
     after("lifelore doctor --warm")
     first = _each(verbs, ready, after, "first after setup")
@@ -81,17 +90,17 @@ def _verbs(folder: Path, repeats: int, after: Callable[[str], None]) -> dict[str
         after("further clouds")
     ever = {}
     for verb, arguments in verbs.items():
-        ever[verb] = process_cost(arguments, installed_environment(folder, folder / f"empty {len(ever)}"))
+        ever[verb] = process_cost(next(arguments), installed_environment(folder, folder / f"empty {len(ever)}"))
         after(f"lifelore {verb}, first ever")
     return _verb_lines(setup, ever, first, warm, further, what)
 
 
 def _each(
-    verbs: Mapping[str, Sequence[object]], environment: dict[str, str], after: Callable[[str], None], label: str
+    verbs: Mapping[str, Arguments], environment: dict[str, str], after: Callable[[str], None], label: str
 ) -> dict[str, Cost]:
     costs = {}
     for verb, arguments in verbs.items():
-        costs[verb] = process_cost(arguments, environment)
+        costs[verb] = process_cost(next(arguments), environment)
         after(f"lifelore {verb}, {label}")
     return costs
 

@@ -4,6 +4,8 @@ import csv
 from pathlib import Path
 
 from lifelore.agent.reuse.fit import FitSettings, fit
+from lifelore.agent.reuse.one_user import choose
+from lifelore.agent.reuse.study import open_study
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.scene_folder import save_cloud
 from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
@@ -37,6 +39,13 @@ def fitted_study(folder: Path) -> Path:
     with open_memory(place) as memory:
         fit([folder / "log.csv"], memory, FitSettings(rule="information-directed"))
     return place
+
+
+def open_decisions(place: Path, n: int) -> list[str]:
+    """Identifiers of `n` decisions for different users in the memory of `fitted_study`, without outcomes."""
+    with open_memory(place) as memory:
+        study = open_study(memory)
+        return [choose(memory, study, f"new user {user}")["decision"] for user in range(n)]
 
 
 def write_log(path: Path) -> None:
