@@ -42,7 +42,7 @@ def expected_by_library(
 
     Policies that the library does not know have their expectation in `means`.
     """
-    expected = _replayed(log, folds, studies).expected
+    expected = _replayed(log, folds, studies, choose=False).expected
     table = np.where(np.isnan(expected), means.table[means.row], expected)
     return OutcomeModel(table, np.arange(len(log)))
 
@@ -56,8 +56,8 @@ def choices_of_rule(
     )
 
 
-def _replayed(log: ReuseLog, folds: Numbers, studies: Sequence[Study]) -> ReplayedChoices:
+def _replayed(log: ReuseLog, folds: Numbers, studies: Sequence[Study], choose: bool = True) -> ReplayedChoices:
     rows = [np.flatnonzero(folds == part) for part in range(len(studies))]
-    parts = [replayed_choices(study, log, own) for study, own in zip(studies, rows, strict=True)]
+    parts = [replayed_choices(study, log, own, choose=choose) for study, own in zip(studies, rows, strict=True)]
     order = np.argsort(np.concatenate(rows))
     return ReplayedChoices(*(np.concatenate(column)[order] for column in zip(*parts, strict=True)))

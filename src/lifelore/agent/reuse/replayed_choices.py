@@ -30,7 +30,9 @@ class ReplayedChoices(NamedTuple):
     unknown: Array
 
 
-def replayed_choices(study: Study, log: ReuseLog, rows: NDArray[np.int64]) -> ReplayedChoices:
+def replayed_choices(
+    study: Study, log: ReuseLog, rows: NDArray[np.int64], *, choose: bool = True
+) -> ReplayedChoices:
     """Replay some rows of a log: each user starts as a stranger and learns from the logged outcomes.
 
     Parameters
@@ -40,8 +42,13 @@ def replayed_choices(study: Study, log: ReuseLog, rows: NDArray[np.int64]) -> Re
     rows : (n,) int64
         Places in the log; those of a user are in order of time. The belief learns from each outcome before the
         user's next decision.
+    choose : bool
+        Whether to compute the probabilities of the choices; they stay 0 otherwise.
     """
     place = {policy: number for number, policy in enumerate(log.policy.names)}
+    in_log = np.array([policy in place for policy in study.active])
+    from_study, elsewhere = np.flatnonzero(in_log), np.flatnonzero(~in_log)
+    to_log = np.array([place[study.active[number]] for number in from_study], np.int64)
     shape = len(rows), len(log.policy.names)
     expected, probabilities, unknown = np.full(shape, np.nan), np.zeros(shape), np.zeros(len(rows))
     beliefs: dict[int, WorkingBelief] = {}
@@ -52,14 +59,10 @@ def replayed_choices(study: Study, log: ReuseLog, rows: NDArray[np.int64]) -> Re
             beliefs[user] = WorkingBelief(study, Checkpoint(0, prior, 0.0))
         now = beliefs[user].checkpoint(number)
         belief, library = study.algorithm.belief(now.log_belief), study.choice_for(now.task)
-        odds = policy_odds(study, library, belief)
-        utility = expected_utility(belief, library.performance.mean)
-        for policy, probability, value in zip(odds.policies, odds.probs, utility, strict=True):
-            if policy in place:
-                probabilities[number, place[policy]] = probability
-                expected[number, place[policy]] = value
-            else:
-                unknown[number] += probability
+        probs = policy_odds(study, library, belief).probs if choose else np.zeros(library.n_policies)
+        probabilities[number, to_log] = probs[from_study]
+        expected[number, to_log] = expected_utility(belief, library.performance.mean)[from_study]
+        unknown[number] = probs[elsewhere].sum()
         beliefs[user].learn(log.policy.names[policies[number]], outcomes[number])
     return ReplayedChoices(expected, probabilities, unknown)
 
