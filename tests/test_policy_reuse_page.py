@@ -103,3 +103,23 @@ def test_speeds_are_those_of_the_benchmark():
     ):
         (goal,) = (g for g in found["goals"] if g["name"] == f"{unit}, {name} belief, 1000 x 1000 x 100, ms")
         assert f"{goal['measured']:.1f} ms" in PAGE
+
+
+def test_the_hazards_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_changing_types.json").read_text(encoding="utf-8"))
+    value = {row["name"]: row["value"] for row in found["rows"]}
+    told = re.findall(
+        r"^\| (exact|learnt), ([\d.]+) \| ([\d,]+) \| ([\d.]+) % \| ([\d,]+) \| ([+−][\d.]+)?", PAGE, flags=re.M
+    )
+    assert len(told) == 10
+    for models, hazard, changed, stuck, stayed, more in told:
+        once, never = (
+            f"{models} models, type {kind}, hazard {hazard}" for kind in ("changes once", "never changes")
+        )
+        assert float(changed.replace(",", "")) == pytest.approx(value[f"regret of 100 episodes, {once}"], abs=0.51)
+        assert float(stayed.replace(",", "")) == pytest.approx(value[f"regret of 100 episodes, {never}"], abs=0.51)
+        assert float(stuck) == pytest.approx(100 * value[f"stuck in the end, {once}"], abs=0.06)
+        if hazard != "0":
+            assert float(more.replace("−", "-")) == pytest.approx(
+                value[f"regret more than static types, {never}"], abs=0.06
+            )

@@ -1,7 +1,7 @@
 """`bench bands`: how well signal models of ordered categories predict, by the number of runs behind them.
 
-Golf's seven bands of distance, four clubs at four holes. Each round fits every model to the same shots. The loss of
-a model is the mean, over pairs, of the divergence of its probabilities from the true ones, in nats a shot.
+Golf's seven bands of distance, four clubs at four holes. Each round fits every model to the same shots. The loss
+of a model is the mean, over pairs, of the divergence of its probabilities from the true ones, in nats a shot.
 """
 
 from collections.abc import Callable
