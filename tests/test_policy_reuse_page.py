@@ -123,3 +123,11 @@ def test_the_hazards_are_those_of_the_benchmark():
             assert float(more.replace("−", "-")) == pytest.approx(
                 value[f"regret more than static types, {never}"], abs=0.06
             )
+
+
+def test_the_losses_of_models_of_categories_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_bands.json").read_text(encoding="utf-8"))
+    values = [row["value"] for row in found["rows"]]
+    told = [line.split("|")[2:-1] for line in PAGE.split("| runs a pair | 1 |")[1].splitlines()[2:6]]
+    # Rows of the file are by number of runs, then by model; those of the page by model.
+    assert np.array(told, float).T.ravel() == pytest.approx(np.array(values), abs=0.0006)
