@@ -123,3 +123,31 @@ def test_speeds_are_those_of_the_benchmark():
         ),
     ):
         assert said in PAGE, said
+
+
+def test_the_hazards_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_changing_types.json").read_text(encoding="utf-8"))
+    value = {row["name"]: row["value"] for row in found["rows"]}
+    told = re.findall(
+        r"^\| (exact|learnt), ([\d.]+) \| ([\d,]+) \| ([\d.]+) % \| ([\d,]+) \| ([+−][\d.]+)?", PAGE, flags=re.M
+    )
+    assert len(told) == 10
+    for models, hazard, changed, stuck, stayed, more in told:
+        once, never = (
+            f"{models} models, type {kind}, hazard {hazard}" for kind in ("changes once", "never changes")
+        )
+        assert float(changed.replace(",", "")) == pytest.approx(value[f"regret of 100 episodes, {once}"], abs=0.51)
+        assert float(stayed.replace(",", "")) == pytest.approx(value[f"regret of 100 episodes, {never}"], abs=0.51)
+        assert float(stuck) == pytest.approx(100 * value[f"stuck in the end, {once}"], abs=0.06)
+        if hazard != "0":
+            assert float(more.replace("−", "-")) == pytest.approx(
+                value[f"regret more than static types, {never}"], abs=0.06
+            )
+
+
+def test_the_losses_of_models_of_categories_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_bands.json").read_text(encoding="utf-8"))
+    values = [row["value"] for row in found["rows"]]
+    told = [line.split("|")[2:-1] for line in PAGE.split("| runs a pair | 1 |")[1].splitlines()[2:6]]
+    # Rows of the file are by number of runs, then by model; those of the page by model.
+    assert np.array(told, float).T.ravel() == pytest.approx(np.array(values), abs=0.0006)

@@ -14,6 +14,7 @@ from lifelore.experiments.chapter4.reuse.many_tasks import (
 )
 from lifelore.interaction.baselines import UCB1
 from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import ExpectedImprovement, InformationDirected
@@ -30,7 +31,7 @@ def test_many_tasks_at_once_choose_as_single_agents_do(rule):
         rule, library, lambda t, p: MEANS[every, p] + 2 * noise[:, t], 3, 12, np.random.default_rng(1)
     )
     for task in range(3):
-        agent = BayesianPolicyReuse(library, rule, horizon=12)
+        agent = BayesianPolicyReuse(library, rule, dynamics=TypeDynamics.static(), horizon=12)
         for t in range(12):
             # The prior is uneven, so that nothing ties.
             assert played.entropy[task, t] == pytest.approx(float(entropy(agent.belief)), abs=1e-9)

@@ -18,12 +18,10 @@ from lifelore.experiments.bench.rounds import at_most, row
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 
-Array = NDArray[np.float64]
-
 RUNS = (1, 3, 10, 30, 100)
 USUAL, CHOSEN = "categories, pseudo-count 0.5", "categories, pseudo-count held-out"
 NORMAL, KNOWN = "ordered normal", "ordered normal, cut points known"
-MODELS: dict[str, Callable[[Array], CategorySignal | OrderedNormalSignal]] = {
+MODELS: dict[str, Callable[[NDArray[np.int64]], CategorySignal | OrderedNormalSignal]] = {
     USUAL: lambda samples: CategorySignal.from_samples(samples, len(CATEGORIES)),
     CHOSEN: lambda samples: CategorySignal.from_samples(samples, len(CATEGORIES), "held-out"),
     NORMAL: lambda samples: OrderedNormalSignal.from_samples(samples, len(CATEGORIES)),
@@ -49,7 +47,7 @@ def bench_bands(repeats: int, progress: Progress) -> dict:
     return {"rows": [_row(n, name, values, losses) for (n, name), values in losses.items()], "goals": goals}
 
 
-def shots(generator: np.random.Generator, n: int) -> Array:
+def shots(generator: np.random.Generator, n: int) -> NDArray[np.int64]:
     """Categories of `n` shots of each club at each hole, (n_holes, n_clubs, n)."""
     golf = Golf()
     holes = np.ones((len(golf.holes), golf.n_clubs, n)) * np.array(golf.holes)[:, None, None]
