@@ -33,6 +33,7 @@ BENCHES = {
     "contexts": "action",
     "deep_layouts": "action",
     "long_user": "interaction",
+    "novelty": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar")
@@ -49,7 +50,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs
-        of learning.
+        of learning; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
