@@ -4,6 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError, NotFoundError
+from lifelore.interaction.beliefs.belief import entropy
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
@@ -51,6 +52,13 @@ def test_surprise_falls_for_known_users_at_small_noise_and_the_detector_is_silen
         raw.append(agent.surprise)
     assert raw[-1] < -20
     assert not detector.alarm
+
+
+def test_the_belief_in_a_wrong_type_is_narrow_and_the_detector_sees_it():
+    """Errata: the thesis takes a spread belief as the sign of a new type."""
+    agent, detector = _played([6.0, 3.0])  # nearer to the first type, and far from both
+    assert entropy(agent.belief) < 1e-6
+    assert detector.alarm
 
 
 def test_the_belief_of_the_agent_is_not_disturbed():

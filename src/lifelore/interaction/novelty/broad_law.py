@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.novelty.signal_laws import CategoryLaws, SignalLaws
-from lifelore.interaction.outcomes.moment_outcomes import gammaln
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]
@@ -70,6 +69,8 @@ class BroadNormals:
         """Log density of Student's t."""
         if len(signals) == 1:
             return np.array([self._log_density(int(policies[0]), shown[0].tolist(), float(signals[0]))])
+        from scipy.special import gammaln  # imported at its first use: a single signal does without
+
         k, mean, squares = shown.T
         centre, weight = self.centre[policies], self.weight[policies]
         total, freedom = weight + k, FREEDOM + k
