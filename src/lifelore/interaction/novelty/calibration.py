@@ -14,11 +14,11 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.belief import entropy
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.novelty.known_tasks import Tasks, known_tasks
 from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics
-from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
+from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import BeliefSampling, SelectionRule
 from lifelore.interaction.selection.choice import choose
 from lifelore.interaction.selection.rule import Deterministic
@@ -111,14 +111,14 @@ def calibrate(
     horizon: int,
     n_tasks: int,
     generator: np.random.Generator,
-    dynamics: TypeDynamics | None = None,
     signal_count: ArrayLike | None = None,
+    **agent: Any,
 ) -> NoveltyCalibration:
     """The calibration of a library that a rule plays; see `NoveltyDetector.calibrate`."""
     if horizon < 1:
         raise InputError(f"horizon must be at least 1 episode, got {horizon}")
     check_rate(false_alarm, n_tasks)
-    statistic = known_statistic(library, rule, horizon, n_tasks, generator, dynamics, signal_count)
+    statistic = known_statistic(library, rule, horizon, n_tasks, generator, signal_count, **agent)
     return calibration_of(statistic, false_alarm)
 
 
@@ -128,15 +128,15 @@ def known_statistic(
     horizon: int,
     n_tasks: int,
     generator: np.random.Generator,
-    dynamics: TypeDynamics | None = None,
     signal_count: ArrayLike | None = None,
+    **agent: Any,
 ) -> Array:
     """The statistic of simulated tasks of known types after each episode, (n_tasks, horizon)."""
-    test, parts = NoveltyStatistics(library), []
+    statistics, parts = NoveltyStatistics(library), []
     for start in range(0, n_tasks, TASKS_AT_ONCE):
         n = min(TASKS_AT_ONCE, n_tasks - start)
         tasks = known_tasks(library, n, generator, signal_count)
-        parts.append(watch(test, rule, tasks, n, horizon, generator, dynamics).statistic)
+        parts.append(watch(statistics, rule, tasks, n, horizon, generator, **agent).statistic)
     return np.concatenate(parts)
 
 
@@ -161,53 +161,54 @@ def check_rate(false_alarm: float, n_tasks: int) -> None:
 
 
 def watch(
-    test: NoveltyStatistics,
+    statistics: NoveltyStatistics,
     rule: SelectionRule,
     tasks: Tasks,
     n: int,
     horizon: int,
     generator: np.random.Generator,
-    dynamics: TypeDynamics | None = None,
+    **agent: Any,
 ) -> Watched:
-    """Play `n` tasks by a rule over the horizon, and record what a detector sees."""
-    algorithm = ReuseAlgorithm(test.library, dynamics, least=LEAST_SCORED)
-    sums, every = test.sums(n), np.arange(n)
-    log_belief = np.tile(algorithm.start(), (n, 1))
+    """Play `n` tasks by a rule over the horizon, and record what a detector sees.
+
+    `agent` are arguments of `UserBeliefs`, such as ``dynamics``.
+    """
+    users = UserBeliefs(statistics.library, n, "f8", seed=generator, **agent)
+    sums, every, algorithm = statistics.sums(n), np.arange(n), users.algorithm
     seen = Watched(*np.empty((len(Watched._fields), n, horizon)))
     raw = np.zeros(n)
     for episode in range(horizon):
-        belief = algorithm.belief(log_belief)
-        policies = _chosen(algorithm, rule, belief, generator)
+        belief = algorithm.belief(users.log_belief)
+        policies = _chosen(users, rule, belief)
         signals = tasks.signals(policies)
-        if test.laws.pays:
-            raw += test.add(sums, belief, policies, test.laws.numbers(signals))
-            algorithm.update(log_belief, every, policies, signals)
+        if statistics.laws.pays:
+            raw += statistics.add(sums, belief, policies, statistics.laws.numbers(signals))
+            users.update(every, policies, signals)
         else:  # category numbers, whatever the names of the categories
-            raw += test.add(sums, belief, policies, signals)
-            algorithm.update(log_belief, every, policies, signals.astype(np.int64))
+            raw += statistics.add(sums, belief, policies, signals)
+            users.update(every, policies, signals.astype(np.int64))
         root = (episode + 1) ** 0.5
-        numbers = (test.statistic(sums), sums.surprise / root, sums.shortfall / root, sums.log_odds)
+        numbers = (statistics.statistic(sums), sums.surprise / root, sums.shortfall / root, sums.log_odds)
         for array, column in zip(seen, (*numbers, entropy(belief), raw), strict=True):
             array[:, episode] = column
     return seen
 
 
-def _chosen(
-    algorithm: ReuseAlgorithm, rule: SelectionRule, belief: Array, generator: np.random.Generator
-) -> Numbers:
+def _chosen(users: UserBeliefs, rule: SelectionRule, belief: Array) -> Numbers:
     """The policies that the rule selects, (n,); equal beliefs, and tasks certain of one type, are scored once."""
+    learns = getattr(users, "outcomes", None) is not None  # scores depend on what a task has shown
+    if learns or type(rule) is BeliefSampling:
+        return users.select(np.arange(len(belief)), rule)
     if not isinstance(rule, Deterministic):
-        if type(rule) is BeliefSampling:
-            return algorithm.select_fast(belief, rule, generator)
-        return algorithm.select(belief, rule, generator)[0]
+        return users.algorithm.select(belief, rule, users.generator)[0]
     certain = belief.max(axis=1) > CERTAIN
     chosen = np.empty(len(belief), np.int64)
     if (~certain).any():
-        chosen[~certain] = _select_rows(algorithm, rule, belief[~certain], generator)
+        chosen[~certain] = _select_rows(users.algorithm, rule, belief[~certain], users.generator)
     if certain.any():
         types, of_task = np.unique(belief[certain].argmax(axis=1), return_inverse=True)
-        scores = rule.scores(algorithm.library, np.eye(belief.shape[1])[types])
-        chosen[certain] = choose(scores[of_task], generator)
+        scores = rule.scores(users.library, np.eye(belief.shape[1])[types])
+        chosen[certain] = choose(scores[of_task], users.generator)
     return chosen
 
 

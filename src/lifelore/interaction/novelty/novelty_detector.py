@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.streams import stream
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.novelty.calibration import NoveltyCalibration, calibrate
 from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics, NoveltySums
@@ -69,9 +68,9 @@ class NoveltyDetector:
         horizon: int = 30,
         n_tasks: int = 10_000,
         mass: float = 0.05,
-        dynamics: TypeDynamics | None = None,
         signal_count: ArrayLike | None = None,
         seed: int | np.random.Generator = 0,
+        **agent: Any,
     ) -> Self:
         """A detector whose threshold comes from simulated tasks of the library's types.
 
@@ -91,11 +90,11 @@ class NoveltyDetector:
             1 / √(n_tasks × false_alarm): a tenth for 1 % and 10,000 tasks.
         mass : float
             Prior probability that no known type fits, in (0, 1).
-        dynamics : TypeDynamics, optional
-            The agent's; static by default.
         signal_count : float or (n_types, n_policies) float, optional
             For a learnt `CategorySignal`: number of signals behind each row, pseudo-counts included.
         seed : int or numpy generator
+        **agent
+            The agent's settings where they are not the default, as `UserBeliefs` takes them, such as ``dynamics``.
 
         Raises
         ------
@@ -103,16 +102,8 @@ class NoveltyDetector:
             An argument breaks its rule, or signals are neither outcomes nor categories.
         """
         generator = stream(seed, "novelty calibration") if isinstance(seed, int | np.integer) else seed
-        known = calibrate(
-            library,
-            rule or ExpectedImprovement(),
-            false_alarm,
-            horizon,
-            n_tasks,
-            generator,
-            dynamics,
-            signal_count,
-        )
+        rule = rule or ExpectedImprovement()
+        known = calibrate(library, rule, false_alarm, horizon, n_tasks, generator, signal_count, **agent)
         return cls(library, known, mass)
 
     def restart(self) -> Self:
