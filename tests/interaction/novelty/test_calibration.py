@@ -46,16 +46,19 @@ def test_false_alarms_of_learnt_models_come_at_the_requested_rate():
     for _ in range(12):
         library = PolicyLibrary.from_samples(random.normal(MEAN[..., None], 2.0, (3, 3, 10)))
         found = calibrate(library, BeliefSampling(), rate, 10, 2000, random)
-        exact = PolicyLibrary.from_means(library.performance.mean, library.performance.deviation)
-        blind = calibrate(exact, BeliefSampling(), rate, 10, 2000, random)
+        statistics, types = NoveltyStatistics(library), random.integers(0, 3, 2000)
+        model = library.performance
+        estimates = NormalTasks(model.mean[types], model.deviation[types], random)
+        blind = calibration_of(watch(statistics, BeliefSampling(), estimates, 2000, 10, random).statistic, rate)
         means = MEAN[random.integers(0, 3, 1000)]
         tasks = NormalTasks(means, np.full_like(means, 2.0), random)
-        statistic = watch(NoveltyStatistics(library), BeliefSampling(), tasks, 1000, 10, random).statistic
+        statistic = watch(statistics, BeliefSampling(), tasks, 1000, 10, random).statistic
         shares.append((found.standardised(statistic) > found.threshold).any(axis=1).mean())
         trusting.append((blind.standardised(statistic) > blind.threshold).any(axis=1).mean())
     error = np.std(shares, ddof=1) / 12**0.5
     assert np.mean(shares) == pytest.approx(rate, abs=4 * error)
-    assert np.mean(trusting) > 1.5 * np.mean(shares)
+    # Estimates taken for the truth miss the rate by more than a fifth.
+    assert np.mean(trusting) > 1.2 * np.mean(shares)
 
 
 @pytest.mark.parametrize("rule", [BeliefSampling(), Greedy(), ExpectedImprovement(), EpsilonGreedy(0.3)])
