@@ -54,7 +54,8 @@ def choose(
     dict
         ``user``, ``policy``, ``decision`` (to give the outcome by), ``number`` (from 0), ``probability`` of the
         policy at this moment, ``control``, ``context`` whose prior counts (None: everybody's), ``belief`` by type,
-        ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats.
+        ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats (the sum of −log
+        evidence; it depends on the noise, and is no sign of a new type).
 
     Raises
     ------

@@ -36,6 +36,7 @@ BENCHES = {
     "changing_types": "interaction",
     "bands": "interaction",
     "evaluation": "interaction",
+    "novelty": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar")
@@ -52,7 +53,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs
-        of learning; for ``evaluation``: 60 simulated studies each.
+        of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -47,7 +47,8 @@ class Explanation:
     log_evidence : list of float
         log Σ F β of each of the last signals: how expected it was.
     surprise : float
-        Sum of −log Σ F β over all signals, in nats.
+        Sum of −log Σ F β over all signals, in nats. It depends on the noise, and is no sign of a new type; use
+        `interaction.novelty`.
     unexplained : int
         Number of signals so far that no type explains.
     """
