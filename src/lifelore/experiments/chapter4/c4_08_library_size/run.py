@@ -33,8 +33,10 @@ def check(settings: Mapping) -> None:
 
 def cells(settings: Mapping) -> list[dict]:
     """Every rule, kind of model and size of the library."""
-    every = [*product(settings["rules"], (LEARNT, EXACT), settings["shares"])]
-    every += product([RULE], [UNCERTAIN], settings["shares"])
+    every = [
+        *product(settings["rules"], (LEARNT, EXACT), settings["shares"]),
+        *product([RULE], [UNCERTAIN], settings["shares"]),
+    ]
     return [{"rule": name, "model": model, "share": share} for name, model, share in every]
 
 

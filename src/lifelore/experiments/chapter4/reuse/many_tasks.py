@@ -102,8 +102,8 @@ def play_doubting(
     entropies = np.empty((n_tasks, n_episodes + 1))
     for t in range(n_episodes):
         entropies[:, t] = [entropy(agent.belief) for agent in agents]
-        fixed = t == 0 and first is not None
-        policies[:, t] = first if fixed else [agent.select() for agent in agents]
+        selected = [agent.select() for agent in agents]
+        policies[:, t] = first if t == 0 and first is not None else selected
         shown = signals(t, policies[:, t])
         paid = None if outcomes is None else outcomes(t, policies[:, t])
         for task, agent in enumerate(agents):
