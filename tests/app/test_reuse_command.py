@@ -143,6 +143,20 @@ def test_a_context_that_no_log_has_is_said(reuse, tmp_path):
     assert reuse("choose", "--user", "ann", "--context", "app", "--json").document["context"] == "app"
 
 
+def test_only_an_available_policy_is_chosen(reuse, log):
+    reuse("fit", log, "--control", "0")
+    for available in (
+        ["--available", "big"],
+        ["--available", "big,big"],
+        ["--available", "big", "--available", "big"],
+    ):
+        made = reuse("choose", "--user", "ann", *available, "--json").document
+        assert (made["policy"], made["probability"], made["available"]) == ("big", 1.0, ["big"])
+    made = reuse("choose", "--user", "ann", "--available", "big, dark", "--json").document
+    assert made["available"] == ["big", "dark"]
+    assert reuse("choose", "--user", "ann", "--json").document["available"] is None
+
+
 def test_a_belief_outlives_its_process(reuse, log, start, answer, tmp_path):
     """Each step a program of its own."""
     reuse("fit", log, "--control", "0", "--rule", "sampling")
@@ -200,6 +214,7 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["update", "--decision", "{made}", "--outcome", "good"], "outcome must be a finite number, got 'good'"),
         (["update", "--decision", "{made}", "--outcome", "7"], "outcome must be one of 0, 1, got 7"),
         (["update", "--decision", "{done}", "--outcome", "0"], "ended with 1 already, got 0; nothing changed"),
+        (["choose", "--user", "ann", "--available", "big,none"], "available must name policies of the study"),
         (["report", "--out", "{log}"], "cannot write"),
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),

@@ -134,16 +134,22 @@ def warm(
 def choose(
     user: Annotated[str, Option(help="User to choose for.")],
     context: Annotated[str | None, Option(help="Context of the user, as in the log.")] = None,
+    available: Annotated[
+        list[str] | None,
+        Option(metavar="POLICY,…", help="Policies that the user can get now; default: all. May be repeated."),
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
     """Choose a policy for a user, and store the decision."""
+    from lifelore.agent.reuse.availability import listed_policies
     from lifelore.agent.reuse.one_user import choose as chosen
 
     with _opened(name, where) as (memory, study):
-        document = chosen(memory, study, user, context=context, seed=seed)
+        among = listed_policies(study, available) if available else None
+        document = chosen(memory, study, user, context=context, available=among, seed=seed)
     held = ", control group" if document["control"] else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
     _say(

@@ -6,12 +6,14 @@ function takes the study as `open_study` gave it, so that a loop opens it once.
 """
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.reuse.availability import checked_available
 from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
 from lifelore.agent.reuse.log import check_word
 from lifelore.agent.reuse.past import forget_past
@@ -21,6 +23,7 @@ from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.selection.availability import available_policies, available_probabilities
 from lifelore.memory import KeyState, Memory
 
 ATTEMPTS = 1000
@@ -36,7 +39,13 @@ class _Odds:
 
 
 def choose(
-    memory: Memory, study: Study, user: str, *, context: str | None = None, seed: int = 0
+    memory: Memory,
+    study: Study,
+    user: str,
+    *,
+    context: str | None = None,
+    available: Sequence[str] | None = None,
+    seed: int = 0,
 ) -> dict[str, Any]:
     """Choose a policy for a user's next time and remember that it was chosen.
 
@@ -45,6 +54,10 @@ def choose(
     user : str
     context : str, optional
         What is known of the user beforehand; kept, the newest one counts.
+    available : sequence of str, optional
+        The policies that the user can get now; all by default. Retired ones are left out. Where the incumbent is
+        not available, the control group gets each available policy with equal probability. The set is stored with
+        the decision.
     seed : int
         The draw depends on the seed, the study, the user and the number of the decision alone.
 
@@ -52,22 +65,27 @@ def choose(
     -------
     dict
         ``user``, ``policy``, ``decision`` (to give the outcome by), ``number`` (from 0), ``probability`` of the
-        policy at this moment, ``control``, ``context`` whose prior counts (None: everybody's), ``belief`` by type,
+        policy at this moment, ``available`` policies (None: all), ``control``, ``context`` whose prior counts
+        (None: everybody's), ``belief`` by type,
         ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats.
 
     Raises
     ------
     InputError
-        A name that is no printable text.
+        A name that is no printable text, or no available policy is in use.
+    NotFoundError
+        There is no such policy.
     """
     check_word("user", user)
     if context is not None:
         check_word("context", context)
+    if available is not None:
+        available = checked_available(study, available)
     key, attempt = user_key(study.name, user), 0
     for _ in range(ATTEMPTS):
         known = open_belief(memory, study, key, user, context)
-        decision, answer = _decided(study, known, attempt, seed)
-        offered = [known.history.record_of(decision)]
+        decision, answer = _decided(study, known, attempt, seed, available)
+        offered = known.history.records_of(decision)
         task = {"study": study.name, "policy": decision.policy}
         after = known.state.after(study, [decision], known.state.head)
         state = KeyState(known.name, known.token, after.to_bytes())
@@ -79,14 +97,17 @@ def choose(
     raise StoreError(f"memory {memory.location}: too many choices for one user at once; try again")
 
 
-def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[Decision, dict[str, Any]]:
+def _decided(
+    study: Study, known: UserBelief, attempt: int, seed: int, available: Sequence[str] | None
+) -> tuple[Decision, dict[str, Any]]:
     head, user = known.state.head, known.history.user
     belief = study.algorithm.belief(head.log_belief)
     control = study.holds_out(user)
-    odds = _control_odds(study) if control else _odds(study, belief)
+    odds = _control_odds(study, available) if control else _odds(study, belief, available)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
-    decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
+    among = None if available is None else tuple(available)
+    decision = Decision(head.number, policy, probability, control, int(time.time()), attempt, available=among)
     expected = expected_utility(belief, study.choice_of.performance.mean)
     answer = {
         "user": user,
@@ -94,6 +115,7 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
         "decision": known.history.identifier(decision),
         "number": head.number,
         "probability": probability,
+        "available": None if available is None else list(available),
         "control": control,
         "context": known.context if known.context in study.contexts else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
@@ -103,16 +125,30 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     return decision, answer
 
 
-def _odds(study: Study, belief: NDArray[np.float64]) -> _Odds:
+def _odds(study: Study, belief: NDArray[np.float64], available: Sequence[str] | None) -> _Odds:
     """What the rule does, and a share of anything."""
-    probs = study.selection.probabilities(study.choice_of, belief)
+    if available is None:
+        policies = study.active
+        probs = study.selection.probabilities(study.choice_of, belief)
+    else:
+        policies = [policy for policy in study.active if policy in available]
+        if not policies:
+            raise InputError(
+                f"available must name a policy in use, got {', '.join(available)}, which the control group alone "
+                f"gets; in use are {', '.join(study.active)}"
+            )
+        numbers = available_policies(policies, study.choice_of.policies)
+        probs = available_probabilities(study.selection, study.choice_of, belief, numbers)[numbers]
     probs = (1 - study.explore) * probs + study.explore / len(probs)
-    return _Odds(study.active, probs / probs.sum())
+    return _Odds(policies, probs / probs.sum())
 
 
-def _control_odds(study: Study) -> _Odds:
+def _control_odds(study: Study, available: Sequence[str] | None) -> _Odds:
     """The incumbent, or every policy in use alike, pilots too."""
     policies = [study.incumbent] if study.incumbent is not None else [*study.active, *study.pilots]
+    if available is not None:
+        every = [*study.active, *study.pilots]
+        policies = [one for one in policies if one in available] or [one for one in every if one in available]
     return _Odds(policies, np.full(len(policies), 1 / len(policies)))
 
 

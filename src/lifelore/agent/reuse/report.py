@@ -28,6 +28,7 @@ from lifelore.memory import Memory
 
 COLUMNS = (
     "user", "policy", "outcome", "context", "time", "probability", "group", "decision", "number", "outcome_time",
+    "available",
 )  # fmt: skip
 """Of the log of decisions, which `reuse fit` reads again."""
 SPLITS = ("user", "time", "both")
@@ -58,7 +59,8 @@ def report(
     out : folder, optional
         Gets ``report.json`` and ``report.png``.
     log : file, optional
-        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty.
+        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
+        of the policies that were available, empty where all were.
     incumbent : str, optional
         The policy in place until now; default: the study's incumbent, if it has one.
     split : {"user", "time", "both"}, optional
@@ -230,6 +232,7 @@ def _log_text(study: Study, known: list[History]) -> str:
             writer.writerow([
                 history.user, one.policy or "", outcome, history.context or "", one.chosen, repr(one.probability),
                 group, history.identifier(one), one.number, "" if one.ended is None else one.ended,
+                "" if one.available is None else json.dumps(one.available, ensure_ascii=False),
             ])  # fmt: skip
     return text.getvalue()
 
