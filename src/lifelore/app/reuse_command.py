@@ -29,7 +29,9 @@ Logs = Annotated[
 ]
 Columns = Annotated[
     list[str] | None,
-    Option(metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand."),
+    Option(
+        metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand,weight=ipw."
+    ),
 ]
 Separator = Annotated[
     str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")

@@ -2,9 +2,8 @@
 
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -65,7 +64,7 @@ class FitSettings:
 
 
 def fit(
-    paths: Sequence[str | Path],
+    sources: Any,
     memory: Memory,
     settings: FitSettings | None = None,
     form: LogFormat | None = None,
@@ -77,8 +76,8 @@ def fit(
 
     Parameters
     ----------
-    paths : sequence of paths
-        See `log`.
+    sources : sequence of paths or tables, or a table
+        Files of CSV, or tables of pandas, polars or Arrow; see `read_log`.
     form : LogFormat, optional
         How the logs are written.
 
@@ -100,7 +99,7 @@ def fit(
         A log or setting breaks its rule; memory is as it was.
     """
     settings = settings or FitSettings()
-    log = read_log(paths, form)
+    log = read_log(sources, form)
     generator = stream(settings.seed, "reuse types", settings.name)
     typed = typed_rows(log, settings.model, settings.types, generator)
     library, counts = library_of(log, typed, settings.model)

@@ -9,6 +9,8 @@ from lifelore.core.errors import InputError, NotFoundError
 
 NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision")
+WEIGHT = "weight"
+"""Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 
@@ -20,8 +22,8 @@ class LogFormat:
     Parameters
     ----------
     columns : dict of str to str
-        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`); others have our names. Capitals do not
-        matter.
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `WEIGHT`); others have our names. Capitals
+        do not matter.
     separator : {"comma", "semicolon", "tab"}, optional
         Between columns; default: the one that makes the needed columns of the header.
     decimal_comma : bool
@@ -35,6 +37,8 @@ class LogFormat:
         means, such as ``0``.
     missing_policy : str
         ``refuse`` the log; ``leave-out`` the line; or the name of the policy that a missing policy means.
+    features : tuple of str
+        Names of columns of numbers that are known of a user beforehand.
     """
 
     columns: Mapping[str, str] = field(default_factory=dict)
@@ -44,11 +48,14 @@ class LogFormat:
     missing: tuple[str, ...] = ()
     missing_outcome: str = LEAVE_OUT
     missing_policy: str = REFUSE
+    features: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for ours in self.columns:
-            if ours not in (*NEEDED, *OPTIONAL):
-                raise InputError(f"columns must name {', '.join((*NEEDED, *OPTIONAL))}, got '{ours}'")
+            if ours not in (*NEEDED, *OPTIONAL, WEIGHT):
+                raise InputError(f"columns must name {', '.join((*NEEDED, *OPTIONAL, WEIGHT))}, got '{ours}'")
+        if len(set(self.features)) < len(self.features) or not all(map(str.strip, self.features)):
+            raise InputError(f"features must be names of columns, each once, got {', '.join(self.features)!r}")
         if self.separator is not None and self.separator not in SEPARATORS:
             raise NotFoundError(f"separator must be one of {', '.join(SEPARATORS)}, got '{self.separator}'")
         try:
@@ -60,9 +67,19 @@ class LogFormat:
         """The log's name of a column, in small letters."""
         return self.columns.get(ours, ours).strip().lower()
 
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """The log's names of its columns of numbers beside the outcome, in small letters: weights, features."""
+        weight = [self.column(WEIGHT)] if WEIGHT in self.columns else []
+        return (*weight, *(name.strip().lower() for name in self.features))
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
-        return vars(self) | {"columns": dict(self.columns), "missing": list(self.missing)}
+        return vars(self) | {
+            "columns": dict(self.columns),
+            "missing": list(self.missing),
+            "features": list(self.features),
+        }
 
 
 def parse_columns(words: Sequence[str]) -> dict[str, str]:
