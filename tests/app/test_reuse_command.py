@@ -157,6 +157,27 @@ def test_only_an_available_policy_is_chosen(reuse, log):
     assert reuse("choose", "--user", "ann", "--json").document["available"] is None
 
 
+def test_features_make_the_prior(reuse, log, tmp_path):
+    rows = log.read_text().splitlines()
+    path = tmp_path / "aged.csv"
+    ages = [20 + 40 * (int(row[1 : row.index(",")]) % 2) for row in rows[1:]]
+    path.write_text(
+        "\n".join([rows[0] + ",Age", *(f"{row},{age}" for row, age in zip(rows[1:], ages, strict=True))])
+    )
+    assert (
+        "the prior follows from age, by 40 users: 0."
+        in reuse("fit", path, "--features", "age", "--control", "0").out
+    )
+    made = [
+        reuse("choose", "--user", f"n{age}", "--features", f"age={age}", "--json").document for age in (20, 60)
+    ]
+    assert [one["policy"] for one in made] == ["big", "dark"]
+    assert made[0]["features"] == {"age": 20.0}
+    document = reuse("fit", path, "--features", "age", "--json").document
+    assert document["features"]["strength"] > 0
+    assert "unknown feature 'size'" in reuse("choose", "--user", "x", "--features", "age=1,size=2").refusal
+
+
 def test_a_belief_outlives_its_process(reuse, log, start, answer, tmp_path):
     """Each step a program of its own."""
     reuse("fit", log, "--control", "0", "--rule", "sampling")
@@ -215,6 +236,9 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["update", "--decision", "{made}", "--outcome", "7"], "outcome must be one of 0, 1, got 7"),
         (["update", "--decision", "{done}", "--outcome", "0"], "ended with 1 already, got 0; nothing changed"),
         (["choose", "--user", "ann", "--available", "big,none"], "available must name policies of the study"),
+        (["choose", "--user", "ann", "--features", "age=3"], "was fitted without --features"),
+        (["choose", "--user", "ann", "--features", "age"], "features must be NAME=NUMBER"),
+        (["fit", "{log}", "--features", "age"], "it has no age"),
         (["report", "--out", "{log}"], "cannot write"),
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),

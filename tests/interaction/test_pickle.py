@@ -31,6 +31,7 @@ from lifelore.interaction.baselines.thompson import GaussianThompson
 from lifelore.interaction.baselines.try_all import TryAll
 from lifelore.interaction.baselines.ucb1 import UCB1
 from lifelore.interaction.beliefs.belief import log_prior, update
+from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library import storage_cost
 from lifelore.interaction.library.offline_runs import run_offline
@@ -200,7 +201,7 @@ USER_ROWS = outcome_families.UserRows(np.array([0, 1, 1]), np.array([0, 0, 1]), 
 COMMON: dict[str, Any] = {"n_tasks": 3, "seed": 2}
 BASELINES: dict[type, dict[str, Any]] = {
     EXP3: {"gamma": 0.2}, UCB1: {}, TryAll: {}, IntervalEstimation: {}, EpsilonGreedyMeans: {},
-    GaussianThompson: {}, ClusteredUCB: {"clusters": [0, 0, 1, 1]}, GPUCB: {"kernel": np.eye(N_POLICIES) + 0.5, "noise": 0.5},
+    GaussianThompson: {}, ClusteredUCB: {"clusters": [0, 0, 1, 1]}, GPUCB: {"kernel": np.eye(4), "noise": 0.5},
 }  # fmt: skip
 SIGNALS: list[tuple[Any, Any]] = [
     (ReturnSignal(library().performance), 1.5),
@@ -256,6 +257,8 @@ MAKERS: list[Maker] = [
     (lambda: probabilistic_policy_reuse.ProbabilisticPolicyReuse(reuse=0.5), nothing),
     (reuser, nothing),
     (lambda: probabilistic_policy_reuse.ReuseRule(0.1, 1.0, 0.9, 1.0), nothing),
+    (lambda: FeaturePrior.fit(samples()[0], np.arange(4) % 3, [0.2, 0.5, 0.3]),
+     lambda own: [own.prior(np.ones(6))]),
     (lambda: update(log_prior([0.5, 0.5]), np.log([0.1, 0.3])), nothing),
     (lambda: run_offline([1.0, 2.0], [3.0], lambda kind, g: [kind], lambda policy, task, g: policy * task),
      nothing),

@@ -56,6 +56,12 @@ MissingPolicy = Annotated[
 ]
 
 
+Features = Annotated[
+    list[str] | None,
+    Option(metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."),
+]
+
+
 @reuse.command()
 def fit(
     logs: Logs,
@@ -83,6 +89,7 @@ def fit(
     missing: Missing = None,
     missing_outcome: MissingOutcome = "leave-out",
     missing_policy: MissingPolicy = "refuse",
+    features: Features = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -97,7 +104,9 @@ def fit(
     from lifelore.memory import open_memory
 
     settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, seed)
-    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = _log_format(
+        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
+    )
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
@@ -113,6 +122,7 @@ def warm(
     missing: Missing = None,
     missing_outcome: MissingOutcome = "leave-out",
     missing_policy: MissingPolicy = "refuse",
+    features: Features = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -126,7 +136,9 @@ def warm(
     from lifelore.agent.reuse.warm import warm as warmed
     from lifelore.app.console import print_json
 
-    form = _log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = _log_format(
+        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
+    )
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
     print_json(document) if as_json else _print_warm(document)
@@ -136,6 +148,10 @@ def warm(
 def choose(
     user: Annotated[str, Option(help="User to choose for.")],
     context: Annotated[str | None, Option(help="Context of the user, as in the log.")] = None,
+    features: Annotated[
+        list[str] | None,
+        Option(metavar="NAME=NUMBER,…", help="Numbers known of the user, such as age=31,visits=4."),
+    ] = None,
     available: Annotated[
         list[str] | None,
         Option(metavar="POLICY,…", help="Policies that the user can get now; default: all. May be repeated."),
@@ -147,17 +163,19 @@ def choose(
 ) -> None:
     """Choose a policy for a user, and store the decision."""
     from lifelore.agent.reuse.availability import listed_policies
+    from lifelore.agent.reuse.log_format import parse_features
     from lifelore.agent.reuse.one_user import choose as chosen
 
+    numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
         among = listed_policies(study, available) if available else None
-        document = chosen(memory, study, user, context=context, available=among, seed=seed)
+        document = chosen(memory, study, user, context=context, features=numbers, available=among, seed=seed)
     held = ", control group" if document["control"] else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
     _say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
-        + (new if context not in (None, document["context"]) else ""),
+        + (new if context not in (None, document["context"]) and not document["features"] else ""),
         as_json,
     )
 
@@ -291,13 +309,16 @@ def _log_format(
     missing: list[str] | None,
     missing_outcome: str,
     missing_policy: str,
+    features: list[str] | None,
 ) -> "LogFormat":
     from lifelore.agent.reuse.log_format import LogFormat, parse_columns
 
     names = parse_columns(columns or [])
+    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
     return LogFormat(
-        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy
-    )
+        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy,
+        columns_of_numbers,
+    )  # fmt: skip
 
 
 def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
@@ -322,6 +343,8 @@ def _print_fit(document: dict[str, Any]) -> None:
         *LEFT_OUT,
         ("of unknown type left out", "left_out"),
     )
+    if document["features"]:
+        print(_features_line(document["features"]))
     if document["borrowed"]:
         print(
             f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
@@ -329,6 +352,16 @@ def _print_fit(document: dict[str, Any]) -> None:
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"
         print(f"  {name} is {document[name]}, was {before} until now{keep}")
+
+
+def _features_line(features: dict[str, Any]) -> str:
+    names = ", ".join(features["names"])
+    if not features["strength"]:
+        return f"  {names} of {features['users']} users tell nothing about types; every user gets the same prior"
+    return (
+        f"  the prior follows from {names}, by {features['users']} users: {features['gain']:.2g} nats a user "
+        "better than without, on users held out"
+    )
 
 
 def _print_warm(document: dict[str, Any]) -> None:

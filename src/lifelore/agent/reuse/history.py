@@ -7,6 +7,7 @@ that follows from it.
 import hashlib
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -57,6 +58,7 @@ class History:
     user: str
     context: str | None
     decisions: tuple[Decision, ...]
+    features: dict[str, float] | None = None
 
     @property
     def robot(self) -> str:
@@ -86,7 +88,9 @@ class History:
     def _record(self, number: int, fields: dict[int, int]) -> Record:
         slots = np.array([FIELDS * number + field for field in fields], np.int64)
         values = np.array(list(fields.values()), np.int64)
-        about = {"study": self.study, "user": self.user, "context": self.context}
+        about: dict[str, Any] = {"study": self.study, "user": self.user, "context": self.context}
+        if self.features:
+            about["features"] = self.features
         return Record(KIND, f"{self.study}/{self.key}", VERSION, "newest", slots, values, about)
 
 
@@ -115,7 +119,7 @@ def open_history(memory: Memory, study: Study, key: str, user: str = "") -> Hist
         return History(study.name, key, user, None, ())
     about = record.about
     decisions = _decisions(memory, study, key, record)
-    return History(study.name, key, about["user"], about.get("context"), decisions)
+    return History(study.name, key, about["user"], about.get("context"), decisions, about.get("features"))
 
 
 def read_decisions(memory: Memory, study: Study, key: str, first: int = 0) -> tuple[Decision, ...]:

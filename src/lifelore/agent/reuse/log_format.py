@@ -82,8 +82,27 @@ class LogFormat:
         }
 
 
-def parse_columns(words: Sequence[str]) -> dict[str, str]:
-    """Names of columns from words such as ``user=household,policy=brand``.
+def parse_features(words: Sequence[str]) -> dict[str, float]:
+    """Numbers from words such as ``age=31,visits=4``.
+
+    Raises
+    ------
+    InputError
+        A part is not ``NAME=NUMBER``, or a name comes twice.
+    """
+    features: dict[str, float] = {}
+    for name, text in parse_columns(words, "features must be NAME=NUMBER, each once, such as age=31").items():
+        try:
+            features[name] = float(text)
+        except ValueError:
+            raise InputError(f"feature '{name}' must be a number, got '{text}'") from None
+    return features
+
+
+def parse_columns(
+    words: Sequence[str], rule: str = "columns must be OURS=THEIRS, each once, such as user=household"
+) -> dict[str, str]:
+    """Names of columns from words such as ``user=household,policy=brand``; `rule` begins the error.
 
     Raises
     ------
@@ -94,6 +113,6 @@ def parse_columns(words: Sequence[str]) -> dict[str, str]:
     for part in (part for word in words for part in word.split(",")):
         ours, found, theirs = (piece.strip() for piece in part.partition("="))
         if not (ours and found and theirs) or ours in columns:
-            raise InputError(f"columns must be OURS=THEIRS, each once, such as user=household, got {part!r}")
+            raise InputError(f"{rule}, got {part!r}")
         columns[ours] = theirs
     return columns

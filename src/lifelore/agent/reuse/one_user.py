@@ -6,7 +6,7 @@ function takes the study as `open_study` gave it, so that a loop opens it once.
 """
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -44,6 +44,7 @@ def choose(
     user: str,
     *,
     context: str | None = None,
+    features: Mapping[str, float] | None = None,
     available: Sequence[str] | None = None,
     seed: int = 0,
 ) -> dict[str, Any]:
@@ -54,6 +55,9 @@ def choose(
     user : str
     context : str, optional
         What is known of the user beforehand; kept, the newest one counts.
+    features : mapping of str to float, optional
+        Numbers known of the user beforehand: all features of the study; kept, the newest ones count. They come
+        before the context. Without them, and in a study without features, the prior is that of the context.
     available : sequence of str, optional
         The policies that the user can get now; all by default. Retired ones are left out. Where the incumbent is
         not available, the control group gets each available policy with equal probability. The set is stored with
@@ -65,25 +69,26 @@ def choose(
     -------
     dict
         ``user``, ``policy``, ``decision`` (to give the outcome by), ``number`` (from 0), ``probability`` of the
-        policy at this moment, ``available`` policies (None: all), ``control``, ``context`` whose prior counts
-        (None: everybody's), ``belief`` by type,
+        policy at this moment, ``available`` policies (None: all), ``control``, ``features`` whose prior counts,
+        else ``context`` whose prior counts (both None: everybody's), ``belief`` by type,
         ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats.
 
     Raises
     ------
     InputError
-        A name that is no printable text, or no available policy is in use.
+        A name that is no printable text, no available policy is in use, or a feature is missing.
     NotFoundError
-        There is no such policy.
+        There is no such policy or feature.
     """
     check_word("user", user)
     if context is not None:
         check_word("context", context)
     if available is not None:
         available = checked_available(study, available)
+    numbers = None if features is None else checked_features(study, features)
     key, attempt = user_key(study.name, user), 0
     for _ in range(ATTEMPTS):
-        known = open_belief(memory, study, key, user, context)
+        known = open_belief(memory, study, key, user, context, numbers)
         decision, answer = _decided(study, known, attempt, seed, available)
         offered = known.history.records_of(decision)
         task = {"study": study.name, "policy": decision.policy}
@@ -109,6 +114,7 @@ def _decided(
     among = None if available is None else tuple(available)
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt, available=among)
     expected = expected_utility(belief, study.choice_of.performance.mean)
+    by_features = study.feature_prior is not None and set(known.features or ()) == set(study.feature_prior.names)
     answer = {
         "user": user,
         "policy": policy,
@@ -117,12 +123,20 @@ def _decided(
         "probability": probability,
         "available": None if available is None else list(available),
         "control": control,
-        "context": known.context if known.context in study.contexts else None,
+        "context": known.context if known.context in study.contexts and not by_features else None,
+        "features": known.features if by_features else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
         "surprise": head.surprise,
     }
     return decision, answer
+
+
+def checked_features(study: Study, features: Mapping[str, float]) -> dict[str, float]:
+    """The features of a user as the study knows them; errors as for `choose`."""
+    if study.feature_prior is None:
+        raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
+    return study.feature_prior.checked(features)
 
 
 def _odds(study: Study, belief: NDArray[np.float64], available: Sequence[str] | None) -> _Odds:

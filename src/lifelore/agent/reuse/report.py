@@ -60,7 +60,8 @@ def report(
         Gets ``report.json`` and ``report.png``.
     log : file, optional
         Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
-        of the policies that were available, empty where all were.
+        of the policies that were available, empty where all were. Features of the study follow, so that a new
+        fit can read them.
     incumbent : str, optional
         The policy in place until now; default: the study's incumbent, if it has one.
     split : {"user", "time", "both"}, optional
@@ -224,7 +225,9 @@ def _by_decision(groups: dict[str, list[History]]) -> list[dict[str, Any]]:
 def _log_text(study: Study, known: list[History]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    names = () if study.feature_prior is None else study.feature_prior.names
+    features = [name for name in names if name.strip().lower() not in COLUMNS]
+    writer.writerow([*COLUMNS, *features])
     for history in known:
         for one in history.decisions:
             outcome = "" if one.outcome is None else repr(one.outcome)
@@ -233,6 +236,7 @@ def _log_text(study: Study, known: list[History]) -> str:
                 history.user, one.policy or "", outcome, history.context or "", one.chosen, repr(one.probability),
                 group, history.identifier(one), one.number, "" if one.ended is None else one.ended,
                 "" if one.available is None else json.dumps(one.available, ensure_ascii=False),
+                *((history.features or {}).get(name, "") for name in features),
             ])  # fmt: skip
     return text.getvalue()
 

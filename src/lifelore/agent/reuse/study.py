@@ -18,6 +18,7 @@ from lifelore.agent.reuse.log import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -46,6 +47,8 @@ class Study:
         What each policy is: ``active``, ``pilot`` or ``retired``.
     contexts : dict of str to (n_types,) float64
         Prior over types of users of a context.
+    feature_prior : FeaturePrior, optional
+        Prior over types from numbers that are known of a user beforehand.
     control : float
         Share of users held out, in [0, 1).
     incumbent : str, optional
@@ -73,6 +76,7 @@ class Study:
     change: float = 0.0
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, SignalTable] = field(default_factory=dict)
+    feature_prior: FeaturePrior | None = None
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
@@ -126,7 +130,10 @@ class Study:
     @cached_property
     def fingerprint(self) -> str:
         """Hash of the library and the dynamics: of all that turns the evidence of a user into a belief."""
-        return hashlib.sha256(self.library.to_bytes() + repr(self.change).encode()).hexdigest()[:32]
+        content = self.library.to_bytes() + repr(self.change).encode()
+        if self.feature_prior is not None:
+            content += repr(self.feature_prior.to_dict()).encode()
+        return hashlib.sha256(content).hexdigest()[:32]
 
     @cached_property
     def policy_names(self) -> dict[int, str]:
@@ -145,8 +152,13 @@ class Study:
         expected = self.library.prior @ self.library.performance.mean
         return max(self.active, key=lambda policy: expected[self.library.index_of_policy(policy)])
 
-    def prior_of(self, context: str | None) -> NDArray[np.float64]:
-        """Prior over types, (n_types,): that of a known context, else everybody's."""
+    def prior_of(self, context: str | None, features: Mapping[str, float] | None = None) -> NDArray[np.float64]:
+        """Prior over types, (n_types,): by features, else that of a known context, else everybody's.
+
+        Features count where the study has learnt from just these; those of an earlier fit may be others.
+        """
+        if self.feature_prior is not None and features and set(features) == set(self.feature_prior.names):
+            return self.feature_prior.prior(features)
         return self.contexts.get(context or "", self.library.prior)
 
     def holds_out(self, user: str) -> bool:
@@ -177,6 +189,7 @@ class Study:
             "explore": self.explore,
             "change": self.change,
             "fitted": self.fitted,
+            "feature_prior": None if self.feature_prior is None else self.feature_prior.to_dict(),
         }
         if table is not None:
             values = np.concatenate([values, table.probs.astype(np.float64).ravel().view(np.int64)])
@@ -223,11 +236,15 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     try:
         library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
         tables = _tables(record.values[length:], about.get("table"))
+        learnt = about.get("feature_prior")
+        feature_prior = None if learnt is None else FeaturePrior.from_dict(learnt)
     except InputError as error:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
     settings = {key: about[key] for key in ("control", "incumbent", "rule", "explore", "change", "fitted")}
-    return Study(name, library, dict(about["states"]), contexts, **settings, tables=tables)
+    return Study(
+        name, library, dict(about["states"]), contexts, **settings, tables=tables, feature_prior=feature_prior
+    )
 
 
 def _tables(cells: NDArray[np.int64], stored: list[int] | None) -> dict[int, SignalTable]:

@@ -8,8 +8,9 @@ for histories of an earlier Lifelore.
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,12 +31,14 @@ class UserBelief:
 
     history : without its decisions
     context : whose prior counts, or None
+    features : numbers known of the user beforehand, or None
     token : of the cells in memory that the belief follows; None where there are none
     state : the belief
     """
 
     history: History
     context: str | None
+    features: dict[str, float] | None
     token: int | None
     state: UserState
 
@@ -72,7 +75,14 @@ class Found(NamedTuple):
         return state.after(study, ended, self.start)
 
 
-def open_belief(memory: Memory, study: Study, key: str, user: str = "", context: str | None = None) -> UserBelief:
+def open_belief(
+    memory: Memory,
+    study: Study,
+    key: str,
+    user: str = "",
+    context: str | None = None,
+    features: dict[str, float] | None = None,
+) -> UserBelief:
     """The belief about a user.
 
     Parameters
@@ -81,43 +91,57 @@ def open_belief(memory: Memory, study: Study, key: str, user: str = "", context:
         Name of the user; that in memory counts where memory knows the user.
     context : str, optional
         Context of the user; by default the one in memory.
+    features : dict of str to float, optional
+        Numbers known of the user beforehand; by default those in memory.
     """
     stored = memory.recall_state(KIND, f"{study.name}/{key}", VERSION)
-    about = stored.about if stored else {"user": user}
-    context = context or about.get("context")
-    history = History(study.name, key, about["user"], context, ())
+    about: Mapping[str, Any] = stored.about if stored else {"user": user}
+    context, features = context or about.get("context"), features or about.get("features")
+    history = History(study.name, key, about["user"], context, (), features)
     state = from_bytes(stored.content) if stored else None
     index = read_index(memory, study.name)
     origin = {"study": study.fingerprint, "past": index.get("token"), "context": context}
+    if features:
+        origin["features"] = features
     if state is None or state.origin != origin:
         past = read_past_user(memory, study.name, index, key)
-        context = context or past.context
-        basis = basis_of(study, context, past)
+        context, features = context or past.context, features or past.features
+        basis = basis_of(study, context, past, features)
         if state is None or state.basis != basis:
-            state = replayed(study, context, past, read_decisions(memory, study, key) if stored else ())
-        state = replace(state, origin=origin, context=context)
-    return UserBelief(history, state.context, stored.token if stored else None, state)
+            decisions = read_decisions(memory, study, key) if stored else ()
+            state = replayed(study, context, past, decisions, features)
+        state = replace(state, origin=origin, context=context, features=features)
+    return UserBelief(history, state.context, state.features, stored.token if stored else None, state)
 
 
-def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
+def replayed(
+    study: Study,
+    context: str | None,
+    past: PastUser,
+    decisions: tuple[Decision, ...],
+    features: dict[str, float] | None = None,
+) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    log_belief, surprise = study.algorithm.start(prior_of(study, context, past)), 0.0
+    log_belief, surprise = study.algorithm.start(prior_of(study, context, past, features)), 0.0
     for policy, outcome in past.outcomes:
         surprise += learn(study, log_belief, policy, outcome)
     start = Checkpoint(0, log_belief, surprise)
-    state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
+    state = UserState(basis_of(study, context, past, features), {}, context, 0, (start,), features)
     return state.after(study, decisions, start)
 
 
 def last_belief(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
     """The belief after all decisions of a history, (n_types,)."""
-    state = replayed(study, history.context or past.context, past, history.decisions)
+    features = history.features or past.features
+    state = replayed(study, history.context or past.context, past, history.decisions, features)
     return study.algorithm.belief(state.head.log_belief)
 
 
-def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:
-    """Prior over types before the past, (n_types,): the context's, with `NAMED_TYPE` on a type a log names."""
-    prior = study.prior_of(context)
+def prior_of(
+    study: Study, context: str | None, past: PastUser, features: dict[str, float] | None = None
+) -> NDArray[np.float64]:
+    """Prior over types before the past, (n_types,): `Study.prior_of`, with `NAMED_TYPE` on a type a log names."""
+    prior = study.prior_of(context, features)
     if past.type not in study.library.types:
         return prior
     named = np.zeros(len(prior))
@@ -125,8 +149,8 @@ def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.fl
     return named + (1 - NAMED_TYPE) * prior
 
 
-def basis_of(study: Study, context: str | None, past: PastUser) -> str:
+def basis_of(study: Study, context: str | None, past: PastUser, features: dict[str, float] | None = None) -> str:
     """Hash of all that a belief follows from, beside the decisions."""
-    prior = prior_of(study, context, past)
+    prior = prior_of(study, context, past, features)
     text = study.fingerprint + json.dumps(past.outcomes)
     return hashlib.sha256(text.encode() + prior.tobytes()).hexdigest()[:32]

@@ -55,6 +55,8 @@ class UserState:
         Plain data that tell without a look at the past whether `basis` still holds.
     context : str, optional
         Whose prior counts.
+    features : dict of str to float, optional
+        Numbers known of the user beforehand.
     first_open : int
         Number of the first decision without an outcome; that of the head where there is none.
     checkpoints : tuple of Checkpoint
@@ -66,6 +68,7 @@ class UserState:
     context: str | None
     first_open: int
     checkpoints: tuple[Checkpoint, ...]
+    features: dict[str, float] | None = None
 
     @property
     def head(self) -> Checkpoint:
@@ -108,6 +111,8 @@ class UserState:
             "context": self.context,
             "open": self.first_open,
         }
+        if self.features:
+            header["features"] = self.features
         text = json.dumps(header | {"n": len(self.checkpoints)}).encode()
         numbers = np.array([point.number for point in self.checkpoints], "<i8")
         surprise = np.array([point.surprise for point in self.checkpoints], "<f8")
@@ -132,7 +137,9 @@ def from_bytes(content: bytes | None) -> UserState | None:
     surprise = np.frombuffer(body, "<f8", n, length + 8 * n).tolist()
     beliefs = np.frombuffer(body, "<f8", -1, length + 16 * n).reshape(n, -1).astype(np.float64)
     points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, strict=True))
-    return UserState(header["basis"], header["origin"], header["context"], header["open"], points)
+    return UserState(
+        header["basis"], header["origin"], header["context"], header["open"], points, header.get("features")
+    )
 
 
 def learn(study: "Study", log_belief: NDArray[np.float64], policy: str | None, outcome: float | None) -> float:

@@ -138,6 +138,8 @@ def _added(
             known.type = log.type.names[log.type_of_user[user]]
         if log.context_of_user[user] >= 0:
             known.context = log.context.names[log.context_of_user[user]]
+        if log.feature_names and not np.isnan(log.features_of_user[user]).any():
+            known.features = dict(zip(log.feature_names, log.features_of_user[user].tolist(), strict=True))
         for row in own.tolist():
             known.rows.setdefault(numbers[files[row]], []).append((policies[codes[row]], outcomes[row]))
     for number, file in zip(numbers, log.files, strict=True):
