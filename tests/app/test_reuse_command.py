@@ -59,7 +59,8 @@ def test_from_a_log_to_a_report(reuse, log, tmp_path):
     assert (tmp_path / "out" / "report.png").exists()
     words = reuse("report", "--out", tmp_path / "out", "--log", tmp_path / "d.csv").out
     assert "uplift: " in words
-    assert f"report.json and report.png written to {tmp_path / 'out'}\n" in words
+    assert f"report.json, report.png and calibration.png written to {tmp_path / 'out'}\n" in words
+    assert "calibration, quantiles of outcomes: mean distance 0." in words
     assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 424 outcomes of 52 users")
 
 

@@ -43,6 +43,7 @@ from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.calibration import type_calibration
 from lifelore.interaction.reuse.reuse_algorithm import BestResponses, ReuseAlgorithm
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 from lifelore.interaction.selection import RULES, rule_named
@@ -271,6 +272,7 @@ MAKERS: list[Maker] = [
     (lambda: kept("_evidence")[-1], nothing),
     (lambda: agent("greedy").explain(), lambda own: [own.to_dict()]),
     (lambda: agent("greedy").select_top(1)[0], nothing),
+    (lambda: type_calibration(np.eye(3), np.arange(3)), lambda own: [own.to_dict()]),
 ]  # fmt: skip
 
 NOT_STATE = {

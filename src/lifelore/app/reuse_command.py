@@ -208,7 +208,7 @@ def update(
 
 @reuse.command()
 def report(
-    out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and report.png.")] = None,
+    out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and the pictures.")] = None,
     log: Annotated[str | None, Option(metavar="FILE", help="CSV file for all decisions.")] = None,
     incumbent: Annotated[
         str | None, Option(metavar="POLICY", help="Policy in place until now; default: that of the fit, if any.")
@@ -237,7 +237,10 @@ def report(
         print_json(document)
         return
     _print_report(document)
-    for content, path in (("report.json and report.png", out), ("every decision", log)):
+    pictures = "report.json, report.png" + (
+        " and calibration.png" if any(document["calibration"].values()) else ""
+    )
+    for content, path in ((pictures, out), ("every decision", log)):
         if path is not None:
             print(f"  {content} written to {path}")
 
@@ -411,6 +414,9 @@ def _print_report(document: dict[str, Any]) -> None:
         ("regret by the library, control group", document["regret"]["control"]),
     ):
         print(f"  {label}: {_estimate(estimate)}")
+    for label, name in (("quantiles of outcomes", "outcomes"), ("probabilities of types", "types")):
+        if found := document["calibration"][name]:
+            print(f"  calibration, {label}: mean distance {found['error']:.3f}, {found['groups']} users")
     rows = [row for row in document["policies"] if row["outcome"]]
     if rows:
         print("  each policy in the control group:")

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.agent.reuse.calibration import calibration
 from lifelore.agent.reuse.history import Decision, History, histories
 from lifelore.agent.reuse.past import Past, PastUser, read_past
 from lifelore.agent.reuse.study import Study
@@ -57,7 +58,7 @@ def report(
     Parameters
     ----------
     out : folder, optional
-        Gets ``report.json`` and ``report.png``.
+        Gets ``report.json`` and ``report.png``, and ``calibration.png`` where there is an outcome.
     log : file, optional
         Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
         of the policies that were available, empty where all were. Features of the study follow, so that a new
@@ -78,7 +79,7 @@ def report(
         ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
         at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
         brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
-        at each decision.
+        at each decision; ``calibration``, see `calibration.calibration`.
 
     Raises
     ------
@@ -143,6 +144,7 @@ def _document(study: Study, known: list[History], past: Past, incumbent: str | N
             for name, group in groups.items()
         },
         "by_decision": _by_decision(groups),
+        "calibration": calibration(study, known, past),
     }
 
 
@@ -242,6 +244,7 @@ def _log_text(study: Study, known: list[History]) -> str:
 
 
 def _write_folder(folder: Path, document: dict[str, Any]) -> None:
+    from lifelore.figures.reuse_calibration import draw_calibration
     from lifelore.figures.reuse_report import draw_reuse_report
     from lifelore.figures.style import save_figure
 
@@ -254,6 +257,8 @@ def _write_folder(folder: Path, document: dict[str, Any]) -> None:
         # Names may be of any script; what the font lacks is drawn as a box, and report.json has it.
         warnings.filterwarnings("ignore", "Glyph .* missing from")
         save_figure(draw_reuse_report(document), folder / "report.png")
+    if any(document["calibration"].values()):
+        save_figure(draw_calibration(document["calibration"]), folder / "calibration.png")
 
 
 def _write(path: Path, text: str) -> None:

@@ -1,5 +1,5 @@
 """Bayesian policy reuse (thesis Alg. 7): for one agent and for very many users at once.
 
 Read in this order: `reuse_algorithm`, `bayesian_policy_reuse`, `user_beliefs`, `user_kernels`; `reuse_session` and
-`user_file` store them in files, `explanation` explains a choice, `regret` measures it.
+`user_file` store them in files, `explanation` explains a choice, `regret` and `calibration` measure it.
 """
