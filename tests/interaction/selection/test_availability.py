@@ -182,6 +182,20 @@ def test_what_the_library_learns_reaches_masked_choices():
     assert agent.select([1, 2]) == 2
 
 
+def test_a_table_that_changes_in_place_is_read_anew():
+    library = learnt_library()
+    belief, rule, policies = np.full(5, 0.2), rule_named("information-directed"), np.array([0, 2])
+    before = available_scores(rule, library, belief, policies)
+    table = library.table(8)
+    table.probs[2] = 1 / table.n_signals
+    table.conditional_entropy[2] = np.log(table.n_signals)
+    after = available_scores(rule, library, belief, policies)
+    assert after[0] == before[0]
+    # The second policy's signals now tell nothing: the least information, 1e-9 nats, divides the regret.
+    lost = belief @ library.performance.mean[:, policies].max(axis=1) - belief @ library.performance.mean[:, 2]
+    assert after[2] == pytest.approx(-lost / 1e-9**0.5)
+
+
 def test_more_sets_than_are_stored_choose_the_same():
     random = np.random.default_rng(0)
     wide = PolicyLibrary.from_samples(random.normal(size=(3, 8, 6)))

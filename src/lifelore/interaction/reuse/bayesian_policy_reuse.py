@@ -145,7 +145,7 @@ class BayesianPolicyReuse:
         names = self.library.policies
         policies = np.arange(len(names)) if available is None else available_policies(available, names)
         scores = available_scores(
-            self.rule, self.library, self._current(), policies,
+            self.rule, self.algorithm.library, self._current(), policies,
             episodes_left=self.episodes_left, generator=self.generator,
         )  # fmt: skip
         best = best_policies(scores, k, self.generator)
@@ -206,11 +206,11 @@ class BayesianPolicyReuse:
 
     def probabilities(self, available: Available | None = None) -> Array:
         """Probability that `select(available)` takes each policy, (n_policies,), sums to 1; errors as there."""
-        belief, left = self._current(), self.episodes_left
+        belief, left, library = self._current(), self.episodes_left, self.algorithm.library
         if available is None:
-            return self.rule.probabilities(self.library, belief, episodes_left=left)
-        policies = available_policies(available, self.library.policies)
-        return available_probabilities(self.rule, self.library, belief, policies, episodes_left=left)
+            return self.rule.probabilities(library, belief, episodes_left=left)
+        policies = available_policies(available, library.policies)
+        return available_probabilities(self.rule, library, belief, policies, episodes_left=left)
 
     def explain(self) -> Explanation:
         """The evidence of the last signals for each type, and the selected policy beside the runner-up."""

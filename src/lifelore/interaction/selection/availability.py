@@ -16,6 +16,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import index_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.outcome_model import OutcomeModel
 from lifelore.interaction.selection.choice import choose
 from lifelore.interaction.selection.rule import SelectionRule
 
@@ -67,6 +68,9 @@ def available_policies(available: Available, names: Sequence[str]) -> Numbers:
 def available_part(library: PolicyLibrary, policies: Numbers) -> PolicyLibrary:
     """The library of some policies, as rules read it: outcomes and signal tables, but no likelihoods of signals.
 
+    Its models are views: any library will do, also one whose models cannot be restricted, and the part sees what
+    the models learn later.
+
     Parameters
     ----------
     policies : (k,) int64
@@ -74,7 +78,7 @@ def available_part(library: PolicyLibrary, policies: Numbers) -> PolicyLibrary:
     """
     if len(policies) == library.n_policies:
         return library
-    performance = library.performance.take(policies=policies.tolist())
+    performance: Any = _PartOfOutcomes(library.performance, policies)
     signal: Any = _PartOfTable(library, policies)
     names = tuple(library.policies[policy] for policy in policies)
     return PolicyLibrary(performance, signal, library.types, names, library.prior)
@@ -130,6 +134,33 @@ def best_policies(scores: Array, k: int, generator: np.random.Generator) -> list
     return best
 
 
+class _PartOfOutcomes:
+    """The outcomes of some policies: arrays over pairs and methods that give them, cut to these policies."""
+
+    def __init__(self, outcomes: OutcomeModel, policies: Numbers) -> None:
+        self._outcomes, self._policies = outcomes, policies
+
+    @property
+    def n_types(self) -> int:
+        return self._outcomes.n_types
+
+    @property
+    def n_policies(self) -> int:
+        return len(self._policies)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        found: Any = getattr(self._outcomes, name)
+        if isinstance(found, np.ndarray):
+            return self._cut(found)
+        # A method that gives (..., n_types, n_policies) for thresholds or values.
+        return (lambda values: self._cut(found(values))) if callable(found) else found
+
+    def _cut(self, of_pairs: Array) -> Array:
+        return np.ascontiguousarray(of_pairs[..., self._policies])
+
+
 class _PartOfTable:
     """Stands for the signal model of a part of a library: gives the part's table and nothing else."""
 
@@ -139,12 +170,13 @@ class _PartOfTable:
     def table(self, n_bins: int) -> SignalTable:
         """The rows of the part's policies in the library's table."""
         whole = self._library.table(n_bins)
-        parts = _PARTS.setdefault(whole, {})
+        rows, parts = whole.probs[self._policies], _PARTS.setdefault(whole, {})
         key = self._policies.tobytes()
-        if key not in parts:
+        # A library may change its table in place; the part is then made anew.
+        if key not in parts or not np.array_equal(parts[key].probs, rows):
             if len(parts) >= MOST_PARTS:
                 parts.clear()
-            parts[key] = SignalTable.restored(whole.probs[self._policies])
+            parts[key] = SignalTable.restored(rows)
         return parts[key]
 
 
