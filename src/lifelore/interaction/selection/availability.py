@@ -154,8 +154,14 @@ class _PartOfOutcomes:
         found: Any = getattr(self._outcomes, name)
         if isinstance(found, np.ndarray):
             return self._cut(found)
-        # A method that gives (..., n_types, n_policies) for thresholds or values.
-        return (lambda values: self._cut(found(values))) if callable(found) else found
+        if not callable(found):
+            return found
+
+        def cut(values: Any) -> Array:
+            # For thresholds or values (...,), a method gives (..., n_types, n_policies).
+            return self._cut(getattr(self._outcomes, name)(values))
+
+        return cut
 
     def _cut(self, of_pairs: Array) -> Array:
         return np.ascontiguousarray(of_pairs[..., self._policies])
