@@ -14,6 +14,7 @@ from lifelore.interaction.selection import RULES, BeliefSampling, EpsilonGreedy,
 from lifelore.interaction.selection.availability import (
     MOST_PARTS,
     available_policies,
+    available_probabilities,
     available_scores,
     best_policies,
 )
@@ -63,19 +64,19 @@ def test_bad_sets_are_refused_by_all_three(available, error, words):
 
 @pytest.mark.parametrize("name", sorted(RULES))
 @pytest.mark.parametrize("model", ["gaussian", "student-t", "categorical", "histogram"])
-def test_a_rule_chooses_as_from_a_library_without_the_others(name, model):
+def test_a_rule_scores_as_in_a_library_without_the_others(name, model):
     library, rule = learnt_library(model=model), rule_named(name)
-    belief = np.random.default_rng(1).dirichlet(np.ones(5), 3)
     for policies in ([0, 2], [1], [1, 2, 3]):
-        part = library.take(policies=policies)
-        for row in belief:
-            whole = BayesianPolicyReuse(library, rule, row, seed=3, horizon=9)
-            alone = BayesianPolicyReuse(part, rule, row, seed=3, horizon=9)
-            assert [whole.select(policies) for _ in range(5)] == [policies[alone.select()] for _ in range(5)]
-            expected = np.zeros(4)
-            expected[policies] = alone.probabilities()
-            assert np.array_equal(whole.probabilities(policies), expected)
-            np.testing.assert_array_equal(whole._selected[1][policies], alone._selected[1])
+        part, numbers = library.take(policies=policies), np.array(policies)
+        for row in np.random.default_rng(1).dirichlet(np.ones(5), 3):
+            draws = [np.random.default_rng(3) for _ in range(2)]
+            scores = available_scores(rule, library, row, numbers, episodes_left=9, generator=draws[0])
+            alone = rule.scores(part, row, episodes_left=9, generator=draws[1])
+            np.testing.assert_array_equal(scores[policies], alone)
+            assert np.isnan(np.delete(scores, policies)).all()
+            probs = available_probabilities(rule, library, row, numbers, episodes_left=9)
+            assert np.array_equal(probs[policies], rule.probabilities(part, row, episodes_left=9))
+            assert not np.delete(probs, policies).any()
 
 
 @pytest.mark.parametrize("name", sorted(RULES))
@@ -173,13 +174,13 @@ def test_a_signal_that_cannot_be_restricted_is_no_hindrance():
         BayesianPolicyReuse(library, rule_named("belief-entropy")).select([1, 2])
 
 
-def test_what_the_library_learns_reaches_masked_choices():
+def test_what_the_library_learns_reaches_masked_scores():
     library = PolicyLibrary.from_means([[5.0, 4.0, 3.0]], 1.0, count=1)
-    agent = BayesianPolicyReuse(library, rule_named("belief-entropy"))
-    assert agent.select([1, 2]) == 1
+    rule, belief, policies = rule_named("belief-entropy"), np.ones(1), np.array([1, 2])
+    assert np.nanargmax(available_scores(rule, library, belief, policies)) == 1
     for _ in range(9):
         library.observe(0, 2, 10.0)
-    assert agent.select([1, 2]) == 2
+    assert np.nanargmax(available_scores(rule, library, belief, policies)) == 2
 
 
 def test_a_table_that_changes_in_place_is_read_anew():
