@@ -189,7 +189,7 @@ class UserBeliefs:
         Parameters
         ----------
         rule : SelectionRule or str, optional
-            By default as for `BayesianPolicyReuse`. "sampling" and "greedy" run compiled. The other rules score the
+            By default as for `BayesianPolicyReuse`. "sampling" and "greedy" run compiled. The other rules score
             users block by block; with uncertain models each user by itself, which takes about a millisecond.
         available : (n_policies,) or (k, n_policies) bool, optional
             The policies that can be run now, the same for all or for each of `users`; rules choose as if the

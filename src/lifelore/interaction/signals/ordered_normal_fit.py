@@ -11,8 +11,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import minimize
-from scipy.special import log_ndtr, logsumexp
 
 Array = NDArray[np.float64]
 
@@ -42,6 +40,8 @@ class OrderedNormals(NamedTuple):
 
 def log_probabilities(mean: Array, deviation: Array, cuts: Array) -> Array:
     """Log probability of each category, (..., n_categories), of normals (...,) between rising cut points."""
+    from scipy.special import log_ndtr
+
     bounds = (cuts - mean[..., None]) / deviation[..., None]
     ends = np.full((*mean.shape, 1), np.inf)
     low, high = np.concatenate([-ends, bounds], axis=-1), np.concatenate([bounds, ends], axis=-1)
@@ -79,6 +79,8 @@ def fit_ordered_normals(counts: Array, cuts: Array | None, shrinkage: float) -> 
 
 def _minimum(counts: Array, spacing: Array | None, shrinkage: float) -> Array:
     """The numbers of the least `_penalised`, searched in steps of about their standard errors."""
+    from scipy.optimize import minimize
+
     start, n = _start(counts, spacing), counts.sum(axis=2).ravel()
     common = np.full(start.size - 2 * n.size, n.sum() + 1)
     steps = 1 / np.sqrt(np.concatenate([n + 1, 2 * (n + shrinkage), common]))
@@ -121,6 +123,8 @@ def _unpacked(x: Array, shape: tuple[int, ...], spacing: Array | None) -> tuple[
 
 def _penalised(x: Array, counts: Array, spacing: Array | None, shrinkage: float) -> tuple[float, Array]:
     """Minus the penalised log likelihood, and its gradient."""
+    from scipy.special import logsumexp
+
     mean, log_deviation, cuts = _unpacked(x, counts.shape, spacing)
     deviation = np.exp(log_deviation)
     log_probs = log_probabilities(mean, deviation, cuts)
