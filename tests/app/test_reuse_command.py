@@ -60,7 +60,8 @@ def test_from_a_log_to_a_report(reuse, log, tmp_path):
     assert (tmp_path / "out" / "report.png").exists()
     words = reuse("report", "--out", tmp_path / "out", "--log", tmp_path / "d.csv").out
     assert "uplift: " in words
-    assert f"report.json and report.png written to {tmp_path / 'out'}\n" in words
+    assert f"report.json, report.png and calibration.png written to {tmp_path / 'out'}\n" in words
+    assert "calibration, quantiles of outcomes: mean distance 0." in words
     assert reuse("fit", log, tmp_path / "d.csv").out.startswith("study default: 424 outcomes of 52 users")
 
 
@@ -149,6 +150,41 @@ def test_a_context_that_no_log_has_is_said(reuse, tmp_path):
     assert reuse("choose", "--user", "ann", "--context", "app", "--json").document["context"] == "app"
 
 
+def test_only_an_available_policy_is_chosen(reuse, log):
+    reuse("fit", log, "--control", "0")
+    for available in (
+        ["--available", "big"],
+        ["--available", "big,big"],
+        ["--available", "big", "--available", "big"],
+    ):
+        made = reuse("choose", "--user", "ann", *available, "--json").document
+        assert (made["policy"], made["probability"], made["available"]) == ("big", 1.0, ["big"])
+    made = reuse("choose", "--user", "ann", "--available", "big, dark", "--json").document
+    assert made["available"] == ["big", "dark"]
+    assert reuse("choose", "--user", "ann", "--json").document["available"] is None
+
+
+def test_features_make_the_prior(reuse, log, tmp_path):
+    rows = log.read_text().splitlines()
+    path = tmp_path / "aged.csv"
+    ages = [20 + 40 * (int(row[1 : row.index(",")]) % 2) for row in rows[1:]]
+    path.write_text(
+        "\n".join([rows[0] + ",Age", *(f"{row},{age}" for row, age in zip(rows[1:], ages, strict=True))])
+    )
+    assert (
+        "the prior follows from age, by 40 users: 0."
+        in reuse("fit", path, "--features", "age", "--control", "0").out
+    )
+    made = [
+        reuse("choose", "--user", f"n{age}", "--features", f"age={age}", "--json").document for age in (20, 60)
+    ]
+    assert [one["policy"] for one in made] == ["big", "dark"]
+    assert made[0]["features"] == {"age": 20.0}
+    document = reuse("fit", path, "--features", "age", "--json").document
+    assert document["features"]["strength"] > 0
+    assert "unknown feature 'size'" in reuse("choose", "--user", "x", "--features", "age=1,size=2").refusal
+
+
 def test_a_belief_outlives_its_process(reuse, log, start, answer, tmp_path):
     """Each step a program of its own."""
     reuse("fit", log, "--control", "0", "--rule", "sampling")
@@ -206,6 +242,10 @@ def test_bad_logs_keep_what_was_there(text, reuse, lived, tmp_path):
         (["update", "--decision", "{made}", "--outcome", "good"], "outcome must be a finite number, got 'good'"),
         (["update", "--decision", "{made}", "--outcome", "7"], "outcome must be one of 0, 1, got 7"),
         (["update", "--decision", "{done}", "--outcome", "0"], "ended with 1 already, got 0; nothing changed"),
+        (["choose", "--user", "ann", "--available", "big,none"], "available must name policies of the study"),
+        (["choose", "--user", "ann", "--features", "age=3"], "was fitted without --features"),
+        (["choose", "--user", "ann", "--features", "age"], "features must be NAME=NUMBER"),
+        (["fit", "{log}", "--features", "age"], "it has no age"),
         (["report", "--out", "{log}"], "cannot write"),
         (["report", "--name", "none"], "no study 'none'"),
         (["retire", "none"], "no policy 'none'; there are big, dark"),

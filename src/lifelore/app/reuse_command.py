@@ -29,7 +29,9 @@ Logs = Annotated[
 ]
 Columns = Annotated[
     list[str] | None,
-    Option(metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand."),
+    Option(
+        metavar="OURS=THEIRS,…", help="Names of the log's columns, such as user=household,policy=brand,weight=ipw."
+    ),
 ]
 Separator = Annotated[
     str | None, Option(help="Between columns: comma, semicolon or tab; default: the one in the header.")
@@ -51,6 +53,12 @@ MissingPolicy = Annotated[
     Option(
         metavar="refuse|leave-out|NAME", help="Refuse lines without a policy, leave them out, or use policy NAME."
     ),
+]
+
+
+Features = Annotated[
+    list[str] | None,
+    Option(metavar="NAME,…", help="Columns of numbers that are known of a user beforehand, such as age,visits."),
 ]
 
 
@@ -86,6 +94,7 @@ def fit(
     missing: Missing = None,
     missing_outcome: MissingOutcome = "leave-out",
     missing_policy: MissingPolicy = "refuse",
+    features: Features = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -102,7 +111,9 @@ def fit(
 
     rule = rule or DEFAULT_RULE
     settings = FitSettings(name, model, types, control, incumbent, rule, explore, change, models, seed)
-    form = log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = log_format(
+        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
+    )
     with open_memory(where, durable=True) as memory:
         document = fitted(logs, memory, settings, form)
     print_json(document) if as_json else _print_fit(document)
@@ -118,6 +129,7 @@ def warm(
     missing: Missing = None,
     missing_outcome: MissingOutcome = "leave-out",
     missing_policy: MissingPolicy = "refuse",
+    features: Features = None,
     name: Name = "default",
     where: Where = None,
     seed: Unused = 0,
@@ -131,7 +143,9 @@ def warm(
     from lifelore.agent.reuse.warm import warm as warmed
     from lifelore.app.console import print_json
 
-    form = log_format(columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = log_format(
+        columns, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
+    )
     with _opened(name, where) as (memory, study):
         document = warmed(logs, memory, study, form)
     print_json(document) if as_json else _print_warm(document)
@@ -141,22 +155,34 @@ def warm(
 def choose(
     user: Annotated[str, Option(help="User to choose for.")],
     context: Annotated[str | None, Option(help="Context of the user, as in the log.")] = None,
+    features: Annotated[
+        list[str] | None,
+        Option(metavar="NAME=NUMBER,…", help="Numbers known of the user, such as age=31,visits=4."),
+    ] = None,
+    available: Annotated[
+        list[str] | None,
+        Option(metavar="POLICY,…", help="Policies that the user can get now; default: all. May be repeated."),
+    ] = None,
     name: Name = "default",
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
 ) -> None:
     """Choose a policy for a user, and store the decision."""
+    from lifelore.agent.reuse.availability import listed_policies
+    from lifelore.agent.reuse.log_format import parse_features
     from lifelore.agent.reuse.one_user import choose as chosen
 
+    numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
-        document = chosen(memory, study, user, context=context, seed=seed)
+        among = listed_policies(study, available) if available else None
+        document = chosen(memory, study, user, context=context, features=numbers, available=among, seed=seed)
     held = ", control group" if document["control"] else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
     _say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
-        + (new if context not in (None, document["context"]) else ""),
+        + (new if context not in (None, document["context"]) and not document["features"] else ""),
         as_json,
     )
 
@@ -189,7 +215,7 @@ def update(
 
 @reuse.command()
 def report(
-    out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and report.png.")] = None,
+    out: Annotated[str | None, Option(metavar="FOLDER", help="Folder for report.json and the pictures.")] = None,
     log: Annotated[str | None, Option(metavar="FILE", help="CSV file for all decisions.")] = None,
     incumbent: Annotated[
         str | None, Option(metavar="POLICY", help="Policy in place until now; default: that of the fit, if any.")
@@ -218,7 +244,10 @@ def report(
         print_json(document)
         return
     _print_report(document)
-    for content, path in (("report.json and report.png", out), ("every decision", log)):
+    pictures = "report.json, report.png" + (
+        " and calibration.png" if any(document["calibration"].values()) else ""
+    )
+    for content, path in ((pictures, out), ("every decision", log)):
         if path is not None:
             print(f"  {content} written to {path}")
 
@@ -290,13 +319,16 @@ def log_format(
     missing: list[str] | None,
     missing_outcome: str,
     missing_policy: str,
+    features: list[str] | None,
 ) -> "LogFormat":
     from lifelore.agent.reuse.log_format import LogFormat, parse_columns
 
     names = parse_columns(columns or [])
+    columns_of_numbers = tuple(name.strip() for word in features or () for name in word.split(","))
     return LogFormat(
-        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy
-    )
+        names, separator, decimal_comma, encoding, tuple(missing or ()), missing_outcome, missing_policy,
+        features=columns_of_numbers,
+    )  # fmt: skip
 
 
 def _say(document: dict[str, Any], line: str, as_json: bool) -> None:
@@ -321,6 +353,8 @@ def _print_fit(document: dict[str, Any]) -> None:
         *LEFT_OUT,
         ("of unknown type left out", "left_out"),
     )
+    if document["features"]:
+        print(_features_line(document["features"]))
     if document["borrowed"]:
         print(
             f"  {document['borrowed']} pairs of type and policy have no outcome; the mean of all types is expected"
@@ -328,6 +362,16 @@ def _print_fit(document: dict[str, Any]) -> None:
     for name, before in document["changed"].items():
         keep = "" if before is None else f" (--{name} {before} keeps it)"
         print(f"  {name} is {document[name]}, was {before} until now{keep}")
+
+
+def _features_line(features: dict[str, Any]) -> str:
+    names = ", ".join(features["names"])
+    if not features["strength"]:
+        return f"  {names} of {features['users']} users tell nothing about types; every user gets the same prior"
+    return (
+        f"  the prior follows from {names}, by {features['users']} users: {features['gain']:.2g} nats a user "
+        "better than without, on users held out"
+    )
 
 
 def _print_warm(document: dict[str, Any]) -> None:
@@ -377,6 +421,9 @@ def _print_report(document: dict[str, Any]) -> None:
         ("regret by the library, control group", document["regret"]["control"]),
     ):
         print(f"  {label}: {_estimate(estimate)}")
+    for label, name in (("quantiles of outcomes", "outcomes"), ("probabilities of types", "types")):
+        if found := document["calibration"][name]:
+            print(f"  calibration, {label}: mean distance {found['error']:.3f}, {found['groups']} users")
     rows = [row for row in document["policies"] if row["outcome"]]
     if rows:
         print("  each policy in the control group:")

@@ -9,6 +9,7 @@ from lifelore.app.reuse_command import (
     Columns,
     DecimalComma,
     Encoding,
+    Features,
     Missing,
     MissingOutcome,
     MissingPolicy,
@@ -78,6 +79,7 @@ def evaluate(
     missing: Missing = None,
     missing_outcome: MissingOutcome = "leave-out",
     missing_policy: MissingPolicy = "refuse",
+    features: Features = None,
     where: Where = None,
     seed: Seed = 0,
     as_json: AsJson = False,
@@ -110,7 +112,9 @@ def evaluate(
         seed,
     )
     named = [*(columns or ()), *([f"probability={probability}"] if probability else [])]
-    form = log_format(named, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy)
+    form = log_format(
+        named, separator, decimal_comma, encoding, missing, missing_outcome, missing_policy, features
+    )
     with open_memory(where, create=False) if study is not None else nullcontext() as memory:
         document = evaluated(logs, settings, form, memory, out=out)
     if as_json:

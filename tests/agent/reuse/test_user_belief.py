@@ -146,7 +146,7 @@ def of_earlier_lifelore(memory, study, n=5):
     history = open_history(memory, study, user_key("s", "ann"), "ann")
     for number in range(n):
         one = Decision(number, POLICIES[number % 3], 0.5, False, 1, 0)
-        memory.contribute(history.robot, [history.record_of(one)], process=f"{number}.0", seq=0, task={})
+        memory.contribute(history.robot, history.records_of(one), process=f"{number}.0", seq=0, task={})
         if number != 2:
             record = history.outcome_record(one, 2.0 * number, 2)
             memory.contribute(history.robot, [record], process=f"{number}.0", seq=1, task={})

@@ -18,6 +18,8 @@ from lifelore.interaction.selection import ExpectedImprovement, Greedy, Informat
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
+STATIC = TypeDynamics.static()
+
 
 def learnt(n_types=4, n_policies=3, n=6, spread=0.0, seed=0, **options) -> PolicyLibrary:
     random = np.random.default_rng(seed)
@@ -54,7 +56,7 @@ def evidence_by_integration(moments: OutcomeMoments, spread: float, type_: int, 
 @pytest.mark.parametrize("spread", [0.0, 0.7])
 def test_the_belief_is_that_of_integrating_all_parameters_out(spread):
     library, values = learnt(spread=spread), {0: [12.0, 20.0, 15.0], 2: [-5.0]}
-    agent = BayesianPolicyReuse(library, Greedy())
+    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
     for policy, outcomes in values.items():
         for outcome in outcomes:
             agent.update(policy, outcome)
@@ -69,7 +71,7 @@ def test_the_belief_is_that_of_integrating_all_parameters_out(spread):
 def test_means_are_those_of_the_conjugate_law():
     library = learnt(spread=0.5)
     moments, shown = outcomes_of(library).moments, np.array([3.0, 9.0, 4.0])
-    agent = BayesianPolicyReuse(library, Greedy())
+    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
     for outcome in shown:
         agent.update(1, outcome)
     weight = 1 / (1 / moments.count[:, 1] + 0.5)
@@ -133,7 +135,7 @@ def test_dirichlet_counts_are_those_of_polya_urns():
     samples = np.random.default_rng(0).choice(values, size=(3, 2, 8))
     library = PolicyLibrary.from_samples(samples, model="categorical", values=values)
     outcomes_of(library)._spread = Spread.known(0.0)
-    agent, shown = BayesianPolicyReuse(library, Greedy()), [0, 2, 2, 1]
+    agent, shown = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC), [0, 2, 2, 1]
     evidence = np.ones(3)
     counts = outcomes_of(library).counts[1].copy()
     for cell in shown:
@@ -149,7 +151,7 @@ def test_a_signal_apart_from_the_outcome_teaches_both_models():
     library = PolicyLibrary(
         learnt(3, 2).performance, CategorySignal.from_samples(paths, 4, categories=["a", "b", "c", "d"])
     )
-    agent = BayesianPolicyReuse(library, Greedy())
+    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
     agent.update(0, "a", outcome=40.0)
     assert (outcomes_of(agent.task).mean[:, 0] != library.performance.mean[:, 0]).all()
     before = outcomes_of(agent.task).mean.copy()
@@ -163,7 +165,7 @@ def test_steps_of_an_episode_are_a_polya_urn():
     counts = np.array([[[[3.0, 1.0]], [[1.0, 1.0]]], [[[1.0, 3.0]], [[2.0, 2.0]]]])
     signal = TransitionSignal.from_counts(counts, 0.5)
     library = PolicyLibrary(learnt(2, 2).performance, signal)
-    agent = BayesianPolicyReuse(library, Greedy())
+    agent = BayesianPolicyReuse(library, Greedy(), dynamics=STATIC)
     agent.update(0, [(0, 0), (0, 0)])
     agent.update(1, [(0, 1)])
     weights, evidence = counts + 0.5, np.ones(2)
@@ -197,7 +199,7 @@ def test_a_session_goes_on_bit_for_bit(tmp_path, rule, spread):
 def test_a_task_teaches_the_library_once():
     library = learnt(2, 2)
     samples = [30.0, 31.0, 28.0]
-    agent = BayesianPolicyReuse(library, prior=[1.0, 0.0])
+    agent = BayesianPolicyReuse(library, prior=[1.0, 0.0], dynamics=STATIC)
     by_hand = learnt(2, 2)
     for outcome in samples:
         agent.update(1, outcome)
@@ -217,7 +219,7 @@ def test_a_task_forgets_where_the_type_has_changed():
     library = learnt(3, 2, seed=2)
     kept = {}
     for rate in (0.0, 0.01):
-        dynamics = TypeDynamics.hazard(rate, library.prior) if rate else None
+        dynamics = TypeDynamics.hazard(rate, library.prior) if rate else STATIC
         agent = BayesianPolicyReuse(library, Greedy(), dynamics=dynamics)
         own = library.performance.mean[0, 0]
         for outcome in np.r_[own + np.linspace(-9, 9, 15), np.full(3, library.performance.mean[1, 0])]:

@@ -86,7 +86,7 @@ class Naive:
 @pytest.mark.parametrize("dtype", ["f4", "f8"])
 def test_a_batch_agrees_with_the_formulas(kind, dtype):
     model, random = library(kind), np.random.default_rng(0)
-    users = UserBeliefs(model, 30, dtype, spread=0.7)
+    users = UserBeliefs(model, 30, dtype, spread=0.7, dynamics=TypeDynamics.static())
     naive = [Naive(model, 0.7) for _ in range(30)]
     for _ in range(12):
         who, policies = random.integers(0, 30, 80), random.integers(0, N_POLICIES, 80)
@@ -173,7 +173,7 @@ def test_sampling_follows_the_stated_probabilities(kind):
     among = np.array([True, False, True, True, False, True])
     for available in (None, among):
         stated = users.probabilities([0], "sampling", available=available)[0]
-        chosen = users.select(np.arange(20_000), available=available)
+        chosen = users.select(np.arange(20_000), "sampling", available=available)
         # A share of 20000 has a deviation of at most 0.0035; five of them.
         assert np.bincount(chosen, minlength=N_POLICIES) / 20_000 == pytest.approx(stated, abs=0.018)
 

@@ -2,9 +2,8 @@
 
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,6 +17,7 @@ from lifelore.agent.reuse.types_of_users import typed_rows
 from lifelore.agent.reuse.warm import keep_fitted_past
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection import DEFAULT_RULE
@@ -68,7 +68,7 @@ class FitSettings:
 
 
 def fit(
-    paths: Sequence[str | Path],
+    sources: Any,
     memory: Memory,
     settings: FitSettings | None = None,
     form: LogFormat | None = None,
@@ -80,8 +80,8 @@ def fit(
 
     Parameters
     ----------
-    paths : sequence of paths
-        See `log`.
+    sources : sequence of paths or tables, or a table
+        Files of CSV, or tables of pandas, polars or Arrow; see `read_log`.
     form : LogFormat, optional
         How the logs are written.
 
@@ -93,7 +93,9 @@ def fit(
         ``filled_outcomes``, ``filled_policies``, ``without_policy`` (see `ReuseLog`); ``users``; ``model``;
         ``types_found``, ``criteria`` of each number of types tried; ``types`` (name, users, prior, best policy);
         ``policies`` (name, state, mean); ``means`` and ``outcomes`` by type and policy; ``borrowed`` (pairs
-        without an outcome, which got the policy's outcomes on all types); ``contexts``; ``control``,
+        without an outcome, which got the policy's outcomes on all types); ``contexts``; ``features`` (None
+        without them): their ``names``, ``users`` who have all, chosen ``strength`` and held-out ``gain`` in nats
+        a user, see `FeaturePrior`; ``control``,
         ``incumbent``, ``rule``, ``explore``, ``change``; ``changed``: settings that are not what they were in an
         earlier fit, by name what they were.
 
@@ -103,7 +105,7 @@ def fit(
         A log or setting breaks its rule; memory is as it was.
     """
     settings = settings or FitSettings()
-    log = read_log(paths, form)
+    log = read_log(sources, form)
     earlier = _earlier(memory, settings.name)
     study, typed, counts = study_of_log(log, settings, dict(earlier.get("states", {})))
     study.keep(memory)
@@ -145,6 +147,7 @@ def _study(
     return Study(
         settings.name, library, states, _contexts(log, typed, library.prior), settings.control,
         settings.incumbent, settings.rule, settings.explore, settings.change, settings.models, fitted,
+        feature_prior=_feature_prior(log, typed, library.prior, settings.seed),
     )  # fmt: skip
 
 
@@ -155,6 +158,20 @@ def _contexts(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64]) -> di
         if log.context_of_user[user] >= 0:
             counts.setdefault(log.context.names[log.context_of_user[user]], CONTEXT_USERS * prior)[type_] += 1
     return {context: count / count.sum() for context, count in sorted(counts.items())}
+
+
+def _feature_prior(log: ReuseLog, typed: TypedRows, prior: NDArray[np.float64], seed: int) -> FeaturePrior | None:
+    """Prior over types from the log's features, by its users with all of them; None without features."""
+    if not log.feature_names:
+        return None
+    users, types = typed.users(log)
+    rows = log.features_of_user[users]
+    whole = ~np.isnan(rows).any(axis=1)
+    if not whole.any():
+        raise InputError(
+            f"features must all be known of a user, no user has all of {', '.join(log.feature_names)}"
+        )
+    return FeaturePrior.fit(rows[whole], types[whole], prior, log.feature_names, seed=seed)
 
 
 def _earlier(memory: Memory, name: str) -> Mapping[str, Any]:
@@ -204,6 +221,7 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "outcomes": counts.astype(int).tolist(),
         "borrowed": int((counts == 0).sum()),
         "contexts": sorted(study.contexts),
+        "features": _features(study, log),
         "control": study.control,
         "incumbent": study.incumbent,
         "rule": study.rule,
@@ -211,3 +229,11 @@ def _document(study: Study, log: ReuseLog, typed: TypedRows, counts: NDArray[np.
         "change": study.change,
         "models": study.models,
     }
+
+
+def _features(study: Study, log: ReuseLog) -> dict[str, Any] | None:
+    found = study.feature_prior
+    if found is None:
+        return None
+    users = int((~np.isnan(log.features_of_user).any(axis=1)).sum())
+    return {"names": list(found.names), "users": users, "strength": found.strength, "gain": found.gain}

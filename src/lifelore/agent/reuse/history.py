@@ -7,9 +7,11 @@ that follows from it.
 import hashlib
 import re
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
+from lifelore.agent.reuse.availability import available_record, read_available
 from lifelore.agent.reuse.study import Study, policy_number
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -18,8 +20,8 @@ from lifelore.memory import Memory
 KIND, VERSION = "reuse_user", 1
 LAST_SLOT = 2**62
 FIELDS = 8
-"""Slots a decision: those of `_POLICY` and after; the last one is free."""
-_POLICY, _PROBABILITY, _CONTROL, _CHOSEN, _ATTEMPT, _OUTCOME, _ENDED = range(7)
+"""Slots a decision: those of `_POLICY` and after."""
+_POLICY, _PROBABILITY, _CONTROL, _CHOSEN, _ATTEMPT, _OUTCOME, _ENDED, _AVAILABLE = range(8)
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Decision:
     chosen, ended : seconds since 1970; `ended` is None while the outcome is not known
     attempt : tells it from a forgotten decision of the same number
     outcome : float, or None while not known
+    available : names of the policies that were available; None where all were
     """
 
     number: int
@@ -43,6 +46,7 @@ class Decision:
     attempt: int
     outcome: float | None = None
     ended: int | None = None
+    available: tuple[str, ...] | None = None
 
 
 @dataclass(frozen=True)
@@ -54,6 +58,7 @@ class History:
     user: str
     context: str | None
     decisions: tuple[Decision, ...]
+    features: dict[str, float] | None = None
 
     @property
     def robot(self) -> str:
@@ -64,13 +69,17 @@ class History:
         """What the outcome is given by later: ``KEY-NUMBER``, or ``KEY-NUMBER.ATTEMPT``."""
         return f"{self.key}-{decision.number}" + (f".{decision.attempt}" if decision.attempt else "")
 
-    def record_of(self, decision: Decision) -> Record:
+    def records_of(self, decision: Decision) -> list[Record]:
         """What a choice adds."""
         fields = {
             _POLICY: policy_number(decision.policy or ""), _PROBABILITY: _bits(decision.probability),
             _CONTROL: int(decision.control), _CHOSEN: decision.chosen, _ATTEMPT: decision.attempt,
         }  # fmt: skip
-        return self._record(decision.number, fields)
+        if decision.available is None:
+            return [self._record(decision.number, fields)]
+        fields[_AVAILABLE] = len(decision.available)
+        among = available_record(self.study, self.key, decision.number, decision.available)
+        return [self._record(decision.number, fields), among]
 
     def outcome_record(self, decision: Decision, outcome: float, ended: int) -> Record:
         """What an outcome adds."""
@@ -79,7 +88,9 @@ class History:
     def _record(self, number: int, fields: dict[int, int]) -> Record:
         slots = np.array([FIELDS * number + field for field in fields], np.int64)
         values = np.array(list(fields.values()), np.int64)
-        about = {"study": self.study, "user": self.user, "context": self.context}
+        about: dict[str, Any] = {"study": self.study, "user": self.user, "context": self.context}
+        if self.features:
+            about["features"] = self.features
         return Record(KIND, f"{self.study}/{self.key}", VERSION, "newest", slots, values, about)
 
 
@@ -107,12 +118,14 @@ def open_history(memory: Memory, study: Study, key: str, user: str = "") -> Hist
     if record is None or not record.slots.size:
         return History(study.name, key, user, None, ())
     about = record.about
-    return History(study.name, key, about["user"], about.get("context"), _decisions(study, record))
+    decisions = _decisions(memory, study, key, record)
+    return History(study.name, key, about["user"], about.get("context"), decisions, about.get("features"))
 
 
 def read_decisions(memory: Memory, study: Study, key: str, first: int = 0) -> tuple[Decision, ...]:
     """The decisions for a user from number `first` on; the time depends on their number alone."""
-    return decisions_in(study, memory.recall(KIND, f"{study.name}/{key}", VERSION, slots=slots_from(first)))
+    record = memory.recall(KIND, f"{study.name}/{key}", VERSION, slots=slots_from(first))
+    return decisions_in(memory, study, key, record)
 
 
 def slots_from(number: int) -> tuple[int, int]:
@@ -120,16 +133,22 @@ def slots_from(number: int) -> tuple[int, int]:
     return FIELDS * number, LAST_SLOT
 
 
-def decisions_in(study: Study, record: Record | None) -> tuple[Decision, ...]:
+def decisions_in(memory: Memory, study: Study, key: str, record: Record | None) -> tuple[Decision, ...]:
     """The decisions in a user's record, or in a part of it."""
-    return () if record is None else _decisions(study, record)
+    return () if record is None else _decisions(memory, study, key, record)
 
 
-def _decisions(study: Study, record: Record) -> tuple[Decision, ...]:
+def _decisions(memory: Memory, study: Study, key: str, record: Record) -> tuple[Decision, ...]:
     cells = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
     numbers = sorted({slot // FIELDS for slot in cells})
+    restricted = any(slot % FIELDS == _AVAILABLE for slot in cells)
+    available = read_available(memory, study, key) if restricted else {}
     names = study.policy_names
-    return tuple(_decision(number, cells, names) for number in numbers if FIELDS * number + _POLICY in cells)
+    return tuple(
+        _decision(number, cells, names, available.get(number))
+        for number in numbers
+        if FIELDS * number + _POLICY in cells
+    )
 
 
 def histories(memory: Memory, study: Study) -> list[History]:
@@ -139,7 +158,9 @@ def histories(memory: Memory, study: Study) -> list[History]:
     return sorted((open_history(memory, study, key) for key in keys), key=lambda one: one.user)
 
 
-def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Decision:
+def _decision(
+    number: int, cells: dict[int, int], names: dict[int, str], available: tuple[str, ...] | None
+) -> Decision:
     stored = {field: cells.get(FIELDS * number + field) for field in range(7)}
     outcome = stored[_OUTCOME]
     return Decision(
@@ -151,6 +172,7 @@ def _decision(number: int, cells: dict[int, int], names: dict[int, str]) -> Deci
         stored[_ATTEMPT] or 0,
         None if outcome is None else _number(outcome),
         stored[_ENDED],
+        available,
     )
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.log import ReuseLog
+from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import OutcomeRows
 from lifelore.interaction.outcomes.spread import spread_between
@@ -39,16 +40,30 @@ class TypedRows(NamedTuple):
 
 
 def library_of(log: ReuseLog, typed: TypedRows, model: str) -> tuple[PolicyLibrary, NDArray[np.float64]]:
-    """The library, and the number of outcomes of each pair, (n_types, n_policies)."""
-    policies, of_policy = np.unique(log.policy.codes[typed.rows], return_inverse=True)
-    rows = OutcomeRows(typed.types, of_policy, log.outcomes[typed.rows], (len(typed.names), len(policies)))
+    """The library, and the number of outcomes of each pair, (n_types, n_policies).
+
+    Rows of weight 0 are left out. Weights count in the outcomes of each pair, not in the prior over types.
+
+    Raises
+    ------
+    InputError
+        All weights are 0.
+    """
+    used = np.ones(len(typed.rows), bool) if log.weights is None else log.weights[typed.rows] > 0
+    if not used.any():
+        raise InputError("weight must be above 0 on at least one line, got 0 on all")
+    places = typed.rows[used]
+    policies, of_policy = np.unique(log.policy.codes[places], return_inverse=True)
+    rows = OutcomeRows(typed.types[used], of_policy, log.outcomes[places], (len(typed.names), len(policies)))
+    lent, weights = _lent(rows, np.ones(len(places)) if log.weights is None else log.weights[places])
     prior = np.ones(len(typed.names)) + np.bincount(typed.users(log)[1], minlength=len(typed.names))
     names = [log.policy.names[code] for code in policies]
     library = PolicyLibrary.from_rows(
-        _lent(rows), typed.names, names, model_of(log, model), prior=prior / prior.sum()
-    )
+        lent, typed.names, names, model_of(log, model), prior=prior / prior.sum(),
+        weights=None if log.weights is None else weights,
+    )  # fmt: skip
     # Users are the tasks: those of one type may differ.
-    spread = spread_between(rows.pair, log.user.codes[typed.rows], rows.values)
+    spread = spread_between(rows.pair, log.user.codes[places], rows.values)
     if spread is not None:
         library.performance.spread = spread  # pyright: ignore[reportAttributeAccessIssue]
     return library, rows.sums()
@@ -61,11 +76,12 @@ def model_of(log: ReuseLog, model: str) -> str:
     return "categorical" if len(np.unique(log.outcomes)) <= FEW_VALUES else "gaussian"
 
 
-def _lent(rows: OutcomeRows) -> OutcomeRows:
+def _lent(rows: OutcomeRows, weights: NDArray[np.float64]) -> tuple[OutcomeRows, NDArray[np.float64]]:
     """The rows, and for each pair without one the policy's rows on all types: expected is what everybody gets."""
-    parts = [rows]
+    parts = [(rows.types, rows.policies, rows.values, weights)]
     for type_, policy in np.argwhere(rows.sums() == 0):
-        values = rows.values[rows.policies == policy]
-        parts.append(OutcomeRows(np.full(len(values), type_), np.full(len(values), policy), values, rows.shape))
-    types, policies, values = (np.concatenate(column) for column in list(zip(*parts, strict=True))[:3])
-    return OutcomeRows(types, policies, values, rows.shape)
+        own = rows.policies == policy
+        n = int(own.sum())
+        parts.append((np.full(n, type_), np.full(n, policy), rows.values[own], weights[own]))
+    types, policies, values, weights = (np.concatenate(column) for column in zip(*parts, strict=True))
+    return OutcomeRows(types, policies, values, rows.shape), weights

@@ -12,17 +12,20 @@ Other columns are ignored. Several logs are read as one. `LogFormat` reads logs 
 
 import hashlib
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.log_columns import COUNTED, WORDS, Lines, check_word, read_outcome
-from lifelore.agent.reuse.log_format import LogFormat
+from lifelore.agent.reuse.log_format import WEIGHT, LogFormat
+from lifelore.agent.reuse.log_frame import NAME, frame_content, frame_format
 from lifelore.agent.reuse.log_lines import read_lines
 from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.interaction.outcomes.frame_columns import is_frame
 
 __all__ = ["Column", "ReadFile", "ReuseLog", "check_word", "read_log", "read_outcome"]
 
@@ -60,15 +63,17 @@ NOTHING = Column(("",), np.zeros(0, np.int64))
 class ReadFile:
     """A log that was read.
 
-    path : str
+    path : str; of a table in memory, a name made of its digest
     size, digest : bytes, and their SHA-256
     last_line : number of the last line with a choice
+    content : of a table in memory, as CSV; None for a file
     """
 
     path: str
     size: int
     digest: str
     last_line: int
+    content: bytes | None = field(default=None, repr=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +97,12 @@ class ReuseLog:
         Lines left out because their policy is missing.
     probability, group : Column
         "" where the log says nothing, and where the format does not read them.
+    weights : (n,) float64, optional
+        At least 0; None where the format names no column of weights.
+    feature_names : tuple of str
+        As the format gives them.
+    features : (n, n_features) float64
+        NaN where missing.
     """
 
     user: Column
@@ -109,6 +120,9 @@ class ReuseLog:
     without_policy: int = 0
     probability: Column = NOTHING
     group: Column = NOTHING
+    weights: NDArray[np.float64] | None = None
+    feature_names: tuple[str, ...] = ()
+    features: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 0)))
 
     def __len__(self) -> int:
         return len(self.outcomes)
@@ -132,7 +146,8 @@ class ReuseLog:
         """The log with the rows at some places alone, and the names that they have."""
         columns = {name: getattr(self, name).take(rows) for name in WORDS}
         own = {name: getattr(self, name)[rows] for name in ("outcomes", "file", "line")}
-        return replace(self, **columns, **own)
+        weights = None if self.weights is None else self.weights[rows]
+        return replace(self, **columns, **own, weights=weights, features=self.features[rows])
 
     @cached_property
     def type_of_user(self) -> NDArray[np.int64]:
@@ -144,6 +159,15 @@ class ReuseLog:
         """Place of each user's last context in `context.names`, −1 where no row names it, (n_users,)."""
         return self._last_of_user(self.context)
 
+    @cached_property
+    def features_of_user(self) -> NDArray[np.float64]:
+        """Each user's last value of each feature, NaN where no row has it, (n_users, n_features)."""
+        found = np.full((len(self.user.names), len(self.feature_names)), np.nan)
+        for place, column in enumerate(self.features.T):
+            known = ~np.isnan(column)
+            found[self.user.codes[known], place] = column[known]
+        return found
+
     def _last_of_user(self, column: Column) -> NDArray[np.int64]:
         found = np.full(len(self.user.names), -1)
         said = np.array([bool(name) for name in column.names])[column.codes]
@@ -151,8 +175,13 @@ class ReuseLog:
         return found
 
 
-def read_log(paths: Sequence[str | Path], form: LogFormat | None = None) -> ReuseLog:
+def read_log(sources: Any, form: LogFormat | None = None) -> ReuseLog:
     """Read logs as one.
+
+    Parameters
+    ----------
+    sources : sequence of paths or tables, or a table
+        Files of CSV, or tables in memory: of pandas, polars or Arrow, or mappings of columns.
 
     Raises
     ------
@@ -165,19 +194,23 @@ def read_log(paths: Sequence[str | Path], form: LogFormat | None = None) -> Reus
         The disk refuses.
     """
     form = form or LogFormat()
-    places = [Path(path).resolve() for path in paths]
-    for number, path in enumerate(paths):
-        if places[number] in places[:number]:
-            raise InputError(f"log '{path}' is given twice; its lines would count twice, leave one out")
-    lines = [_lines(Path(path), form) for path in paths]
-    for number, one in enumerate(lines):
+    sources = [sources] if is_frame(sources) else list(sources)
+    read = [_table(source, form) if is_frame(source) else _file(Path(source), form) for source in sources]
+    lines, files = [one for one, _ in read], [file for _, file in read]
+    paths = [
+        NAME if file.content is not None else str(source) for source, file in zip(sources, files, strict=True)
+    ]
+    for number, file in enumerate(files):
+        if file.path in (other.path for other in files[:number]):
+            raise InputError(f"log '{paths[number]}' is given twice; its lines would count twice, leave one out")
+    for number, one in enumerate(files):
         for other in range(number):
-            if lines[other].digest == one.digest:
+            if files[other].digest == one.digest:
                 raise InputError(
                     f"logs '{paths[other]}' and '{paths[number]}' are equal; lines would count twice, "
                     "leave one out"
                 )
-    log = _joined(lines, [str(place) for place in places])
+    log = _joined(lines, files, form)
     if not len(log):
         raise InputError(f"{', '.join(map(str, paths))} must hold at least one line with an outcome, got none")
     _check_types(lines, paths)
@@ -185,7 +218,14 @@ def read_log(paths: Sequence[str | Path], form: LogFormat | None = None) -> Reus
     return log
 
 
-def _lines(path: Path, form: LogFormat) -> Lines:
+def _table(frame: Any, form: LogFormat) -> tuple[Lines, ReadFile]:
+    content = frame_content(frame, form)
+    lines = read_lines(content, NAME, frame_format(form))
+    digest = hashlib.sha256(content).hexdigest()
+    return lines, ReadFile(f"frame {digest[:16]}", len(content), digest, lines.last_line, content)
+
+
+def _file(path: Path, form: LogFormat) -> tuple[Lines, ReadFile]:
     if not path.is_file():
         what = "is no file" if path.exists() else "does not exist"
         raise NotFoundError(f"log '{path}' {what}; give a CSV file")
@@ -194,24 +234,28 @@ def _lines(path: Path, form: LogFormat) -> Lines:
     except OSError as error:
         raise StoreError(f"cannot read {path}: {error.strerror}") from None
     lines = read_lines(content, str(path), form)
-    return lines.of_file(len(content), hashlib.sha256(content).hexdigest())
+    digest = hashlib.sha256(content).hexdigest()
+    return lines, ReadFile(str(path.resolve()), len(content), digest, lines.last_line)
 
 
-def _joined(lines: Sequence[Lines], paths: Sequence[str]) -> ReuseLog:
+def _joined(lines: Sequence[Lines], files: Sequence[ReadFile], form: LogFormat) -> ReuseLog:
     user, policy, type_, context, decision, probability, group = (
         _column([part.names[place] for part in lines], [part.codes[place] for part in lines])
         for place in range(len(WORDS))
     )
     counts = {name: sum(part.counts[name] for part in lines) for name in COUNTED}
+    numbers = [np.concatenate(column) for column in zip(*(part.numbers for part in lines), strict=True)]
+    weights = numbers.pop(0) if WEIGHT in form.columns else None
+    n_rows = sum(len(part.outcomes) for part in lines)
     return ReuseLog(
         user=user, policy=policy, type=type_, context=context, decision=decision,
         probability=probability, group=group,
         outcomes=np.concatenate([part.outcomes for part in lines]),
         file=np.repeat(np.arange(len(lines)), [len(part.outcomes) for part in lines]),
         line=np.concatenate([part.line for part in lines]),
-        files=tuple(ReadFile(path, part.size, part.digest, part.last_line)
-                    for path, part in zip(paths, lines, strict=True)),
-        **counts,
+        files=tuple(files),
+        **counts, weights=weights, feature_names=tuple(name.strip() for name in form.features),
+        features=np.stack(numbers, axis=1) if numbers else np.empty((n_rows, 0)),
     )  # fmt: skip
 
 

@@ -2,12 +2,12 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.reuse.log_format import LEAVE_OUT, LOGGED, OPTIONAL, REFUSE, LogFormat
+from lifelore.agent.reuse.log_format import LEAVE_OUT, LOGGED, OPTIONAL, REFUSE, WEIGHT, LogFormat
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_model import LARGEST
 
@@ -25,23 +25,18 @@ class Lines:
     codes : for each of `WORDS`, (n,) int64, places in its names
     outcomes : (n,) float64
     line : (n,) int64, number of the line in the file
+    numbers : for each of `LogFormat.numbers`, (n,) float64, NaN where missing
     counts : lines left out or filled, by the reason
     last_line : number of the last line with a choice
-    size, digest : of the file, see `of_file`
     """
 
     names: tuple[tuple[str, ...], ...]
     codes: tuple[NDArray[np.int64], ...]
     outcomes: NDArray[np.float64]
     line: NDArray[np.int64]
+    numbers: tuple[NDArray[np.float64], ...]
     counts: dict[str, int]
     last_line: int
-    size: int = 0
-    digest: str = ""
-
-    def of_file(self, size: int, digest: str) -> "Lines":
-        """The same with the size of the file in bytes and their SHA-256."""
-        return replace(self, size=size, digest=digest)
 
 
 @dataclass
@@ -74,25 +69,32 @@ class ColumnReader:
 
         Parameters
         ----------
-        columns : outcomes first, then `WORDS`; None for a column that the file does not have
+        columns : outcomes, `WORDS`, `LogFormat.numbers`; None for a column that the file does not have
         line : numbers of the lines in the file
         """
         self._last_line = int(line[-1])
         outcomes, here = self._outcomes(columns[0] or [], line)
-        words = [self._words(place, column, line) for place, column in enumerate(columns[1:])]
+        last = len(WORDS) + 1
+        words = [self._words(place, column, line) for place, column in enumerate(columns[1:last])]
+        numbers = [
+            self._numbers(name, column or [], line)
+            for name, column in zip(self.form.numbers, columns[last:], strict=True)
+        ]
         policies = words[1]
         absent = policies < 0
         if absent.any():
             words[1], here = self._without_policy(policies, absent, here)
-        self._parts.append((outcomes[here], line[here], *(column[here] for column in words)))
+        self._parts.append((outcomes[here], line[here], *(column[here] for column in (*words, *numbers))))
 
     def lines(self) -> Lines:
         """All lines taken in."""
         joined = [np.concatenate(part) for part in zip(*self._parts, strict=True)] or [
-            np.array([], np.float64), *(np.array([], np.int64) for _ in range(len(WORDS) + 1))
+            np.array([], np.float64), *(np.array([], np.int64) for _ in range(len(WORDS) + 1)),
+            *(np.array([], np.float64) for _ in self.form.numbers),
         ]  # fmt: skip
         names = tuple(tuple(codes) for codes in self._codes)
-        return Lines(names, tuple(joined[2:]), joined[0], joined[1], self._counts, self._last_line)
+        words, numbers = tuple(joined[2 : 2 + len(WORDS)]), tuple(joined[2 + len(WORDS) :])
+        return Lines(names, words, joined[0], joined[1], numbers, self._counts, self._last_line)
 
     def _outcomes(self, words: Sequence[str], line: NDArray[np.int64]) -> tuple[NDArray, NDArray]:
         """Outcomes, and which lines have one."""
@@ -121,6 +123,20 @@ class ColumnReader:
         if self.form.missing_outcome == REFUSE:
             raise InputError(f"{where}outcome is missing; --missing-outcome says what that means")
         return math.nan
+
+    def _numbers(self, name: str, words: Sequence[str], line: NDArray[np.int64]) -> NDArray[np.float64]:
+        """A column of numbers; NaN where missing, which a weight may not be."""
+        is_weight = WEIGHT in self.form.columns and name == self.form.numbers[0]
+        values = np.empty(len(words))
+        for place, word in enumerate(words):
+            own, where = word.strip(), f"{self.name} line {line[place]}: "
+            absent = own in self._missing
+            values[place] = (
+                math.nan if absent else read_outcome(own, where, decimal_comma=self.form.decimal_comma, name=name)
+            )
+            if is_weight and not values[place] >= 0:
+                raise InputError(f"{where}{name} must be a weight of at least 0, got {own[:60]!r}")
+        return values
 
     def _words(self, place: int, column: Sequence[str] | None, line: NDArray[np.int64]) -> NDArray[np.int64]:
         """Codes of the words; −1 for a missing policy."""
@@ -193,17 +209,19 @@ def check_word(what: str, word: str) -> str:
     return word
 
 
-def read_outcome(text: str, where: str = "", hint: str = "", *, decimal_comma: bool = False) -> float:
-    """A finite number of at most `LARGEST` in size; InputError for anything else."""
+def read_outcome(
+    text: str, where: str = "", hint: str = "", *, decimal_comma: bool = False, name: str = "outcome"
+) -> float:
+    """A finite number of at most `LARGEST` in size; InputError, which names the column, for anything else."""
     if decimal_comma and "." in text:
-        raise InputError(f"{where}outcome must have a comma before its decimals, got {text[:60]!r}")
+        raise InputError(f"{where}{name} must have a comma before its decimals, got {text[:60]!r}")
     try:
         outcome = float(text.replace(",", ".") if decimal_comma else text)
     except ValueError:
         outcome = math.nan
     if not math.isfinite(outcome):
         hint = "; write decimals with a point, or say --decimal-comma" if "," in text else hint
-        raise InputError(f"{where}outcome must be a finite number, got {text[:60]!r}{hint}")
+        raise InputError(f"{where}{name} must be a finite number, got {text[:60]!r}{hint}")
     if abs(outcome) > LARGEST:
-        raise InputError(f"{where}outcome must be at most {LARGEST:g} in size, got {text[:60]!r}")
+        raise InputError(f"{where}{name} must be at most {LARGEST:g} in size, got {text[:60]!r}")
     return outcome

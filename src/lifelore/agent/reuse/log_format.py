@@ -11,6 +11,8 @@ NEEDED = ("user", "policy", "outcome")
 OPTIONAL = ("type", "context", "decision")
 LOGGED = ("probability", "group")
 """Columns of the log that `reuse report` writes, read for off-policy evaluation only."""
+WEIGHT = "weight"
+"""Column of weights; read only where `columns` names it, because a log may have a column of that name."""
 SEPARATORS = {"comma": ",", "semicolon": ";", "tab": "\t"}
 LEAVE_OUT, REFUSE = "leave-out", "refuse"
 
@@ -22,7 +24,8 @@ class LogFormat:
     Parameters
     ----------
     columns : dict of str to str
-        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `LOGGED`); others have our names. Capitals
+        The log's own name of a column, by ours (`NEEDED`, `OPTIONAL`, `LOGGED`, `WEIGHT`); others have our
+        names. Capitals
         do not matter.
     separator : {"comma", "semicolon", "tab"}, optional
         Between columns; default: the one that makes the needed columns of the header.
@@ -37,6 +40,8 @@ class LogFormat:
         means, such as ``0``.
     missing_policy : str
         ``refuse`` the log; ``leave-out`` the line; or the name of the policy that a missing policy means.
+    features : tuple of str
+        Names of columns of numbers that are known of a user beforehand.
     probabilities : bool
         Whether to read the column ``probability``, which the log must then have, and ``group``.
     """
@@ -48,13 +53,16 @@ class LogFormat:
     missing: tuple[str, ...] = ()
     missing_outcome: str = LEAVE_OUT
     missing_policy: str = REFUSE
+    features: tuple[str, ...] = ()
     probabilities: bool = False
 
     def __post_init__(self) -> None:
-        known = (*NEEDED, *OPTIONAL, *LOGGED)
+        known = (*NEEDED, *OPTIONAL, *LOGGED, WEIGHT)
         for ours in self.columns:
             if ours not in known:
                 raise InputError(f"columns must name {', '.join(known)}, got '{ours}'")
+        if len(set(self.features)) < len(self.features) or not all(map(str.strip, self.features)):
+            raise InputError(f"features must be names of columns, each once, got {', '.join(self.features)!r}")
         if self.separator is not None and self.separator not in SEPARATORS:
             raise NotFoundError(f"separator must be one of {', '.join(SEPARATORS)}, got '{self.separator}'")
         try:
@@ -76,13 +84,42 @@ class LogFormat:
         """The log's name of a column, in small letters."""
         return self.columns.get(ours, ours).strip().lower()
 
+    @property
+    def numbers(self) -> tuple[str, ...]:
+        """The log's names of its columns of numbers beside the outcome, in small letters: weights, features."""
+        weight = [self.column(WEIGHT)] if WEIGHT in self.columns else []
+        return (*weight, *(name.strip().lower() for name in self.features))
+
     def to_dict(self) -> dict[str, Any]:
         """Plain data."""
-        return vars(self) | {"columns": dict(self.columns), "missing": list(self.missing)}
+        return vars(self) | {
+            "columns": dict(self.columns),
+            "missing": list(self.missing),
+            "features": list(self.features),
+        }
 
 
-def parse_columns(words: Sequence[str]) -> dict[str, str]:
-    """Names of columns from words such as ``user=household,policy=brand``.
+def parse_features(words: Sequence[str]) -> dict[str, float]:
+    """Numbers from words such as ``age=31,visits=4``.
+
+    Raises
+    ------
+    InputError
+        A part is not ``NAME=NUMBER``, or a name comes twice.
+    """
+    features: dict[str, float] = {}
+    for name, text in parse_columns(words, "features must be NAME=NUMBER, each once, such as age=31").items():
+        try:
+            features[name] = float(text)
+        except ValueError:
+            raise InputError(f"feature '{name}' must be a number, got '{text}'") from None
+    return features
+
+
+def parse_columns(
+    words: Sequence[str], rule: str = "columns must be OURS=THEIRS, each once, such as user=household"
+) -> dict[str, str]:
+    """Names of columns from words such as ``user=household,policy=brand``; `rule` begins the error.
 
     Raises
     ------
@@ -93,6 +130,6 @@ def parse_columns(words: Sequence[str]) -> dict[str, str]:
     for part in (part for word in words for part in word.split(",")):
         ours, found, theirs = (piece.strip() for piece in part.partition("="))
         if not (ours and found and theirs) or ours in columns:
-            raise InputError(f"columns must be OURS=THEIRS, each once, such as user=household, got {part!r}")
+            raise InputError(f"{rule}, got {part!r}")
         columns[ours] = theirs
     return columns

@@ -66,7 +66,8 @@ def _take(
         raise InputError(f"{name} line {line}: must have {len(header)} fields like the header, got {len(fields)}")
     by_place = list(zip(*rows, strict=True))
     found = [by_place[places[column]] if column in places else None for column in ("outcome", *WORDS)]
-    columns.take(found, np.array(at))
+    numbers = [by_place[header.index(column)] for column in columns.form.numbers]
+    columns.take([*found, *numbers], np.array(at))
 
 
 def _separator(header: str, form: LogFormat) -> str:
@@ -84,13 +85,11 @@ def _places(header: list[str], name: str, form: LogFormat) -> dict[str, int]:
     needed = ", ".join(form.column(column) for column in form.needed)
     if not any(header):
         raise InputError(f"{name} must begin with a header that names {needed}, it is empty")
-    for column in form.read:
-        own = form.column(column)
+    for own in (*(form.column(column) for column in form.read), *form.numbers):
         if header.count(own) > 1:
             raise InputError(f"{name} must have one column '{own}', its header names {header.count(own)}")
-    missing = [
-        form.column(column) for column in (*form.needed, *form.columns) if form.column(column) not in header
-    ]
+    every = (*(form.column(column) for column in (*form.needed, *form.columns)), *form.numbers)
+    missing = [column for column in every if column not in header]
     if missing:
         raise InputError(
             f"{name} must have the columns {needed}, separated by commas; it has no "

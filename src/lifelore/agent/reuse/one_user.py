@@ -6,12 +6,14 @@ function takes the study as `open_study` gave it, so that a loop opens it once.
 """
 
 import time
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.agent.reuse.availability import checked_available
 from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
 from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
@@ -22,6 +24,7 @@ from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.outcome_model import LARGEST
+from lifelore.interaction.selection.availability import available_policies, available_probabilities
 from lifelore.memory import KeyState, Memory
 
 ATTEMPTS = 1000
@@ -37,7 +40,14 @@ class Odds:
 
 
 def choose(
-    memory: Memory, study: Study, user: str, *, context: str | None = None, seed: int = 0
+    memory: Memory,
+    study: Study,
+    user: str,
+    *,
+    context: str | None = None,
+    features: Mapping[str, float] | None = None,
+    available: Sequence[str] | None = None,
+    seed: int = 0,
 ) -> dict[str, Any]:
     """Choose a policy for a user's next time and remember that it was chosen.
 
@@ -46,6 +56,13 @@ def choose(
     user : str
     context : str, optional
         What is known of the user beforehand; kept, the newest one counts.
+    features : mapping of str to float, optional
+        Numbers known of the user beforehand: all features of the study; kept, the newest ones count. They come
+        before the context. Without them, and in a study without features, the prior is that of the context.
+    available : sequence of str, optional
+        The policies that the user can get now; all by default. Retired ones are left out. Where the incumbent is
+        not available, the control group gets each available policy with equal probability. The set is stored with
+        the decision.
     seed : int
         The draw depends on the seed, the study, the user and the number of the decision alone.
 
@@ -53,23 +70,29 @@ def choose(
     -------
     dict
         ``user``, ``policy``, ``decision`` (to give the outcome by), ``number`` (from 0), ``probability`` of the
-        policy at this moment, ``control``, ``context`` whose prior counts (None: everybody's), ``belief`` by type,
+        policy at this moment, ``available`` policies (None: all), ``control``, ``features`` whose prior counts,
+        else ``context`` whose prior counts (both None: everybody's), ``belief`` by type,
         ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats (the sum of −log
         evidence; it depends on the noise, and is no sign of a new type).
 
     Raises
     ------
     InputError
-        A name that is no printable text.
+        A name that is no printable text, no available policy is in use, or a feature is missing.
+    NotFoundError
+        There is no such policy or feature.
     """
     check_word("user", user)
     if context is not None:
         check_word("context", context)
+    if available is not None:
+        available = checked_available(study, available)
+    numbers = None if features is None else checked_features(study, features)
     key, attempt = user_key(study.name, user), 0
     for _ in range(ATTEMPTS):
-        known = open_belief(memory, study, key, user, context)
-        decision, answer = _decided(study, known, attempt, seed)
-        offered = [known.history.record_of(decision)]
+        known = open_belief(memory, study, key, user, context, numbers)
+        decision, answer = _decided(study, known, attempt, seed, available)
+        offered = known.history.records_of(decision)
         task = {"study": study.name, "policy": decision.policy}
         after = known.state.after(study, [decision], known.state.head)
         state = KeyState(known.name, known.token, after.to_bytes())
@@ -81,24 +104,30 @@ def choose(
     raise StoreError(f"memory {memory.location}: too many choices for one user at once; try again")
 
 
-def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[Decision, dict[str, Any]]:
+def _decided(
+    study: Study, known: UserBelief, attempt: int, seed: int, available: Sequence[str] | None
+) -> tuple[Decision, dict[str, Any]]:
     head, user = known.state.head, known.history.user
     belief = study.algorithm.belief(head.log_belief)
     control = study.holds_out(user)
-    known_of_user = study.choice_for(head.task)
-    odds = _control_odds(study) if control else policy_odds(study, known_of_user, belief)
+    own = study.choice_for(head.task)
+    odds = _control_odds(study, available) if control else policy_odds(study, own, belief, available)
     drawn = stream(seed, "reuse choice", study.name, user, head.number).choice(len(odds.probs), p=odds.probs)
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
-    decision = Decision(head.number, policy, probability, control, int(time.time()), attempt)
-    expected = expected_utility(belief, known_of_user.performance.mean)
+    among = None if available is None else tuple(available)
+    decision = Decision(head.number, policy, probability, control, int(time.time()), attempt, available=among)
+    expected = expected_utility(belief, own.performance.mean)
+    by_features = study.feature_prior is not None and set(known.features or ()) == set(study.feature_prior.names)
     answer = {
         "user": user,
         "policy": policy,
         "decision": known.history.identifier(decision),
         "number": head.number,
         "probability": probability,
+        "available": None if available is None else list(available),
         "control": control,
-        "context": known.context if known.context in study.contexts else None,
+        "context": known.context if known.context in study.contexts and not by_features else None,
+        "features": known.features if by_features else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
         "surprise": head.surprise,
@@ -106,7 +135,16 @@ def _decided(study: Study, known: UserBelief, attempt: int, seed: int) -> tuple[
     return decision, answer
 
 
-def policy_odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64]) -> Odds:
+def checked_features(study: Study, features: Mapping[str, float]) -> dict[str, float]:
+    """The features of a user as the study knows them; errors as for `choose`."""
+    if study.feature_prior is None:
+        raise InputError(f"features must be left out: study '{study.name}' was fitted without --features")
+    return study.feature_prior.checked(features)
+
+
+def policy_odds(
+    study: Study, library: PolicyLibrary, belief: NDArray[np.float64], available: Sequence[str] | None = None
+) -> Odds:
     """Policies in use, and the probability that the rule chooses each, with the share of exploration mixed in.
 
     Parameters
@@ -114,15 +152,35 @@ def policy_odds(study: Study, library: PolicyLibrary, belief: NDArray[np.float64
     library : PolicyLibrary
         Of the policies in use, as the user's outcomes leave it (`Study.choice_for`).
     belief : (n_types,) float64
+    available : sequence of str, optional
+        The policies that the user can get now; all by default.
+
+    Raises
+    ------
+    InputError
+        No policy in use is available.
     """
-    probs = study.selection.probabilities(library, belief)
+    if available is None:
+        policies, probs = study.active, study.selection.probabilities(library, belief)
+    else:
+        policies = [policy for policy in study.active if policy in available]
+        if not policies:
+            raise InputError(
+                f"available must name a policy in use, got {', '.join(available)}, which the control group alone "
+                f"gets; in use are {', '.join(study.active)}"
+            )
+        numbers = available_policies(policies, library.policies)
+        probs = available_probabilities(study.selection, library, belief, numbers)[numbers]
     probs = (1 - study.explore) * probs + study.explore / len(probs)
-    return Odds(study.active, probs / probs.sum())
+    return Odds(policies, probs / probs.sum())
 
 
-def _control_odds(study: Study) -> Odds:
+def _control_odds(study: Study, available: Sequence[str] | None) -> Odds:
     """The incumbent, or every policy in use alike, pilots too."""
     policies = [study.incumbent] if study.incumbent is not None else [*study.active, *study.pilots]
+    if available is not None:
+        every = [*study.active, *study.pilots]
+        policies = [one for one in policies if one in available] or [one for one in every if one in available]
     return Odds(policies, np.full(len(policies), 1 / len(policies)))
 
 

@@ -51,12 +51,14 @@ class PastUser:
 
     type : as a log names it, or None
     context : the last one in a log, or None
+    features : numbers known of the user beforehand, the last ones in a log, or None
     rows : by file number, policies and outcomes in their order
     """
 
     type: str | None = None
     context: str | None = None
     rows: dict[int, Outcomes] = field(default_factory=dict)
+    features: dict[str, float] | None = None
 
     @property
     def outcomes(self) -> Outcomes:
@@ -83,7 +85,7 @@ class Past:
         for key, user in self.users.items():
             rows = {number: own for number, own in user.rows.items() if number not in numbers}
             if rows:
-                users[key] = PastUser(user.type, user.context, rows)
+                users[key] = PastUser(user.type, user.context, rows, user.features)
         files = {number: file for number, file in self.files.items() if number not in numbers}
         return Past(users, files, self.generation)
 
@@ -215,6 +217,8 @@ def _pack(users: Mapping[str, PastUser]) -> bytes:
                 ]
                 for number, own in sorted(user.rows.items())
             ],
+            # Last, and only where there are any: pasts of an earlier Lifelore have none.
+            *([user.features] if user.features else []),
         ]
         for key, user in users.items()
     }
@@ -234,8 +238,9 @@ def _unpack(content: bytes, study: str) -> dict[str, PastUser]:
                     number: [(names[place], value) for place, value in zip(places, values, strict=True)]
                     for number, places, values in parts
                 },
+                *features,
             )
-            for key, (type_, context, parts) in document["users"].items()
+            for key, (type_, context, parts, *features) in document["users"].items()
         }
     except (zlib.error, ValueError, KeyError, IndexError) as error:
         raise StoreError(f"the past of study '{study}' is damaged ({error}); fit the study anew") from None

@@ -55,7 +55,7 @@ def replayed_choices(
     policies, outcomes = log.policy.codes[rows].tolist(), log.outcomes[rows].tolist()
     for number, user in enumerate(log.user.codes[rows].tolist()):
         if user not in beliefs:
-            prior = study.algorithm.start(study.prior_of(_context(log, user)))
+            prior = study.algorithm.start(study.prior_of(_context(log, user), _features(log, user)))
             beliefs[user] = WorkingBelief(study, Checkpoint(0, prior, 0.0))
         now = beliefs[user].checkpoint(number)
         belief, library = study.algorithm.belief(now.log_belief), study.choice_for(now.task)
@@ -70,3 +70,11 @@ def replayed_choices(
 def _context(log: ReuseLog, user: int) -> str | None:
     place = int(log.context_of_user[user])
     return log.context.names[place] if place >= 0 else None
+
+
+def _features(log: ReuseLog, user: int) -> dict[str, float] | None:
+    """The numbers known of a user; None unless all are."""
+    row = log.features_of_user[user]
+    if not row.size or np.isnan(row).any():
+        return None
+    return dict(zip(log.feature_names, row.tolist(), strict=True))

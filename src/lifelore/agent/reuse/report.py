@@ -7,6 +7,7 @@ one from more than `MANY` users on).
 
 import csv
 import io
+import json
 from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,9 +15,10 @@ from typing import Any
 
 import numpy as np
 
+from lifelore.agent.reuse.calibration import calibration
 from lifelore.agent.reuse.history import Decision, History, histories
 from lifelore.agent.reuse.past import Past, PastUser, read_past
-from lifelore.agent.reuse.result_folder import write_result, write_text
+from lifelore.agent.reuse.result_folder import write_picture, write_result, write_text
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_belief import expected_outcomes
 from lifelore.core.errors import InputError, NotFoundError
@@ -25,6 +27,7 @@ from lifelore.memory import Memory
 
 COLUMNS = (
     "user", "policy", "outcome", "context", "time", "probability", "group", "decision", "number", "outcome_time",
+    "available",
 )  # fmt: skip
 """Of the log of decisions, which `reuse fit` reads again."""
 SPLITS = ("user", "time", "both")
@@ -53,9 +56,11 @@ def report(
     Parameters
     ----------
     out : folder, optional
-        Gets ``report.json`` and ``report.png``.
+        Gets ``report.json`` and ``report.png``, and ``calibration.png`` where there is an outcome.
     log : file, optional
-        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty.
+        Gets every decision as CSV: `COLUMNS`, outcomes not yet known left empty; ``available`` is a JSON list
+        of the policies that were available, empty where all were. Features of the study follow, so that a new
+        fit can read them.
     incumbent : str, optional
         The policy in place until now; default: the study's incumbent, if it has one.
     split : {"user", "time", "both"}, optional
@@ -72,7 +77,7 @@ def report(
         ``split``; ``policies``: in the control group each policy's mean outcome over users, fair where it draws
         at random; ``regret``: what the policy of the largest expectation under the user's last belief would have
         brought more, for each group, by the library and not measured; ``by_decision``: both groups' mean outcome
-        at each decision.
+        at each decision; ``calibration``, see `calibration.calibration`.
 
     Raises
     ------
@@ -86,13 +91,17 @@ def report(
         raise NotFoundError(f"incumbent must be a policy of the study, got '{incumbent}'")
     known = [history for history in histories(memory, study) if history.decisions]
     past = read_past(memory, study.name)
-    document = _document(study, _split(study, known, past, split), past, incumbent) | {"split": split}
+    document: dict[str, Any] = _document(study, _split(study, known, past, split), past, incumbent)
+    document["split"] = split
     if log is not None:
         write_text(Path(log), _log_text(study, known))
     if out is not None:
+        from lifelore.figures.reuse_calibration import draw_calibration
         from lifelore.figures.reuse_report import draw_reuse_report
 
         write_result(Path(out), "report", document, draw_reuse_report)
+        if any(document["calibration"].values()):
+            write_picture(Path(out) / "calibration.png", document["calibration"], draw_calibration)
     return document
 
 
@@ -139,6 +148,7 @@ def _document(study: Study, known: list[History], past: Past, incumbent: str | N
             for name, group in groups.items()
         },
         "by_decision": _by_decision(groups),
+        "calibration": calibration(study, known, past),
     }
 
 
@@ -220,7 +230,9 @@ def _by_decision(groups: dict[str, list[History]]) -> list[dict[str, Any]]:
 def _log_text(study: Study, known: list[History]) -> str:
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(COLUMNS)
+    names = () if study.feature_prior is None else study.feature_prior.names
+    features = [name for name in names if name.strip().lower() not in COLUMNS]
+    writer.writerow([*COLUMNS, *features])
     for history in known:
         for one in history.decisions:
             outcome = "" if one.outcome is None else repr(one.outcome)
@@ -228,5 +240,7 @@ def _log_text(study: Study, known: list[History]) -> str:
             writer.writerow([
                 history.user, one.policy or "", outcome, history.context or "", one.chosen, repr(one.probability),
                 group, history.identifier(one), one.number, "" if one.ended is None else one.ended,
+                "" if one.available is None else json.dumps(one.available, ensure_ascii=False),
+                *((history.features or {}).get(name, "") for name in features),
             ])  # fmt: skip
     return text.getvalue()

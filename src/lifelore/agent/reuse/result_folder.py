@@ -27,17 +27,22 @@ def write_result(folder: Path, name: str, document: dict[str, Any], draw: Callab
     StoreError
         The disk refuses.
     """
-    from lifelore.figures.style import save_figure
-
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         raise StoreError(f"cannot write {folder}: {error.strerror}; choose another place") from None
     write_text(folder / f"{name}.json", json.dumps(document, indent=2, allow_nan=False) + "\n")
+    write_picture(folder / f"{name}.png", document, draw)
+
+
+def write_picture(path: Path, document: dict[str, Any], draw: Callable[[dict[str, Any]], Any]) -> None:
+    """Draw a document and save the figure."""
+    from lifelore.figures.style import save_figure
+
     with warnings.catch_warnings():
         # Names may be of any script; what the font lacks is drawn as a box, and the document has it.
         warnings.filterwarnings("ignore", "Glyph .* missing from")
-        save_figure(draw(document), folder / f"{name}.png")
+        save_figure(draw(document), path)
 
 
 def write_text(path: Path, text: str) -> None:

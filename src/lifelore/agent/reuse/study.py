@@ -18,6 +18,7 @@ from lifelore.agent.reuse.log_columns import check_word
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.feature_prior import FeaturePrior
 from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -56,6 +57,8 @@ class Study:
         What each policy is: ``active``, ``pilot`` or ``retired``.
     contexts : dict of str to (n_types,) float64
         Prior over types of users of a context.
+    feature_prior : FeaturePrior, optional
+        Prior over types from numbers that are known of a user beforehand.
     control : float
         Share of users held out, in [0, 1).
     incumbent : str, optional
@@ -89,6 +92,7 @@ class Study:
     fitted: dict[str, Any] = field(default_factory=dict)
     tables: dict[int, StoredTable] = field(default_factory=dict)
     rule_settings: dict[str, Any] = field(default_factory=dict)
+    feature_prior: FeaturePrior | None = None
 
     def __post_init__(self) -> None:
         check_study_name(self.name)
@@ -168,6 +172,8 @@ class Study:
     def fingerprint(self) -> str:
         """Hash of the library and the dynamics: of all that turns the evidence of a user into a belief."""
         settings = repr(self.change) if self.models == "plug-in" else repr((self.change, self.models))
+        if self.feature_prior is not None:
+            settings += repr(self.feature_prior.to_dict())
         return hashlib.sha256(self.library.to_bytes() + settings.encode()).hexdigest()[:32]
 
     @cached_property
@@ -187,8 +193,13 @@ class Study:
         expected = self.library.prior @ self.library.performance.mean
         return max(self.active, key=lambda policy: expected[self.library.index_of_policy(policy)])
 
-    def prior_of(self, context: str | None) -> NDArray[np.float64]:
-        """Prior over types, (n_types,): that of a known context, else everybody's."""
+    def prior_of(self, context: str | None, features: Mapping[str, float] | None = None) -> NDArray[np.float64]:
+        """Prior over types, (n_types,): by features, else that of a known context, else everybody's.
+
+        Features count where the study has learnt from just these; those of an earlier fit may be others.
+        """
+        if self.feature_prior is not None and features and set(features) == set(self.feature_prior.names):
+            return self.feature_prior.prior(features)
         return self.contexts.get(context or "", self.library.prior)
 
     def holds_out(self, user: str) -> bool:
@@ -222,6 +233,7 @@ class Study:
             "change": self.change,
             "models": self.models,
             "fitted": self.fitted,
+            "feature_prior": None if self.feature_prior is None else self.feature_prior.to_dict(),
         }
         if table is not None:
             parts = [table.table.probs, *([] if table.cuts is None else [_packed_cuts(table.cuts)])]
@@ -278,6 +290,8 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     try:
         library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
         tables = _tables(record.values[length:], about.get("table"), about.get("cuts"))
+        learnt = about.get("feature_prior")
+        feature_prior = None if learnt is None else FeaturePrior.from_dict(learnt)
     except InputError as error:
         raise StoreError(f"{error}; fit the study anew") from None
     contexts = {context: np.array(prior) for context, prior in about["contexts"].items()}
@@ -294,6 +308,7 @@ def open_study(memory: Memory, name: str = "default") -> Study:
         models=models,
         tables=tables,
         rule_settings=rule,
+        feature_prior=feature_prior,
     )
 
 

@@ -8,8 +8,9 @@ for histories of an earlier Lifelore.
 
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,6 +32,7 @@ class UserBelief:
 
     history : without its decisions
     context : whose prior counts, or None
+    features : numbers known of the user beforehand, or None
     token : of the cells in memory that the belief follows; None where there are none
     state : the belief
     late : the decisions from the number on that `open_belief` was asked for
@@ -38,6 +40,7 @@ class UserBelief:
 
     history: History
     context: str | None
+    features: dict[str, float] | None
     token: int | None
     state: UserState
     late: tuple[Decision, ...] = ()
@@ -85,6 +88,7 @@ def open_belief(
     key: str,
     user: str = "",
     context: str | None = None,
+    features: dict[str, float] | None = None,
     number: int | None = None,
 ) -> UserBelief:
     """The belief about a user, by a single statement where the stored state still holds.
@@ -95,50 +99,64 @@ def open_belief(
         Name of the user; that in memory counts where memory knows the user.
     context : str, optional
         Context of the user; by default the one in memory.
+    features : dict of str to float, optional
+        Numbers known of the user beforehand; by default those in memory.
     number : int, optional
         Read the decisions from this number on too.
     """
     names = [(KIND, f"{study.name}/{key}", VERSION), index_name(study.name)]
     slots = None if number is None else slots_from(number)
     stored, past_index = memory.recall_states(names, slots=slots)
-    about = stored.about if stored else {"user": user}
-    context = context or about.get("context")
-    history = History(study.name, key, about["user"], context, ())
+    about: Mapping[str, Any] = stored.about if stored else {"user": user}
+    context, features = context or about.get("context"), features or about.get("features")
+    history = History(study.name, key, about["user"], context, (), features)
     state = from_bytes(stored.content) if stored else None
     index = past_index.about if past_index else {}
     origin = {"study": study.fingerprint, "past": index.get("token"), "context": context}
+    if features:
+        origin["features"] = features
     if state is None or state.origin != origin:
         past = read_past_user(memory, study.name, index, key)
-        context = context or past.context
-        basis = basis_of(study, context, past)
+        context, features = context or past.context, features or past.features
+        basis = basis_of(study, context, past, features)
         if state is None or state.basis != basis:
-            state = replayed(study, context, past, read_decisions(memory, study, key) if stored else ())
-        state = replace(state, origin=origin, context=context)
-    late = decisions_in(study, stored.record) if stored else ()
-    return UserBelief(history, state.context, stored.token if stored else None, state, late)
+            decisions = read_decisions(memory, study, key) if stored else ()
+            state = replayed(study, context, past, decisions, features)
+        state = replace(state, origin=origin, context=context, features=features)
+    late = decisions_in(memory, study, key, stored.record) if stored else ()
+    return UserBelief(history, state.context, state.features, stored.token if stored else None, state, late)
 
 
-def replayed(study: Study, context: str | None, past: PastUser, decisions: tuple[Decision, ...]) -> UserState:
+def replayed(
+    study: Study,
+    context: str | None,
+    past: PastUser,
+    decisions: tuple[Decision, ...],
+    features: dict[str, float] | None = None,
+) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past)), 0.0)
+    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past, features)), 0.0)
     belief = WorkingBelief(study, prior)
     for policy, outcome in past.outcomes:
         belief.learn(policy, outcome)
     start = belief.checkpoint(0)
-    state = UserState(basis_of(study, context, past), {}, context, 0, (start,))
+    state = UserState(basis_of(study, context, past, features), {}, context, 0, (start,), features)
     return state.after(study, decisions, start)
 
 
 def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:
     """Expected outcome of each policy of the library after all decisions of a history, (n_policies,)."""
-    head = replayed(study, history.context or past.context, past, history.decisions).head
+    features = history.features or past.features
+    head = replayed(study, history.context or past.context, past, history.decisions, features).head
     known = study.task(head.task) or study.library
     return expected_utility(study.algorithm.belief(head.log_belief), known.performance.mean)
 
 
-def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.float64]:
-    """Prior over types before the past, (n_types,): the context's, with `NAMED_TYPE` on a type a log names."""
-    prior = study.prior_of(context)
+def prior_of(
+    study: Study, context: str | None, past: PastUser, features: dict[str, float] | None = None
+) -> NDArray[np.float64]:
+    """Prior over types before the past, (n_types,): `Study.prior_of`, with `NAMED_TYPE` on a type a log names."""
+    prior = study.prior_of(context, features)
     if past.type not in study.library.types:
         return prior
     named = np.zeros(len(prior))
@@ -146,8 +164,8 @@ def prior_of(study: Study, context: str | None, past: PastUser) -> NDArray[np.fl
     return named + (1 - NAMED_TYPE) * prior
 
 
-def basis_of(study: Study, context: str | None, past: PastUser) -> str:
+def basis_of(study: Study, context: str | None, past: PastUser, features: dict[str, float] | None = None) -> str:
     """Hash of all that a belief follows from, beside the decisions."""
-    prior = prior_of(study, context, past)
+    prior = prior_of(study, context, past, features)
     text = study.fingerprint + json.dumps(past.outcomes)
     return hashlib.sha256(text.encode() + prior.tobytes()).hexdigest()[:32]

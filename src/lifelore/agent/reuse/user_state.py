@@ -26,6 +26,7 @@ from lifelore.interaction.reuse.explanation import surprise_of
 if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
     from lifelore.agent.reuse.study import Study
+    from lifelore.interaction.library.policy_library import PolicyLibrary
 
 FORMAT = 2
 _HEAD = struct.Struct("<II")
@@ -58,6 +59,8 @@ class UserState:
         Plain data that tell without a look at the past whether `basis` still holds.
     context : str, optional
         Whose prior counts.
+    features : dict of str to float, optional
+        Numbers known of the user beforehand.
     first_open : int
         Number of the first decision without an outcome; that of the head where there is none.
     checkpoints : tuple of Checkpoint
@@ -69,6 +72,7 @@ class UserState:
     context: str | None
     first_open: int
     checkpoints: tuple[Checkpoint, ...]
+    features: dict[str, float] | None = None
 
     @property
     def head(self) -> Checkpoint:
@@ -115,15 +119,11 @@ class UserState:
             "context": self.context,
             "open": self.first_open,
         }
+        if self.features:
+            header["features"] = self.features
         tasks = [[number, name, array.dtype.str, array.shape] for (number, name), array in self._task_arrays()]
-        text = json.dumps(
-            header
-            | {
-                "n": len(self.checkpoints),
-                "types": len(self.head.log_belief),
-                "tasks": tasks,
-            }
-        ).encode()
+        sizes = {"n": len(self.checkpoints), "types": len(self.head.log_belief), "tasks": tasks}
+        text = json.dumps(header | sizes).encode()
         numbers = np.array([point.number for point in self.checkpoints], "<i8")
         surprise = np.array([point.surprise for point in self.checkpoints], "<f8")
         beliefs = np.array([point.log_belief for point in self.checkpoints], "<f8")
@@ -162,7 +162,9 @@ def from_bytes(content: bytes | None) -> UserState | None:
     beliefs = np.frombuffer(body, "<f8", n * n_types, offset).reshape(n, n_types).astype(np.float64)
     tasks = _tasks_from(body, offset + 8 * n * n_types, header["tasks"], n)
     points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, tasks, strict=True))
-    return UserState(header["basis"], header["origin"], header["context"], header["open"], points)
+    return UserState(
+        header["basis"], header["origin"], header["context"], header["open"], points, header.get("features")
+    )
 
 
 class WorkingBelief:
@@ -191,6 +193,16 @@ class WorkingBelief:
             return
         index = self._study.library.index_of_policy(policy)
         self._surprise += surprise_of(self._algorithm.update_row(self._log_belief, index, outcome)[1])
+
+    @property
+    def belief(self) -> NDArray[np.float64]:
+        """The belief over types as it is now, (n_types,)."""
+        return self._algorithm.belief(self._log_belief)
+
+    @property
+    def library(self) -> "PolicyLibrary":
+        """The library as the user's outcomes leave it now."""
+        return self._task or self._study.library
 
     def checkpoint(self, number: int) -> Checkpoint:
         """The belief as it is now, before the decision of that number."""

@@ -21,10 +21,13 @@ from lifelore.core.errors import InputError
 from lifelore.memory import Memory
 
 
-def warm(
-    paths: Sequence[str | Path], memory: Memory, study: Study, form: LogFormat | None = None
-) -> dict[str, Any]:
+def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = None) -> dict[str, Any]:
     """Add the lines of logs to the past of their users; the library stays as it is.
+
+    Parameters
+    ----------
+    sources : sequence of paths or tables, or a table
+        As `read_log` takes them.
 
     Returns
     -------
@@ -39,7 +42,7 @@ def warm(
     InputError, NotFoundError
         A log breaks a rule, or was fed before with other lines; memory is as it was.
     """
-    log = read_log(paths, form)
+    log = read_log(sources, form)
     own = _own_decisions(memory, study, log)
     for _ in range(ATTEMPTS):
         past = read_past(memory, study.name)
@@ -116,7 +119,7 @@ def _is_start(fed: FedFile, file: ReadFile) -> bool:
         return False
     if fed.size == file.size:
         return fed.digest == file.digest
-    content = Path(file.path).read_bytes()
+    content = Path(file.path).read_bytes() if file.content is None else file.content
     ends = content[fed.size - 1 : fed.size] == b"\n" or content[fed.size : fed.size + 1] in (b"\n", b"\r")
     return ends and hashlib.sha256(content[: fed.size]).hexdigest() == fed.digest
 
@@ -135,6 +138,8 @@ def _added(
             known.type = log.type.names[log.type_of_user[user]]
         if log.context_of_user[user] >= 0:
             known.context = log.context.names[log.context_of_user[user]]
+        if log.feature_names and not np.isnan(log.features_of_user[user]).any():
+            known.features = dict(zip(log.feature_names, log.features_of_user[user].tolist(), strict=True))
         for row in own.tolist():
             known.rows.setdefault(numbers[files[row]], []).append((policies[codes[row]], outcomes[row]))
     for number, file in zip(numbers, log.files, strict=True):

@@ -11,6 +11,7 @@ gains no information, and the default is 0.
 
 from collections.abc import Callable
 from copy import copy
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -30,10 +31,23 @@ Array = NDArray[np.float64]
 Exploration = float | str | Callable[[int, int], float]
 """Type of ε: a number, a name of `EPSILONS`, or a function of the step and the episode, both counted from 0."""
 
-EPSILONS: dict[str, Callable[[int, int], float]] = {
-    "1/n": lambda step, episode: 1.0 / (step + 1),
-    "by episode": lambda step, episode: max(0.5 - 0.1 * episode, 0.0),
-}
+
+# Named functions, because a learner with a lambda could not be pickled.
+
+
+def _by_step(step: int, episode: int) -> float:
+    return 1.0 / (step + 1)
+
+
+def _by_episode(step: int, episode: int) -> float:
+    return max(0.5 - 0.1 * episode, 0.0)
+
+
+def _constant(epsilon: float, step: int, episode: int) -> float:
+    return epsilon
+
+
+EPSILONS: dict[str, Callable[[int, int], float]] = {"1/n": _by_step, "by episode": _by_episode}
 """The thesis's schedules: 1/n as in §4.8.4.2; 0.5 less 0.1 an episode as in its experiments (§4.8.5.1)."""
 
 
@@ -51,8 +65,7 @@ def epsilon_of(exploration: Exploration) -> Callable[[int, int], float]:
         if exploration not in EPSILONS:
             raise InputError(f"epsilon must be a number or one of {', '.join(EPSILONS)}, got {exploration!r}")
         return EPSILONS[exploration]
-    constant = EpsilonGreedy(float(exploration)).epsilon
-    return lambda step, episode: constant
+    return partial(_constant, EpsilonGreedy(float(exploration)).epsilon)
 
 
 class Beat:

@@ -3,7 +3,7 @@
 Thesis: §4.2 (Alg. 7's requirements), §4.3.4, §4.4.1.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Self
@@ -81,6 +81,7 @@ class PolicyLibrary:
         policies: Sequence[str] | None = None,
         model: str = "gaussian",
         *,
+        weights: ArrayLike | None = None,
         signal: SignalModel | None = None,
         prior: ArrayLike | None = None,
         **options: Any,
@@ -90,17 +91,18 @@ class PolicyLibrary:
         Parameters
         ----------
         model : {"gaussian", "student-t", "histogram", "categorical"}
+        weights : (n_types, n_policies, n) float, optional
+            Importance of each sample, ≥ 0: reliability weights, see `OutcomeRows.with_weights`.
         **options
             For the model's ``from_samples``: ``shrinkage``, ``edges``, ``pseudo_count``.
 
         Raises
         ------
         InputError
-            A pair has no sample, a sample is infinite, or there is no such model.
+            A pair has no sample, a sample is infinite, a weight negative, or there is no such model.
         """
-        return cls.from_rows(
-            rows_of_samples(samples), types, policies, model, signal=signal, prior=prior, **options
-        )
+        rows = rows_of_samples(samples, weights)
+        return cls.from_rows(rows, types, policies, model, signal=signal, prior=prior, **options)
 
     @classmethod
     def from_rows(
@@ -110,11 +112,13 @@ class PolicyLibrary:
         policies: Sequence[str] | None = None,
         model: str = "gaussian",
         *,
+        weights: ArrayLike | None = None,
         signal: SignalModel | None = None,
         prior: ArrayLike | None = None,
         **options: Any,
     ) -> Self:
-        """A library fitted to rows of outcomes; see `from_samples`."""
+        """A library fitted to rows of outcomes, `weights` (n,) of them optional; see `from_samples`."""
+        rows = rows if weights is None else rows.with_weights(weights)
         performance = outcome_kind(model).from_rows(rows, **options)
         return cls(performance, signal, tuple(types or ()), tuple(policies or ()), prior)  # pyright: ignore
 
@@ -137,20 +141,24 @@ class PolicyLibrary:
     @classmethod
     def from_frame(
         cls,
-        frame: Mapping[str, Any],
+        frame: Any,
         type: str = "type",
         policy: str = "policy",
         outcome: str = "outcome",
         model: str = "gaussian",
+        *,
+        weight: str | None = None,
         **options: Any,
     ) -> Self:
-        """A library fitted to a table with a row for each episode: a DataFrame, or a mapping of columns.
+        """A library fitted to a table with a row for each episode: of pandas, polars, Arrow, or a mapping.
 
         Parameters
         ----------
-        frame : mapping of str to sequences of one length
+        frame : DataFrame, Arrow table or mapping of str to sequences of one length
         type, policy, outcome : str
             Names of the columns; types and policies are in the order of their first rows.
+        weight : str, optional
+            Name of a column of weights, see `OutcomeRows.with_weights`.
         model, **options
             As for `from_samples`; also `signal` and `prior`.
 
@@ -159,7 +167,7 @@ class PolicyLibrary:
         InputError
             A column is missing, lengths differ, an outcome is no finite number, or a pair has no row.
         """
-        rows, types, policies = rows_of_columns(frame, type, policy, outcome)
+        rows, types, policies = rows_of_columns(frame, type, policy, outcome, weight)
         return cls.from_rows(rows, types, policies, model, **options)
 
     @property

@@ -248,10 +248,10 @@ class CountedOutcomes:
         return cls.of(cells, counts + number, number)
 
     def _counted(self, rows: OutcomeRows, n_cells: int) -> Array:
-        """Number of outcomes in each cell, (n_policies, n_types, n_cells)."""
+        """Weight of the outcomes in each cell, (n_policies, n_types, n_cells)."""
         n_types, n_policies = rows.shape
         place = (rows.policies * n_types + rows.types) * n_cells + self._known_cells(rows.values)
-        counted = np.bincount(place, minlength=n_policies * n_types * n_cells)
+        counted = np.bincount(place, rows.weights, minlength=n_policies * n_types * n_cells)
         return counted.reshape(n_policies, n_types, n_cells).astype(np.float64)
 
     def _known_cells(self, values: Array) -> NDArray[np.int64]:

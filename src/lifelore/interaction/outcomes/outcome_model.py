@@ -126,12 +126,14 @@ class OutcomeRows(NamedTuple):
     types, policies : (n,) int64
     values : (n,) float64, finite
     shape : (n_types, n_policies)
+    weights : (n,) float64, as `with_weights` scales them; None counts each row once
     """
 
     types: NDArray[np.int64]
     policies: NDArray[np.int64]
     values: Array
     shape: tuple[int, int]
+    weights: Array | None = None
 
     @property
     def pair(self) -> NDArray[np.int64]:
@@ -139,18 +141,73 @@ class OutcomeRows(NamedTuple):
         return self.types * self.shape[1] + self.policies
 
     def sums(self, values: Array | None = None) -> Array:
-        """Sum of `values` (n,) over each pair's rows, by default their number, (n_types, n_policies)."""
+        """Weighted sum of `values` (n,) over each pair's rows, by default their number, (n_types, n_policies)."""
         size = self.shape[0] * self.shape[1]
+        if self.weights is not None:
+            values = self.weights if values is None else self.weights * values
         return np.bincount(self.pair, values, minlength=size).astype(np.float64).reshape(self.shape)
 
+    def with_weights(self, weights: ArrayLike) -> "OutcomeRows":
+        """The rows with reliability weights, scaled for each pair; rows of weight 0 are left out.
 
-def rows_of_samples(samples: ArrayLike) -> OutcomeRows:
+        A weight is a row's importance, such as 1 / (probability that it was sampled), and no number of rows: only
+        ratios within a pair count. The weights w of a pair are scaled to the sum n = (Σw)² / Σw², Kish's effective
+        number of rows. So means are Σwx / Σw, variances have n − 1 degrees of freedom, and counts are n. Equal
+        weights give the same bits as none.
+
+        Parameters
+        ----------
+        weights : (n,) float
+            Finite, ≥ 0.
+
+        Raises
+        ------
+        InputError
+            The shape differs, a weight is negative or not finite, or all weights of a pair are 0.
+
+        Examples
+        --------
+        >>> rows = OutcomeRows(np.array([0, 0, 0]), np.array([0, 0, 0]), np.array([1.0, 2.0, 3.0]), (1, 1))
+        >>> rows.with_weights([2.0, 1.0, 1.0]).sums().round(3).tolist()  # 4² / 6
+        [[2.667]]
+        """
+        weights = checked_weights(weights, self.values.shape)
+        used = weights > 0
+        rows = checked_rows(OutcomeRows(self.types[used], self.policies[used], self.values[used], self.shape))
+        pair, weights = rows.pair, weights[used]
+        # The largest weight of a pair becomes 1, so that no square overflows.
+        largest = np.zeros(self.shape[0] * self.shape[1])
+        np.maximum.at(largest, pair, weights)
+        weights = weights / largest[pair]
+        scale = np.bincount(pair, weights)[pair] / np.bincount(pair, weights * weights)[pair]
+        return rows._replace(weights=weights * scale)
+
+
+def checked_weights(weights: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """The weights as float64; InputError where one is negative or not finite, or the shape differs."""
+    try:
+        weights = np.asarray(weights, np.float64)
+    except (TypeError, ValueError):
+        raise InputError(f"weights must be numbers of shape {shape}, got {weights!r:.80}") from None
+    if weights.shape != shape:
+        raise InputError(f"weights must be {shape}, one for each outcome, got {weights.shape}")
+    if not ((weights >= 0) & np.isfinite(weights)).all():
+        raise InputError("weights must be at least 0 and finite, a weight of 0 leaves the outcome out")
+    return weights
+
+
+def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None) -> OutcomeRows:
     """The outcomes of `samples` (n_types, n_policies, n), NaN where missing, every pair run at least once.
+
+    Parameters
+    ----------
+    weights : (n_types, n_policies, n) float, optional
+        See `OutcomeRows.with_weights`; irrelevant where a sample is missing.
 
     Raises
     ------
     InputError
-        The shape differs, a value is infinite, or a pair of type and policy has no sample.
+        The shape differs, a value is infinite, a weight negative, or a pair of type and policy has no sample.
     """
     try:
         samples = np.asarray(samples, np.float64)
@@ -162,6 +219,11 @@ def rows_of_samples(samples: ArrayLike) -> OutcomeRows:
         raise InputError(f"samples must be (n_types, n_policies, n) numbers, none of them 0, got {samples.shape}")
     types, policies, place = np.nonzero(~np.isnan(samples))
     rows = OutcomeRows(types, policies, samples[types, policies, place], samples.shape[:2])
+    if weights is not None:
+        given = np.asarray(weights)
+        if given.shape != samples.shape:
+            raise InputError(f"weights must be {samples.shape}, the shape of samples, got {given.shape}")
+        rows = rows.with_weights(given[types, policies, place])
     return checked_rows(rows)
 
 

@@ -2,5 +2,5 @@
 
 Read in this order: `reuse_algorithm`, `bayesian_policy_reuse`, `user_beliefs`, `user_kernels`,
 `hazard_user_kernels`; `reuse_session` and `user_file` store them in files, `explanation` explains a choice,
-`regret` measures it.
+`regret` and `calibration` measure it.
 """

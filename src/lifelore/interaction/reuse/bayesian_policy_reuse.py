@@ -8,7 +8,7 @@ signal is from. Signals may come late, in any order, or not at all. Thesis: §4.
 """
 
 from collections import deque
-from typing import Any, Literal
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -29,9 +29,29 @@ from lifelore.interaction.reuse.explanation import (
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import SelectionRule, default_rule
+from lifelore.interaction.selection.availability import (
+    Available,
+    available_policies,
+    available_probabilities,
+    available_scores,
+    best_policies,
+)
 
 Array = NDArray[np.float64]
 Models = Literal["uncertain", "plug-in"]
+
+
+class RankedPolicy(NamedTuple):
+    """A policy with its score by the agent's rule.
+
+    policy : int
+    name : str
+    score : float, comparable within a single ranking
+    """
+
+    policy: int
+    name: str
+    score: float
 
 
 class BayesianPolicyReuse:
@@ -102,10 +122,48 @@ class BayesianPolicyReuse:
 
     # ---- the two halves of an episode ------------------------------------------------------------------
 
-    def select(self) -> int:
-        """The number of the policy to run next."""
+    def select(self, available: Available | None = None) -> int:
+        """The number of the policy to run next.
+
+        Parameters
+        ----------
+        available : sequence of str or int, or (n_policies,) bool, optional
+            The policies that can be run now: names, numbers or a mask; all by default. Rules then choose as if
+            the library had no others, see `availability`.
+
+        Raises
+        ------
+        InputError
+            No policy is available, or the mask has another length.
+        NotFoundError
+            There is no such policy.
+        """
+        if available is not None:
+            return self.select_top(1, available)[0].policy
         self._selected = self.algorithm.select(self._current(), self.rule, self.generator, self.episodes_left)
         return self._selected[0]
+
+    def select_top(self, k: int, available: Available | None = None) -> list[RankedPolicy]:
+        """The `k` policies of the largest scores, best first; the first is the policy that `select` takes.
+
+        Rules that draw rank by a single draw: belief sampling by the mean outcomes on one drawn type.
+
+        Raises
+        ------
+        InputError
+            `k` is below 1 or above the number of available policies; as for `select`.
+        NotFoundError
+            There is no such policy.
+        """
+        names = self.library.policies
+        policies = np.arange(len(names)) if available is None else available_policies(available, names)
+        scores = available_scores(
+            self.rule, self.algorithm.library, self._current(), policies,
+            episodes_left=self.episodes_left, generator=self.generator,
+        )  # fmt: skip
+        best = best_policies(scores, k, self.generator)
+        self._selected = best[0], scores
+        return [RankedPolicy(policy, names[policy], float(scores[policy])) for policy in best]
 
     def update(self, policy: int | str, signal: Any, outcome: float | None = None) -> None:
         """Learn from the signal of a policy.
@@ -199,9 +257,13 @@ class BayesianPolicyReuse:
         """Ũ(π) under the belief, (n_policies,)."""
         return expected_utility(self._current(), self._known.performance.mean)
 
-    def probabilities(self) -> Array:
-        """Probability that `select` takes each policy, (n_policies,), sums to 1."""
-        return self.rule.probabilities(self._known, self._current(), episodes_left=self.episodes_left)
+    def probabilities(self, available: Available | None = None) -> Array:
+        """Probability that `select(available)` takes each policy, (n_policies,), sums to 1; errors as there."""
+        belief, left, library = self._current(), self.episodes_left, self.algorithm.library
+        if available is None:
+            return self.rule.probabilities(library, belief, episodes_left=left)
+        policies = available_policies(available, library.policies)
+        return available_probabilities(self.rule, library, belief, policies, episodes_left=left)
 
     def explain(self) -> Explanation:
         """The evidence of the last signals for each type, and the selected policy beside the runner-up."""

@@ -35,7 +35,7 @@ class Explanation:
     Parameters
     ----------
     selected, runner_up : str or None
-        Of the last selection; None before it. `runner_up` is also None where there is a single policy.
+        Of the last selection; None before it. `runner_up` is also None where a single policy was available.
     score, runner_up_score : float or None
         By the rule's measure.
     belief : dict of str to float
@@ -84,11 +84,13 @@ def relative_evidence(evidence: Sequence[Evidence], n_types: int) -> Array:
 
 
 def two_best(scores: Array, selected: int) -> tuple[float, int | None, float | None]:
-    """Score of the selected policy, and the best other policy with its score; None where there is no other."""
-    if len(scores) < 2:
+    """Score of the selected policy, and the best other policy with its score; None where there is no other.
+
+    Policies of score NaN were not available.
+    """
+    others = np.flatnonzero(~np.isnan(scores))
+    others = others[others != selected]
+    if not others.size:
         return float(scores[selected]), None, None
-    others = np.array(scores)
-    others[selected] = -np.inf
-    # Where all others are at minus infinity, any of them is the runner-up.
-    runner_up = int(others.argmax()) if others.max() > -np.inf else int(selected == 0)
+    runner_up = int(others[scores[others].argmax()])
     return float(scores[selected]), runner_up, float(scores[runner_up])

@@ -1,6 +1,7 @@
 """Likelihood signal: a signal model by the caller's own log likelihood function."""
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -66,9 +67,19 @@ class LikelihoodSignal:
     ) -> "LikelihoodSignal":
         """The model of some types and policies."""
         chosen = chosen_of(types, self.n_types)
-        given = self.function
-
-        def cut(policy: int, signal: Any) -> Array:
-            return np.asarray(given(policy if policies is None else int(policies[policy]), signal))[chosen]
-
+        cut = _PartOfFunction(self.function, chosen, None if policies is None else tuple(map(int, policies)))
         return LikelihoodSignal(cut, len(chosen), self.n_policies if policies is None else len(policies))
+
+
+@dataclass(frozen=True, eq=False)
+class _PartOfFunction:
+    """A caller's function for some types and policies; a class, because a closure could not be pickled."""
+
+    function: Callable[[int, Any], ArrayLike]
+    types: NDArray[np.int64]
+    policies: tuple[int, ...] | None
+
+    def __call__(self, policy: int, signal: Any) -> Array:
+        return np.asarray(self.function(policy if self.policies is None else self.policies[policy], signal))[
+            self.types
+        ]

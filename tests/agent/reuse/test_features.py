@@ -1,0 +1,175 @@
+"""Numbers known of a user before the first choice: from the log to a prior, stored with the user."""
+
+import csv
+
+import numpy as np
+import pytest
+
+from lifelore.agent.reuse.fit import FitSettings, fit
+from lifelore.agent.reuse.history import histories, user_key
+from lifelore.agent.reuse.log_format import LogFormat, parse_features
+from lifelore.agent.reuse.one_user import choose, update
+from lifelore.agent.reuse.past import read_past
+from lifelore.agent.reuse.report import report
+from lifelore.agent.reuse.study import open_study
+from lifelore.agent.reuse.user_belief import open_belief
+from lifelore.agent.reuse.warm import warm
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.memory import open_memory
+
+FORM = LogFormat(features=("age", "visits"))
+OLD, YOUNG = {"age": 70.0, "visits": 3.0}, {"age": 20.0, "visits": 3.0}
+
+
+def lines(first=0, users=60, typed=True):
+    """Old users like x, young users y; visits mean nothing; every seventh user has no age."""
+    random = np.random.default_rng(first)
+    head = "user,policy,outcome,age,visits,context" + (",type" if typed else "")
+    rows = [head]
+    for user in range(first, first + users):
+        age = random.integers(18, 80)
+        kind = "old" if age + random.normal(0, 4) > 50 else "young"
+        for policy in "xy":
+            good = (policy == "x") == (kind == "old")
+            shown = "" if user % 7 == 0 else age
+            row = f"u{user},{policy},{random.normal(3 * good, 1):.3f},{shown},{random.integers(9)},shop"
+            rows.append(row + (f",{kind}" if typed else ""))
+    return "\n".join(rows) + "\n"
+
+
+@pytest.fixture
+def memory(tmp_path):
+    with open_memory(tmp_path / "m.db") as opened:
+        yield opened
+
+
+@pytest.fixture
+def study(memory, tmp_path):
+    (tmp_path / "log.csv").write_text(lines())
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0), FORM)
+    return open_study(memory)
+
+
+def test_a_fit_says_what_the_features_tell(memory, tmp_path):
+    (tmp_path / "log.csv").write_text(lines())
+    document = fit([tmp_path / "log.csv"], memory, FitSettings(), FORM)
+    assert document["features"]["names"] == ["age", "visits"]
+    # Users 0, 7, …, 56 have no age.
+    assert document["features"]["users"] == 60 - 9
+    assert document["features"]["gain"] > 0.2
+    assert fit([tmp_path / "log.csv"], memory, FitSettings())["features"] is None
+
+
+def test_the_prior_follows_the_features_and_is_stored_bit_for_bit(memory, study):
+    said = choose(memory, study, "ann", features=OLD)
+    prior = study.feature_prior.prior(OLD)
+    assert list(said["belief"].values()) == pytest.approx(prior.tolist(), rel=1e-12)
+    assert said["belief"]["old"] > 0.8
+    assert (said["features"], said["context"]) == (OLD, None)
+    assert choose(memory, study, "bob", features=YOUNG)["belief"]["old"] < 0.2
+    again = open_study(memory)
+    assert again.feature_prior.to_dict() == study.feature_prior.to_dict()
+    assert again.fingerprint == study.fingerprint
+
+
+def test_features_are_remembered_and_the_newest_count(memory, study):
+    made = choose(memory, study, "ann", features=OLD)
+    update(memory, study, made["decision"], 3.0)
+    later = choose(memory, study, "ann")
+    assert later["features"] == OLD
+    key = user_key("default", "ann")
+    assert open_belief(memory, study, key).state.basis == open_belief(memory, study, key, features=OLD).state.basis
+    changed = choose(memory, study, "ann", features=YOUNG)
+    assert changed["belief"]["old"] < later["belief"]["old"]
+    other = choose(memory, study, "bob", features=YOUNG)
+    update(memory, study, other["decision"], 3.0)
+    if other["policy"] == made["policy"]:
+        assert choose(memory, study, "bob")["belief"] == changed["belief"]
+    assert memory.check() == []
+
+
+def test_features_come_before_the_context_and_the_context_before_everybody(memory, study):
+    said = choose(memory, study, "ann", features=OLD, context="shop")
+    assert (said["features"], said["context"]) == (OLD, None)
+    said = choose(memory, study, "bob", context="shop")
+    assert (said["features"], said["context"]) == (None, "shop")
+    assert list(said["belief"].values()) == pytest.approx(study.contexts["shop"].tolist())
+    said = choose(memory, study, "cid")
+    assert list(said["belief"].values()) == pytest.approx(study.library.prior.tolist())
+
+
+def test_users_of_the_log_come_back_with_their_features(memory, study, tmp_path):
+    past = read_past(memory, "default").users
+    assert past[user_key("default", "u1")].features.keys() == {"age", "visits"}
+    assert past[user_key("default", "u7")].features is None
+    assert choose(memory, study, "u1")["features"] == past[user_key("default", "u1")].features
+    (tmp_path / "later.csv").write_text(lines(100, 20, typed=False))
+    warm([tmp_path / "later.csv"], memory, study, FORM)
+    said = choose(memory, study, "u101")
+    assert said["features"] == read_past(memory, "default").users[user_key("default", "u101")].features
+    assert choose(memory, study, "u105")["features"] is None
+
+
+def test_a_new_fit_with_other_features_leaves_the_old_ones_unused(memory, study, tmp_path):
+    # Types are static, so that a choice leaves the belief as it is.
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), FORM)
+    before = choose(memory, open_study(memory), "ann", features=OLD)["belief"]
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), LogFormat(features=("visits",)))
+    said = choose(memory, open_study(memory), "ann")
+    assert said["features"] is None
+    assert said["belief"] != before
+    # The features stay with the user, and count again.
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, change=0.0), FORM)
+    assert choose(memory, open_study(memory), "ann")["belief"] == before
+
+
+def test_the_log_of_decisions_has_the_features_and_can_be_fitted(memory, study, tmp_path):
+    made = choose(memory, study, "ann", features=OLD)
+    update(memory, study, made["decision"], 2.0)
+    choose(memory, study, "bob")
+    report(memory, study, log=tmp_path / "d.csv")
+    with (tmp_path / "d.csv").open(newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert [(row["age"], row["visits"]) for row in rows] == [("70.0", "3.0"), ("", "")]
+    document = fit([tmp_path / "log.csv", tmp_path / "d.csv"], memory, FitSettings(), FORM)
+    assert document["features"]["users"] >= 51
+    assert histories(memory, study)[0].features == OLD
+
+
+@pytest.mark.parametrize(
+    ("features", "error", "words"),
+    [
+        ({"age": 3.0}, InputError, "features must have all of age, visits, got no visits"),
+        ({"age": 3.0, "visits": 1.0, "size": 2.0}, NotFoundError, "unknown feature 'size'"),
+        ({"age": float("inf"), "visits": 1.0}, InputError, "feature 'age' must be a finite number"),
+        ({}, InputError, "got no age, visits"),
+    ],
+)
+def test_bad_features_are_refused_and_nothing_is_stored(features, error, words, memory, study):
+    with pytest.raises(error, match=words):
+        choose(memory, study, "ann", features=features)
+    assert histories(memory, study) == []
+
+
+def test_a_study_without_features_says_how_to_get_them(memory, tmp_path):
+    (tmp_path / "log.csv").write_text(lines())
+    fit([tmp_path / "log.csv"], memory, FitSettings())
+    with pytest.raises(InputError, match="was fitted without --features"):
+        choose(memory, open_study(memory), "ann", features=OLD)
+
+
+def test_a_log_whose_users_all_miss_a_feature_is_refused(memory, tmp_path):
+    (tmp_path / "log.csv").write_text("user,policy,outcome,age,visits\na,x,1,,2\nb,x,2,3,\n")
+    with pytest.raises(InputError, match="no user has all of age, visits"):
+        fit([tmp_path / "log.csv"], memory, FitSettings(), FORM)
+
+
+@pytest.mark.parametrize("words", [["age=31,visits=4"], ["age = 31", "visits=4.0"]])
+def test_features_in_words(words):
+    assert parse_features(words) == {"age": 31.0, "visits": 4.0}
+
+
+@pytest.mark.parametrize("word", ["age", "age=old", "age=1,age=2", "=3"])
+def test_bad_words_are_refused(word):
+    with pytest.raises(InputError, match=r"features must be NAME=NUMBER|feature 'age' must be a number"):
+        parse_features([word])
