@@ -14,6 +14,7 @@ from lifelore.interaction.outcomes.outcome_kinds import KINDS
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
+from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
 from lifelore.interaction.signals.reward_signal import RewardSignal
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
@@ -36,6 +37,7 @@ def signals():
         "transition": (steps, [(0, 1, 2)]),
         "step-reward": (paid, [(2, 1, 0.1)]),
         "return": (other, 2.0),
+        "ordered-normal": (OrderedNormalSignal([[0.0, 1.0], [2.0, 3.0]], np.ones((2, 2)), [0.5, 2.5]), 1),
         "joint": (JointSignal([coin, JointSignal([rewards, steps])]), ("a", ([5], [(1, 1, 1)]))),
     }
 

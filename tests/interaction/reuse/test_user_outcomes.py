@@ -221,7 +221,8 @@ def test_a_million_hostile_outcomes_leave_beliefs(kind, dtype):
         size = 10.0 ** random.uniform(-320, 100, n)
         signals = np.where(turn % 3 == 0, random.normal(size=n), random.choice([-1.0, 1.0], n) * size)
         signals[:2] = 1e100, -1e100
-        chosen = users.update_and_select(random.permutation(n), random.integers(0, N_POLICIES, n), signals)
+        who, policies = random.permutation(n), random.integers(0, N_POLICIES, n)
+        chosen = users.update_and_select(who, policies, signals, "sampling")
         assert ((chosen >= 0) & (chosen < N_POLICIES)).all()
         assert (users.log_belief <= 0).all()
     assert np.abs(np.exp(users.log_belief.astype(float)).sum(axis=1) - 1).max() < 1e-5
@@ -250,7 +251,7 @@ def test_users_forget_and_their_memory_serves_others():
 
 def test_a_library_that_learns_is_taken_anew():
     model = library()
-    users = UserBeliefs(model, 1, "f8", spread=0.0)
+    users = UserBeliefs(model, 1, "f8", spread=0.0, dynamics=TypeDynamics.static())
     users.update([0], [0], [5.0])
     for _ in range(500):
         model.observe(3, 0, 90.0)
@@ -275,7 +276,7 @@ def test_saved_users_go_on_to_the_bit(kind, dtype, tmp_path):
     names.append("late")
     for _ in range(4):
         policies, signals = random.integers(0, N_POLICIES, 51), drawn(kind, random, 51)
-        chosen = [one.update_and_select(names, policies, signals) for one in (users, loaded)]
+        chosen = [one.update_and_select(names, policies, signals, "sampling") for one in (users, loaded)]
         assert np.array_equal(*chosen)
         assert users.log_belief.tobytes() == loaded.log_belief.tobytes()
     assert list(loaded.names) == names
