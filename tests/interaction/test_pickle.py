@@ -42,6 +42,9 @@ from lifelore.interaction.library.offline_runs import run_offline
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_types import TaskTypes
 from lifelore.interaction.library.user_types import UserTypes
+from lifelore.interaction.novelty import calibration as novelty_calibration
+from lifelore.interaction.novelty import known_tasks, signal_laws
+from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.outcomes import batch_likelihood, outcome_families, outcome_model
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
@@ -268,6 +271,27 @@ SEEN: list[tuple[str, SignalModel | None, list[Any]]] = [
 """Models of outcomes and of signals, learnt from runs, with signals for each."""
 
 Maker = tuple[Callable[[], Any], Callable[[Any], list[Any]]]
+
+
+def detector(**options: Any) -> NoveltyDetector:
+    return NoveltyDetector.calibrate(
+        library(**options),
+        rule_named("sampling"),
+        false_alarm=0.1,
+        horizon=3,
+        n_tasks=200,
+        dynamics=TypeDynamics.static(),
+    )
+
+
+def watches(signal: Any) -> Callable[[NoveltyDetector], Any]:
+    def watch(detector: NoveltyDetector) -> Any:
+        detector.observe(np.full(N_TYPES, 1 / N_TYPES), 0, signal)
+        return detector.probability, detector.score
+
+    return watch
+
+
 MAKERS: list[Maker] = [
     *((lambda rule=rule: agent(rule), lives) for rule in RULES),
     (lambda: agent("sampling", dynamics=TypeDynamics.hazard(0.1, [0.2, 0.5, 0.3])), lives),
@@ -276,6 +300,8 @@ MAKERS: list[Maker] = [
     (lambda: users("f8", dynamics=TypeDynamics.transitions(np.eye(N_TYPES) * 0.7 + 0.1)), serves),
     *((lambda case=case: seeing(*case), sees(case[2])) for case in SEEN),
     (lambda: users("f4", "categorical"), serves_values),
+    (lambda: detector(), watches(4.0)),
+    (lambda: detector(signal=CategorySignal(LAWS)), watches(1)),
     *((lambda rule=rule: rule_named(rule), scores) for rule in RULES),
     *((lambda kind=kind, more=more: kind(N_POLICIES, **COMMON, **more), plays)
       for kind, more in BASELINES.items()),
@@ -348,6 +374,10 @@ NOT_STATE = {
     TaskOutcomes: "a base",
     SpreadWeights: "a base",
     DerivedArrays: "a cache of the module",
+    novelty_calibration.Watched: "tasks that were played within `calibrate`",
+    known_tasks.CategoryTasks: "tasks drawn within `calibrate`",
+    known_tasks.NormalTasks: "tasks drawn within `calibrate`",
+    signal_laws.Cells: "numbers of a call",
     Shown: "a view of `UserOutcomes` within a call",
 }
 
