@@ -19,6 +19,40 @@ _L7 = 1.479819860511658591e-01
 _LOG2_E, _C12 = 1.4426950408889634, 1 / 479001600
 
 
+_ROOT_HALF = 0.5**0.5
+# log(erfc(x) / t) + x² by powers of 2 t − 1 with t = 2 / (2 + x), from the Chebyshev series of Numerical Recipes.
+ERFC = (
+    -0.6717940840566923,
+    0.6726432239776567,
+    0.047343306841904534,
+    -0.04689561023117734,
+    -0.009872689366392282,
+    0.008824938557113696,
+    0.0017589335578087361,
+    -0.002345812501075328,
+    -0.00014624686329855997,
+    0.0006736787991385599,
+    -9.3735032187904e-05,
+    -0.000174302959455232,
+    7.1401019131904e-05,
+    3.174520193024e-05,
+    -3.0187899002880004e-05,
+    1.3772128256000025e-07,
+    8.562650611712e-06,
+    -2.948059037696e-06,
+    -1.272346443776e-06,
+    1.2502106112000001e-06,
+    -1.684684144640001e-07,
+    -2.4981274624000006e-07,
+    1.533269770240001e-07,
+    1.6106127359999997e-09,
+    -3.916641075200003e-08,
+    1.1106516991999998e-08,
+    4.060086272e-09,
+    -1.879048192e-09,
+)
+
+
 def _of_parts(power: Array, f: Array) -> Array:
     half = 0.5 * f * f
     s = f / (2.0 + f)
@@ -51,3 +85,15 @@ def exps(values: Array) -> Array:
     low = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * high))))))
     power = ((whole.astype(np.int64) + _BIAS) << _SHIFT).view(np.float64)
     return np.where(values >= -708.0, low * power, 0.0)
+
+
+def ndtrs(z: Array) -> Array:
+    """Distribution function of the standard normal."""
+    x = np.minimum(np.abs(z) * _ROOT_HALF, 40.0)
+    t = 2.0 / (2.0 + x)
+    u = 2.0 * t - 1.0
+    f = np.full(u.shape, ERFC[-1])
+    for coefficient in ERFC[-2::-1]:
+        f = f * u + coefficient
+    half = 0.5 * (t * exps(np.minimum(f - x * x, 0.0)))
+    return np.where(z < 0, half, 1.0 - half)

@@ -84,8 +84,10 @@ class TaskLibrary(PolicyLibrary):
         if n_bins not in self._tables:
             self._tables[n_bins] = table.copy()
             self._stale[n_bins] = set(self.state()["signal.policies"].tolist())
-        for policy in self._stale[n_bins]:
-            self._tables[n_bins].replace(policy, self.evidence.table_rows(policy, cuts[policy], table.n_signals))
+        if self._stale[n_bins]:
+            some = sorted(self._stale[n_bins])
+            rows = self.evidence.many_rows(some, [cuts[policy] for policy in some], table.n_signals)
+            self._tables[n_bins].replace_many(some, rows)
         self._stale[n_bins].clear()
         return self._tables[n_bins]
 

@@ -3,11 +3,14 @@
 The twins in NumPy are `TaskNormals` and `task_outcomes.evidence_of`; both give the same bits.
 """
 
+import math
+
 import numpy as np
 
 from lifelore.core.compiled.jit import inlined, kernel
-from lifelore.core.compiled.vector_log import plain_exp, plain_log, plain_log1p
+from lifelore.core.compiled.vector_log import plain_exp, plain_log, plain_log1p, plain_ndtr
 
+_ROOT_2_PI = math.sqrt(2 * math.pi)
 LARGEST_RATIO, LARGEST_SQUARE, LARGEST_VARIANCE = 1e300, 1e300, 1e200
 
 
@@ -158,3 +161,30 @@ def renew(policies, shown, location, variance, rarity, doubt, spreads, weights, 
             mean[i, policy] = centre[i]
             noise[i, policy] = factor * wide[i]
             mean_variance[i, policy] = factor * inner[i] + scatter[i]
+
+
+@kernel
+def mean_excess(mean, mean_variance, threshold, out):
+    """Write E[max(m − threshold, 0)] of normal m, (n_types, n_policies)."""
+    for i in range(mean.shape[0]):
+        for j in range(mean.shape[1]):
+            above = mean[i, j] - threshold
+            deviation = math.sqrt(mean_variance[i, j])
+            z = min(max(np.divide(above, max(deviation, 1e-300)), -1e3), 1e3)
+            density = np.divide(plain_exp(-0.5 * z * z), _ROOT_2_PI)
+            out[i, j] = max(deviation * density + above * plain_ndtr(z), 0.0)
+
+
+@kernel
+def normal_below(policies, cuts, mean, deviation, out):
+    """Write P(U ≤ cut | type) of `policies` (m,), taken as normal, (m, n_types, n_cuts).
+
+    cuts : (m, n_cuts) float64
+    mean, deviation : (n_types, n_policies) float64
+    """
+    for place in range(policies.shape[0]):
+        policy = policies[place]
+        for i in range(mean.shape[0]):
+            centre, wide = mean[i, policy], deviation[i, policy]
+            for j in range(cuts.shape[1]):
+                out[place, i, j] = plain_ndtr(np.divide(cuts[place, j] - centre, wide))

@@ -13,14 +13,14 @@ exactly (n and ν₀ infinite, no spread) keep their normal distribution. Thesis
 """
 
 from functools import cache, lru_cache
-from math import erfc, lgamma, log, pi
+from math import lgamma, log, pi
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.array_log import log1ps, logs
+from lifelore.core.compiled.array_log import exps, log1ps, logs, ndtrs
 from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts
@@ -39,7 +39,6 @@ LARGEST_FREEDOM = 1e7
 """Degrees of freedom above which a t distribution is computed as this one's."""
 LARGEST_SQUARE = 1e300
 """Squared scales and squared distances count as at most this, so that no logarithm overflows."""
-ROOT_HALF = 0.5**0.5
 _NOTHING = np.empty(0)
 _ROOT_2_PI = np.sqrt(2 * np.pi)
 
@@ -205,12 +204,14 @@ class TaskNormals(TaskOutcomes):
 
     def expected_mean_excess(self, threshold: ArrayLike) -> Array:
         """E[max(m − threshold, 0)] of each pair's mean outcome m, taken as normal, (..., n_types, n_policies)."""
-        above = self.mean - over_pairs(threshold)
-        deviation = np.sqrt(self.mean_variance)
-        z = above / np.maximum(deviation, 1e-300)
-        z = np.clip(z, -1e3, 1e3)
-        excess = deviation * np.exp(-0.5 * z * z) / _ROOT_2_PI + above * ndtr(z)
-        return np.maximum(excess, 0.0)
+        mean, variance = self.mean, self.mean_variance
+        if np.ndim(threshold) == 0 and kernel_pays(8 * mean.size):
+            excess = np.empty_like(mean)
+            _kernels().mean_excess(mean, variance, float(threshold), excess)  # pyright: ignore
+            return excess
+        above, deviation = mean - over_pairs(threshold), np.sqrt(variance)
+        z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
+        return np.maximum(deviation * (exps(-0.5 * z * z) / _ROOT_2_PI) + above * ndtrs(z), 0.0)
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""
@@ -254,17 +255,28 @@ class TaskNormals(TaskOutcomes):
 
     def table_rows(self, policy: int, cuts: Array, n_bins: int) -> Array:
         """P(bin | type) of the next outcome of a policy, taken as normal, (n_types, n_bins)."""
-        z = (cuts - self.mean[:, policy, None]) / self.deviation[:, policy, None]
-        # Not by SciPy, whose import takes longer than a whole choice.
-        below = np.array([0.5 * erfc(-value * ROOT_HALF) for value in z.ravel().tolist()]).reshape(z.shape)
-        probs = np.zeros((len(z), n_bins))
-        probs[:, : z.shape[1] + 1] = np.maximum(np.diff(below, axis=1, prepend=0.0, append=1.0), 0.0)
-        return probs
+        return self.many_rows([policy], [cuts], n_bins)[0]
+
+    def many_rows(self, policies: list[int], cuts: list[Array], n_bins: int) -> Array:
+        """`table_rows` of policies, (n, n_types, n_bins)."""
+        mean, deviation, chosen = self.mean, self.deviation, np.array(policies)
+        # A policy with fewer cuts leaves its last bins empty.
+        filled = np.full((len(policies), n_bins - 1), np.inf)
+        for row, own in zip(filled, cuts, strict=True):
+            row[: len(own)] = own
+        below = np.ones((len(policies), self.n_types, n_bins))
+        if kernel_pays(8 * below.size):
+            _kernels().normal_below(chosen, np.minimum(filled, LARGEST**2), mean, deviation, below)
+        else:
+            at = np.minimum(filled, LARGEST**2)[:, None]
+            below[..., :-1] = ndtrs((at - mean.T[chosen, :, None]) / deviation.T[chosen, :, None])
+        probs = below
+        probs[..., 1:] -= below[..., :-1].copy()
+        return np.maximum(probs, 0.0, out=probs)
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The next outcome in bins that tell the types apart."""
-        rows = [self.table_rows(policy, cuts, n_bins) for policy, cuts in enumerate(self.cuts(n_bins))]
-        return SignalTable(np.stack(rows), copy=False)
+        return SignalTable(self.many_rows(list(range(self.n_policies)), self.cuts(n_bins), n_bins), copy=False)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random next outcomes of a pair: a number, or an array of shape `size`."""

@@ -70,6 +70,14 @@ class SpreadWeights:
         """The evidence of a signal, before it is taken in; see `evidence_of`."""
         return evidence_of(self.predicted(policy, signal), self.log_weights, self.spread, log_belief, log_anew)
 
+    def table_rows(self, policy: int, cuts: Any, n_bins: int) -> Array:
+        """P(bin | type) of a policy's next signal, (n_types, n_bins)."""
+        raise NotImplementedError
+
+    def many_rows(self, policies: list[int], cuts: list[Any], n_bins: int) -> Array:
+        """`table_rows` of policies, (n, n_types, n_bins)."""
+        return np.stack([self.table_rows(policy, own, n_bins) for policy, own in zip(policies, cuts, strict=True)])
+
     def weights_after(self, by_spread: Array, belief: Array) -> Array:
         """Log probabilities of the spreads after a signal, given the belief (n_types,) before it."""
         return self.weights_gained(gain_of(by_spread, belief))
