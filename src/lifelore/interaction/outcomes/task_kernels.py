@@ -166,13 +166,14 @@ def renew(policies, shown, location, variance, rarity, doubt, spreads, weights, 
 @kernel
 def mean_excess(mean, mean_variance, threshold, out):
     """Write E[max(m − threshold, 0)] of normal m, (n_types, n_policies)."""
+    # One long loop, of which a processor computes several turns at a time.
+    mean, mean_variance, out = mean.ravel(), mean_variance.ravel(), out.ravel()
     for i in range(mean.shape[0]):
-        for j in range(mean.shape[1]):
-            above = mean[i, j] - threshold
-            deviation = math.sqrt(mean_variance[i, j])
-            z = min(max(np.divide(above, max(deviation, 1e-300)), -1e3), 1e3)
-            density = np.divide(plain_exp(-0.5 * z * z), _ROOT_2_PI)
-            out[i, j] = max(deviation * density + above * plain_ndtr(z), 0.0)
+        above = mean[i] - threshold
+        deviation = np.sqrt(mean_variance[i])
+        z = min(max(np.divide(above, max(deviation, 1e-300)), -1e3), 1e3)
+        density = np.divide(plain_exp(-0.5 * z * z), _ROOT_2_PI)
+        out[i] = max(deviation * density + above * plain_ndtr(z), 0.0)
 
 
 @kernel
@@ -181,10 +182,14 @@ def normal_below(policies, cuts, mean, deviation, out):
 
     cuts : (m, n_cuts) float64
     mean, deviation : (n_types, n_policies) float64
+    out : contiguous
     """
     for place in range(policies.shape[0]):
         policy = policies[place]
         for i in range(mean.shape[0]):
             centre, wide = mean[i, policy], deviation[i, policy]
             for j in range(cuts.shape[1]):
-                out[place, i, j] = plain_ndtr(np.divide(cuts[place, j] - centre, wide))
+                out[place, i, j] = np.divide(cuts[place, j] - centre, wide)
+    flat = out.ravel()
+    for i in range(flat.shape[0]):
+        flat[i] = plain_ndtr(flat[i])

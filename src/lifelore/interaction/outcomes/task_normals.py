@@ -264,14 +264,16 @@ class TaskNormals(TaskOutcomes):
         filled = np.full((len(policies), n_bins - 1), np.inf)
         for row, own in zip(filled, cuts, strict=True):
             row[: len(own)] = own
-        below = np.ones((len(policies), self.n_types, n_bins))
-        if kernel_pays(8 * below.size):
-            _kernels().normal_below(chosen, np.minimum(filled, LARGEST**2), mean, deviation, below)
+        cut = np.minimum(filled, LARGEST**2)
+        if kernel_pays(8 * self.n_types * cut.size):
+            below = np.empty((len(policies), self.n_types, n_bins - 1))
+            _kernels().normal_below(chosen, cut, mean, deviation, below)
         else:
-            at = np.minimum(filled, LARGEST**2)[:, None]
-            below[..., :-1] = ndtrs((at - mean.T[chosen, :, None]) / deviation.T[chosen, :, None])
-        probs = below
-        probs[..., 1:] -= below[..., :-1].copy()
+            below = ndtrs((cut[:, None] - mean.T[chosen, :, None]) / deviation.T[chosen, :, None])
+        probs = np.empty((len(policies), self.n_types, n_bins))
+        probs[..., :1] = below[..., :1]
+        np.subtract(below[..., 1:], below[..., :-1], out=probs[..., 1:-1])
+        np.subtract(1.0, below[..., -1], out=probs[..., -1])
         return np.maximum(probs, 0.0, out=probs)
 
     def table(self, n_bins: int = 8) -> SignalTable:
