@@ -10,8 +10,10 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
+from lifelore.interaction.outcomes import task_normals
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.spread import Spread
+from lifelore.interaction.reuse import reuse_algorithm
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session, save_session, session_bytes
 from lifelore.interaction.selection import ExpectedImprovement, Greedy, InformationDirected, rule_named
@@ -258,3 +260,25 @@ def test_models_has_two_names():
     with pytest.raises(InputError, match="'uncertain' or 'plug-in'"):
         BayesianPolicyReuse(learnt(), models="exact")  # type: ignore[arg-type]
     assert BayesianPolicyReuse(learnt(), InformationDirected(), models="plug-in").task is None
+
+
+@pytest.mark.parametrize("static", [False, True])
+def test_kernels_and_numpy_give_the_same_bits(monkeypatch, static):
+    """With several spreads, runs that differ in number, exact pairs and an outcome far from all types."""
+    random = np.random.default_rng(4)
+    counts = np.where(random.random((7, 5)) < 0.2, np.inf, random.integers(1, 20, (7, 5)))
+    library = PolicyLibrary.from_means(random.normal(scale=30, size=(7, 5)), 10.0, count=counts)
+    outcomes_of(library).moments.spread = Spread.up_to(0.8)
+    signals = [(int(random.integers(5)), float(value)) for value in [*random.normal(scale=30, size=40), 1e6]]
+    found = {}
+    for compiled in (False, True):
+        for module in (task_normals, reuse_algorithm):
+            monkeypatch.setattr(module, "kernel_pays", lambda numbers, pays=compiled: pays)
+        agent = BayesianPolicyReuse(library, Greedy(), dynamics=TypeDynamics.static() if static else None)
+        states = []
+        for policy, value in signals[:20] + signals[-1:] + signals[20:]:
+            agent.update(policy, value)
+            model = outcomes_of(agent.task)
+            states += [agent.log_belief, model.mean.copy(), model.noise.copy(), model.mean_variance]
+        found[compiled] = states
+    assert all(np.array_equal(a, b) for a, b in zip(found[True], found[False], strict=True))

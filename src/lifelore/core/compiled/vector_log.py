@@ -6,6 +6,7 @@ log(1 + f) by a polynomial in f / (2 + f). The exponential is 2^k times a polyno
 
 import numpy as np
 
+from lifelore.core.compiled.array_log import ERFC
 from lifelore.core.compiled.jit import inlined
 
 # Bits of 1 and of √½, and the fraction of a float64.
@@ -18,6 +19,38 @@ _L1, _L2, _L3 = 6.666666666666735130e-01, 3.999999999940941908e-01, 2.8571428743
 _L4, _L5, _L6 = 2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01
 _L7 = 1.479819860511658591e-01
 _LOG2_E, _C12 = 1.4426950408889634, 1 / 479001600
+
+_ROOT_HALF = 0.5**0.5
+(
+    _E0,
+    _E1,
+    _E2,
+    _E3,
+    _E4,
+    _E5,
+    _E6,
+    _E7,
+    _E8,
+    _E9,
+    _E10,
+    _E11,
+    _E12,
+    _E13,
+    _E14,
+    _E15,
+    _E16,
+    _E17,
+    _E18,
+    _E19,
+    _E20,
+    _E21,
+    _E22,
+    _E23,
+    _E24,
+    _E25,
+    _E26,
+    _E27,
+) = ERFC
 
 
 @inlined
@@ -58,3 +91,20 @@ def plain_exp(x):
     low = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * high))))))
     power = np.int64((np.int64(whole) + _BIAS) << _SHIFT).view(np.float64)
     return low * power if x >= -708.0 else 0.0
+
+
+@inlined
+def plain_ndtr(z):
+    """Distribution function of the standard normal, to a few units in the last place."""
+    x = min(abs(z) * _ROOT_HALF, 40.0)
+    t = np.divide(2.0, 2.0 + x)
+    u = 2.0 * t - 1.0
+    f = (((_E27 * u + _E26) * u + _E25) * u + _E24) * u + _E23
+    f = (((f * u + _E22) * u + _E21) * u + _E20) * u + _E19
+    f = (((f * u + _E18) * u + _E17) * u + _E16) * u + _E15
+    f = (((f * u + _E14) * u + _E13) * u + _E12) * u + _E11
+    f = (((f * u + _E10) * u + _E9) * u + _E8) * u + _E7
+    f = (((f * u + _E6) * u + _E5) * u + _E4) * u + _E3
+    f = ((f * u + _E2) * u + _E1) * u + _E0
+    half = 0.5 * (t * plain_exp(min(f - x * x, 0.0)))
+    return half if z < 0 else 1.0 - half

@@ -94,6 +94,17 @@ class SignalTable:
         self.conditional_entropy[policy] = 0 - _times_log(self.probs[policy]).sum(axis=1)
         self.replaced.append(policy)
 
+    def replace_many(self, policies: list[int], rows: NDArray[Any]) -> None:
+        """`replace` of several policies at once, by rows (n, n_types, n_signals), which are cleaned in place."""
+        flat = rows.reshape(-1, rows.shape[-1])
+        _clean(flat, f"{policies[0]} to {policies[-1]}")
+        self.probs[policies] = rows
+        # In the precision of the table, as for a single policy.
+        if rows.dtype != self.probs.dtype:
+            flat = self.probs[policies].reshape(flat.shape)
+        self.conditional_entropy[policies] = 0 - _times_log(flat).sum(axis=1).reshape(rows.shape[:2])
+        self.replaced.extend(policies)
+
     @property
     def n_policies(self) -> int:
         return self.probs.shape[0]
@@ -107,7 +118,7 @@ class SignalTable:
         return self.probs.shape[2]
 
 
-def _clean(rows: NDArray[Any], policy: int) -> None:
+def _clean(rows: NDArray[Any], policy: int | str) -> None:
     """Raise InputError where a row is no distribution; set small entries to 0 and renormalise, in place."""
     sums = rows.sum(axis=1, keepdims=True)
     if not ((rows >= 0).all() and (np.abs(sums - 1) <= 1e-6 * max(1.0, rows.shape[1] ** 0.5)).all()):

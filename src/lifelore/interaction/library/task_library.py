@@ -49,19 +49,21 @@ class TaskLibrary(PolicyLibrary):
         """Whether the return is the signal, so that each signal teaches the outcomes too."""
         return self.evidence is self.outcomes_of_task
 
-    def learn(self, policy: int, signal: Any, outcome: float | None, log_weights: Array, belief: Array) -> None:
+    def learn(
+        self, policy: int, signal: Any, outcome: float | None, log_weights: Array, belief: Array | None
+    ) -> None:
         """Take in the signal of a policy, and its outcome where the signal is another one.
 
         Parameters
         ----------
         log_weights : (n_spreads,) float64
             The spreads' log probabilities after the signal.
-        belief : (n_types,) float64
-            Before the signal.
+        belief : (n_types,) float64, optional
+            Before the signal; None only where the signal is the outcome.
         """
         if self.evidence is not None:
             self.evidence.learn(policy, signal, log_weights)
-        if not self.signal_is_outcome and outcome is not None and self.outcomes_of_task is not None:
+        if belief is not None and not self.signal_is_outcome and outcome is not None and self.outcomes_of_task:
             predicted = self.outcomes_of_task.predicted(policy, outcome).by_spread
             self.outcomes_of_task.learn(policy, outcome, self.outcomes_of_task.weights_after(predicted, belief))
         for stale in self._stale.values():
@@ -82,8 +84,10 @@ class TaskLibrary(PolicyLibrary):
         if n_bins not in self._tables:
             self._tables[n_bins] = table.copy()
             self._stale[n_bins] = set(self.state()["signal.policies"].tolist())
-        for policy in self._stale[n_bins]:
-            self._tables[n_bins].replace(policy, self.evidence.table_rows(policy, cuts[policy], table.n_signals))
+        if self._stale[n_bins]:
+            some = sorted(self._stale[n_bins])
+            rows = self.evidence.many_rows(some, [cuts[policy] for policy in some], table.n_signals)
+            self._tables[n_bins].replace_many(some, rows)
         self._stale[n_bins].clear()
         return self._tables[n_bins]
 

@@ -12,13 +12,16 @@ parameters are never drawn: (k, x̄, S) of each policy that was tried is all tha
 exactly (n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
 """
 
-from functools import lru_cache
-from math import erfc, lgamma, log, pi
+from functools import cache, lru_cache
+from math import lgamma, log, pi
+from types import ModuleType
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.compiled.array_log import exps, log1ps, logs, ndtrs
+from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts
 from lifelore.interaction.finite_signals.signal_table import SignalTable
@@ -26,7 +29,7 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, ove
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes
 
 Array = NDArray[np.float64]
 
@@ -34,7 +37,9 @@ LEAST_FREEDOM = 0.5
 """Least ν − 2 in the variance of a t distribution: below it would be infinite, and nothing compares."""
 LARGEST_FREEDOM = 1e7
 """Degrees of freedom above which a t distribution is computed as this one's."""
-ROOT_HALF = 0.5**0.5
+LARGEST_SQUARE = 1e300
+"""Squared scales and squared distances count as at most this, so that no logarithm overflows."""
+_NOTHING = np.empty(0)
 _ROOT_2_PI = np.sqrt(2 * np.pi)
 
 
@@ -61,13 +66,18 @@ class TaskNormals(TaskOutcomes):
         self._variance = np.ascontiguousarray(moments.variance.T)
         self._rarity = np.ascontiguousarray(1 / moments.count.T)
         self._doubt = np.ascontiguousarray(1 / moments.freedom.T)
-        self._shown: dict[int, tuple[float, float, float]] = {}
+        # Count, mean and sum of squares of each policy's outcomes, and the policies in the order of their trials.
+        self._numbers = np.zeros((len(self._location), 3))
+        self._tried: list[int] = []
+        self._alike = (self._doubt == self._doubt[:, :1]).all(axis=1).tolist()
+        self._new_heights: dict[int, Array] = {}
+        self._log_first = np.log(spread.weights)
         self._stale: set[int] = set()
         factor = variance_factor(moments.freedom)
         self._mean, self._noise = moments.mean.copy(), moments.variance * factor
         self._of_runs, self._of_spread = self._noise / moments.count, self._noise.copy()
         self._freedom = np.minimum(moments.freedom, LARGEST_FREEDOM)
-        self._tried_variance: dict[int, Array] = {}
+        self._tried_variance = np.zeros(self._mean.shape)
 
     # ---- what the task has shown ---------------------------------------------------------------------------
 
@@ -75,36 +85,67 @@ class TaskNormals(TaskOutcomes):
         """The log density of `value` by spread and type, and its density in a task that has shown nothing."""
         if not is_outcome(policy, value, len(self._location)):
             refuse_outcome(policy, value, self.n_policies)
-        shown = self._shown.get(policy)
         fresh = self._log_density(policy, value, (0.0, 0.0, 0.0))
-        return Predicted(fresh if shown is None else self._log_density(policy, value, shown), fresh)
+        shown = self._numbers[policy].tolist()
+        return Predicted(fresh if shown[0] == 0 else self._log_density(policy, value, shown), fresh)
+
+    def evidence(self, policy: int, signal: float, log_belief: Array, log_anew: Array | None) -> TaskEvidence:
+        """The evidence of an outcome, before it is taken in; see `evidence_of`."""
+        if not kernel_pays(8 * log_belief.size * len(self.log_weights)):
+            return super().evidence(policy, signal, log_belief, log_anew)
+        if not is_outcome(policy, signal, len(self._location)):
+            refuse_outcome(policy, signal, self.n_policies)
+        found = TaskEvidence(np.empty_like(log_belief), np.empty_like(log_belief), np.zeros(len(self.log_weights)))
+        fresh = self._new_heights.get(policy)
+        if fresh is None:
+            fresh = self._new_heights[policy] = self._heights(policy, 0.0)
+        shown = self._numbers[policy]
+        _kernels().task_evidence(
+            float(signal),
+            shown,
+            self._location[policy],
+            self._variance[policy],
+            self._rarity[policy],
+            self._doubt[policy],
+            self.spread.values,
+            self._heights(policy, float(shown[0])) if shown[0] else fresh,
+            fresh,
+            self.log_weights,
+            self._log_first,
+            log_belief,
+            _NOTHING if log_anew is None else log_anew,
+            *found,
+        )
+        return found
 
     def learn(self, policy: int, value: float, log_weights: Array | None = None) -> None:
         """Take in an outcome of this task, and the spreads' log probabilities after it."""
-        k, mean, squares = self._shown.get(policy, (0.0, 0.0, 0.0))
+        k, mean, squares = self._numbers[policy].tolist()
         before = value - mean
-        self._shown[policy] = k + 1, mean + before / (k + 1), squares + before**2 * (k / (k + 1))
+        self._numbers[policy] = k + 1, mean + before / (k + 1), squares + before**2 * (k / (k + 1))
+        if policy not in self._tried:
+            self._tried.append(policy)
         if log_weights is not None:
             self.log_weights = log_weights
-        self._stale.update(self._shown if len(self.log_weights) > 1 else (policy,))
+        self._stale.update(self._tried if len(self.log_weights) > 1 else (policy,))
 
     @property
     def shown(self) -> dict[int, tuple[float, float, float]]:
         """Number, mean and sum of squares around the mean of the outcomes of each policy that was tried."""
-        return dict(self._shown)
+        return {policy: tuple(self._numbers[policy].tolist()) for policy in self._tried}
 
     def fade(self, keep: float) -> None:
         """Let everything that the task has shown count `keep` of what it did; the type may have changed."""
-        for policy, (k, mean, squares) in self._shown.items():
-            self._shown[policy] = k * keep, mean, squares * keep
+        self._numbers[:, 0] *= keep
+        self._numbers[:, 2] *= keep
         self.fade_weights(keep)
-        self._stale.update(self._shown)
+        self._stale.update(self._tried)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown: ``policies`` (m,), ``shown`` (m, 3): k, mean, squares; ``log_weights``."""
         return {
-            "policies": np.array(list(self._shown), np.int64),
-            "shown": np.array(list(self._shown.values()), np.float64).reshape(-1, 3),
+            "policies": np.array(self._tried, np.int64),
+            "shown": self._numbers[self._tried].reshape(-1, 3),
             "log_weights": self.log_weights.copy(),
         }
 
@@ -116,8 +157,10 @@ class TaskNormals(TaskOutcomes):
         if not good or (policies.size and not 0 <= policies.min() <= policies.max() < self.n_policies):
             raise InputError("a task's state must have policies and (count, mean, squares) of each")
         self.restore_weights(state["log_weights"])
-        self._shown = dict(zip(policies.tolist(), map(tuple, shown.tolist()), strict=True))  # type: ignore[arg-type]
-        self._stale.update(self._shown)
+        self._tried = policies.tolist()
+        self._numbers[:] = 0.0
+        self._numbers[policies] = shown
+        self._stale.update(self._tried)
 
     # ---- the model as rules use it -------------------------------------------------------------------------
 
@@ -141,8 +184,7 @@ class TaskNormals(TaskOutcomes):
         if self._stale:
             self._renew()
         found = self._of_runs + self._of_spread * (np.exp(self.log_weights) @ self.spread.values)
-        for policy, column in self._tried_variance.items():
-            found[:, policy] = column
+        found[:, self._tried] = self._tried_variance[:, self._tried]
         return found
 
     @property
@@ -153,10 +195,7 @@ class TaskNormals(TaskOutcomes):
     @property
     def freedom(self) -> Array:
         """Degrees of freedom of the next outcome, at most `LARGEST_FREEDOM`, (n_types, n_policies)."""
-        freedom = self._freedom.copy()
-        for policy, (k, *_) in self._shown.items():
-            freedom[:, policy] += k
-        return freedom
+        return self._freedom + self._numbers[:, 0]
 
     @property
     def scale(self) -> Array:
@@ -165,12 +204,14 @@ class TaskNormals(TaskOutcomes):
 
     def expected_mean_excess(self, threshold: ArrayLike) -> Array:
         """E[max(m − threshold, 0)] of each pair's mean outcome m, taken as normal, (..., n_types, n_policies)."""
-        above = self.mean - over_pairs(threshold)
-        deviation = np.sqrt(self.mean_variance)
-        z = above / np.maximum(deviation, 1e-300)
-        z = np.clip(z, -1e3, 1e3)
-        excess = deviation * np.exp(-0.5 * z * z) / _ROOT_2_PI + above * ndtr(z)
-        return np.maximum(excess, 0.0)
+        mean, variance = self.mean, self.mean_variance
+        if np.ndim(threshold) == 0 and kernel_pays(8 * mean.size):
+            excess = np.empty_like(mean)
+            _kernels().mean_excess(mean, variance, float(threshold), excess)  # pyright: ignore
+            return excess
+        above, deviation = mean - over_pairs(threshold), np.sqrt(variance)
+        z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
+        return np.maximum(deviation * (exps(-0.5 * z * z) / _ROOT_2_PI) + above * ndtrs(z), 0.0)
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""
@@ -193,9 +234,10 @@ class TaskNormals(TaskOutcomes):
     def cumulative(self, policy: int, values: Array, types: Any = slice(None)) -> Array:
         """P(U ≤ value | type, policy) of `values` (n,), for all or some types, (n_types, n)."""
         noise = self.noise[:, policy]
-        freedom = self._freedom[types, policy] + self._shown.get(policy, (0.0,))[0]
-        variance = self._tried_variance.get(policy)
-        if variance is None:
+        freedom = self._freedom[types, policy] + self._numbers[policy, 0]
+        if policy in self._tried:
+            variance = self._tried_variance[:, policy]
+        else:
             expected = np.exp(self.log_weights) @ self.spread.values
             variance = self._of_runs[:, policy] + self._of_spread[:, policy] * expected
         scale = np.sqrt((variance[types] + noise[types]) / variance_factor(freedom))
@@ -213,17 +255,30 @@ class TaskNormals(TaskOutcomes):
 
     def table_rows(self, policy: int, cuts: Array, n_bins: int) -> Array:
         """P(bin | type) of the next outcome of a policy, taken as normal, (n_types, n_bins)."""
-        z = (cuts - self.mean[:, policy, None]) / self.deviation[:, policy, None]
-        # Not by SciPy, whose import takes longer than a whole choice.
-        below = np.array([0.5 * erfc(-value * ROOT_HALF) for value in z.ravel().tolist()]).reshape(z.shape)
-        probs = np.zeros((len(z), n_bins))
-        probs[:, : z.shape[1] + 1] = np.maximum(np.diff(below, axis=1, prepend=0.0, append=1.0), 0.0)
-        return probs
+        return self.many_rows([policy], [cuts], n_bins)[0]
+
+    def many_rows(self, policies: list[int], cuts: list[Array], n_bins: int) -> Array:
+        """`table_rows` of policies, (n, n_types, n_bins)."""
+        mean, deviation, chosen = self.mean, self.deviation, np.array(policies)
+        # A policy with fewer cuts leaves its last bins empty.
+        filled = np.full((len(policies), n_bins - 1), np.inf)
+        for row, own in zip(filled, cuts, strict=True):
+            row[: len(own)] = own
+        cut = np.minimum(filled, LARGEST**2)
+        if kernel_pays(8 * self.n_types * cut.size):
+            below = np.empty((len(policies), self.n_types, n_bins - 1))
+            _kernels().normal_below(chosen, cut, mean, deviation, below)
+        else:
+            below = ndtrs((cut[:, None] - mean.T[chosen, :, None]) / deviation.T[chosen, :, None])
+        probs = np.empty((len(policies), self.n_types, n_bins))
+        probs[..., :1] = below[..., :1]
+        np.subtract(below[..., 1:], below[..., :-1], out=probs[..., 1:-1])
+        np.subtract(1.0, below[..., -1], out=probs[..., -1])
+        return np.maximum(probs, 0.0, out=probs)
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The next outcome in bins that tell the types apart."""
-        rows = [self.table_rows(policy, cuts, n_bins) for policy, cuts in enumerate(self.cuts(n_bins))]
-        return SignalTable(np.stack(rows), copy=False)
+        return SignalTable(self.many_rows(list(range(self.n_policies)), self.cuts(n_bins), n_bins), copy=False)
 
     def sample(self, generator: np.random.Generator, type_: int, policy: int, size: Any = None) -> Any:
         """Random next outcomes of a pair: a number, or an array of shape `size`."""
@@ -243,37 +298,59 @@ class TaskNormals(TaskOutcomes):
         rarity = self._rarity[place] + self.spread.values[:, None]
         grown = 1 + k * rarity
         apart = mean - location
+        left = rarity / grown
         with np.errstate(divide="ignore", over="ignore"):
             freedom = 1 / doubt + k
-            found = (variance + doubt * (squares + k / grown * apart**2)) / (1 + doubt * k)
-        return location + k * rarity / grown * apart, rarity / grown, np.minimum(found, LARGEST**2), freedom
+            found = (variance + doubt * (squares + k / grown * (apart * apart))) / (1 + doubt * k)
+        return location + k * left * apart, left, np.minimum(found, LARGEST**2), freedom
 
-    def _log_density(self, policy: int, value: float, shown: tuple[float, float, float]) -> Array:
+    def _log_density(self, policy: int, value: float, shown: Any) -> Array:
+        """Log densities of `value`, (n_spreads, n_types); the bits are those of the kernel."""
         location, rarity, variance, freedom = self._law(policy, shown)
-        freedom = freedom[0]
-        square = variance * (1 + rarity)
-        z2 = (value - location) ** 2 / square
+        square = np.minimum(variance * (1 + rarity), LARGEST_SQUARE)
+        gap = value - location
+        z2 = gap * gap / square
         normal = freedom == np.inf
-        if normal.any():
-            finite = np.where(normal, 1.0, freedom)
-            tail = np.where(normal, 0.5 * z2, 0.5 * (finite + 1) * np.log1p(z2 / finite))
-        else:
-            tail = 0.5 * (freedom + 1) * np.log1p(z2 / freedom)
-        return _heights(freedom) - 0.5 * np.log(square) - tail
+        finite = np.where(normal, 1.0, freedom)
+        tail = 0.5 * (finite + 1) * log1ps(np.minimum(z2 / finite, LARGEST_SQUARE))
+        return self._heights(policy, shown[0]) - 0.5 * logs(square) - np.where(normal, 0.5 * z2, tail)
+
+    def _heights(self, policy: int, count: float) -> Array:
+        """Log densities at the location, scale 1, of a policy with `count` outcomes, (n_types,)."""
+        doubt = self._doubt[policy]
+        with np.errstate(divide="ignore"):
+            if self._alike[policy]:
+                return np.full(len(doubt), _height(float(1 / doubt[0] + count)))
+            return np.array([_height(value) for value in (1 / doubt + count).tolist()])
 
     def _renew(self) -> None:
         """Compute the columns of the policies again whose law has changed."""
-        policies = np.array(sorted(self._stale))
-        shown = np.array([self._shown[policy] for policy in policies.tolist()]).T[:, :, None, None]
-        location, rarity, variance, freedom = self._law(policies, shown)
-        weights, factor = np.exp(self.log_weights)[:, None], variance_factor(freedom[:, 0])
+        policies, weights = np.array(sorted(self._stale)), np.exp(self.log_weights)
+        self._stale.clear()
+        shown = self._numbers[policies]
+        if kernel_pays(8 * len(policies) * self.n_types * len(weights)):
+            _kernels().renew(
+                policies,
+                shown,
+                self._location,
+                self._variance,
+                self._rarity,
+                self._doubt,
+                self.spread.values,
+                weights,
+                self._mean,
+                self._noise,
+                self._tried_variance,
+            )
+            return
+        location, rarity, variance, freedom = self._law(policies, shown.T[:, :, None, None])
+        weights, factor = weights[:, None], variance_factor(freedom[:, 0])
         mean = (weights * location).sum(axis=1)
         self._mean[:, policies] = mean.T
         self._noise[:, policies] = (factor * (weights * variance).sum(axis=1)).T
-        within = factor * (weights * variance * rarity).sum(axis=1)
-        doubt = within + (weights * (location - mean[:, None]) ** 2).sum(axis=1)
-        self._tried_variance.update(zip(policies.tolist(), doubt, strict=True))
-        self._stale.clear()
+        gap = location - mean[:, None]
+        within = factor * (weights * (rarity * variance)).sum(axis=1)
+        self._tried_variance[:, policies] = (within + (weights * (gap * gap)).sum(axis=1)).T
 
 
 def variance_factor(freedom: Array) -> Array:
@@ -299,11 +376,12 @@ def spread_of(moments: OutcomeMoments) -> Spread:
     return Spread.up_to(likeliest(found))
 
 
-def _heights(freedom: Array) -> Array:
-    first = freedom[0]
-    if (freedom == first).all():
-        return np.full(freedom.shape, _height(float(first)))
-    return np.array([_height(value) for value in freedom.tolist()])
+@cache
+def _kernels() -> ModuleType:
+    """The module of kernels, imported at its first use, because the import starts Numba."""
+    from lifelore.interaction.outcomes import task_kernels
+
+    return task_kernels
 
 
 @lru_cache(maxsize=4096)

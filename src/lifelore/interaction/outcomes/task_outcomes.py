@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lifelore.core.compiled.array_log import exps, logs
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.spread import Spread
@@ -27,6 +28,21 @@ class Predicted(NamedTuple):
 
     by_spread: Array
     fresh: Array
+
+
+class TaskEvidence(NamedTuple):
+    """Evidence of an outcome on the types and the spreads.
+
+    log_likelihood : (n_types,) float64
+    changed : (n_types,) float64
+        Probability that the type has just changed, given that it is now this type and showed the outcome.
+    gain : (n_spreads,) float64
+        Log likelihoods of the spreads, up to a constant; 0 where there is a single spread.
+    """
+
+    log_likelihood: Array
+    changed: Array
+    gain: Array
 
 
 class SpreadWeights:
@@ -46,13 +62,34 @@ class SpreadWeights:
         self.spread = spread
         self.log_weights: Array = np.log(spread.weights)
 
+    def predicted(self, policy: int, signal: Any) -> Predicted:
+        """The log density of a signal by spread and type; InputError or NotFoundError as `log_density`."""
+        raise NotImplementedError
+
+    def evidence(self, policy: int, signal: Any, log_belief: Array, log_anew: Array | None) -> TaskEvidence:
+        """The evidence of a signal, before it is taken in; see `evidence_of`."""
+        return evidence_of(self.predicted(policy, signal), self.log_weights, self.spread, log_belief, log_anew)
+
+    def table_rows(self, policy: int, cuts: Any, n_bins: int) -> Array:
+        """P(bin | type) of a policy's next signal, (n_types, n_bins)."""
+        raise NotImplementedError
+
+    def many_rows(self, policies: list[int], cuts: list[Any], n_bins: int) -> Array:
+        """`table_rows` of policies, (n, n_types, n_bins)."""
+        return np.stack([self.table_rows(policy, own, n_bins) for policy, own in zip(policies, cuts, strict=True)])
+
     def weights_after(self, by_spread: Array, belief: Array) -> Array:
         """Log probabilities of the spreads after a signal, given the belief (n_types,) before it."""
-        if len(self.log_weights) == 1 or (top := by_spread.max()) == -np.inf:
+        return self.weights_gained(gain_of(by_spread, belief))
+
+    def weights_gained(self, gain: Array) -> Array:
+        """Log probabilities of the spreads after a signal of `gain`, see `TaskEvidence`."""
+        if len(self.log_weights) == 1:
             return self.log_weights
-        with np.errstate(divide="ignore"):
-            found = self.log_weights + np.log(np.exp(by_spread - top) @ belief)
-        found -= found.max()
+        found = self.log_weights + gain
+        if not (top := found.max()) > -np.inf:
+            return self.log_weights
+        found -= top
         return found - np.log(np.exp(found).sum())
 
     def fade_weights(self, keep: float) -> None:
@@ -80,10 +117,6 @@ class TaskOutcomes(SpreadWeights):
     @property
     def n_policies(self) -> int:
         return self.mean.shape[1]
-
-    def predicted(self, policy: int, value: Any) -> Predicted:
-        """The log density of `value` by spread and type; InputError or NotFoundError as `log_density`."""
-        raise NotImplementedError
 
     def learn(self, policy: int, value: Any, log_weights: Array | None = None) -> None:
         """Take in an outcome of this task, and the spreads' log probabilities after it."""
@@ -120,3 +153,58 @@ def mixed(by_spread: Array, log_weights: Array) -> Array:
     top = np.where(top > -np.inf, top, 0.0)
     with np.errstate(divide="ignore"):
         return np.log(np.exp(terms - top).sum(axis=0)) + top
+
+
+def evidence_of(
+    predicted: Predicted, log_weights: Array, spread: Spread, log_belief: Array, log_anew: Array | None
+) -> TaskEvidence:
+    """The evidence of an outcome whose densities are known; the bits are those of `task_kernels.task_evidence`.
+
+    Parameters
+    ----------
+    predicted : Predicted
+    log_weights : (n_spreads,) float64
+        Log probabilities of the spreads before the outcome.
+    spread : Spread
+    log_belief : (n_types,) float64
+        Before the outcome.
+    log_anew : (n_types,) float64, optional
+        Log probability that the type has just changed to each type; None where types are static.
+    """
+    terms = predicted.by_spread + log_weights[:, None]
+    if log_anew is None:
+        changed = np.zeros(terms.shape[1])
+        top = terms.max(axis=0)
+        top = np.where(top > -np.inf, top, 0.0)
+        total = _sum_of_rows(exps(terms - top))
+    else:
+        share = np.full(log_anew.shape, -np.inf)
+        np.subtract(log_anew, log_belief, out=share, where=log_anew > -np.inf)
+        share = np.minimum(share, 0.0)
+        rest = 1.0 - exps(share)
+        terms = terms + np.where(rest > 0, logs(np.maximum(rest, 1e-300)), -np.inf)
+        anew = predicted.fresh + np.log(spread.weights)[:, None] + share
+        top = np.maximum(terms.max(axis=0), anew.max(axis=0))
+        top = np.where(top > -np.inf, top, 0.0)
+        changed = _sum_of_rows(exps(anew - top))
+        total = _sum_of_rows(exps(terms - top)) + changed
+    possible = total > 0
+    log_likelihood = np.where(possible, logs(np.where(possible, total, 1.0)) + top, -np.inf)
+    changed = changed / np.where(possible, total, 1.0)
+    return TaskEvidence(log_likelihood, changed, gain_of(predicted.by_spread, exps(log_belief)))
+
+
+def gain_of(by_spread: Array, belief: Array) -> Array:
+    """Log likelihoods of the spreads up to a constant, given the belief (n_types,) before the outcome."""
+    if len(by_spread) == 1 or (top := by_spread.max()) == -np.inf:
+        return np.zeros(len(by_spread))
+    # Sums in the order of the kernel's.
+    sums = np.add.accumulate(exps(by_spread - top) * belief, axis=1)[:, -1]
+    return np.where(sums > 1e-307, logs(np.maximum(sums, 1e-307)), -np.inf)
+
+
+def _sum_of_rows(values: Array) -> Array:
+    total = np.zeros(values.shape[1])
+    for row in values:
+        total += row
+    return total

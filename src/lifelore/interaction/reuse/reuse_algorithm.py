@@ -314,9 +314,9 @@ class ReuseAlgorithm:
         normals = self._normals
         compiled = self._compiled or self._starts_compiler()
         if isinstance(self.library, TaskLibrary):
-            log_likelihood, log_evidence = learn(self.library, log_belief, policy, signal, outcome, self.dynamics)
-            if self._hazard is not None:
-                self.step_row(log_belief)
+            log_likelihood, log_evidence = learn(
+                self.library, log_belief, policy, signal, outcome, self._hazard, compiled
+            )
         elif compiled and normals is not None and isinstance(signal, float) and -LARGEST <= signal <= LARGEST:
             log_likelihood = np.empty(len(log_belief))
             row = (log_belief, policy, signal, *normals, log_likelihood)

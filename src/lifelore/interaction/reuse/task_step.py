@@ -14,9 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.beliefs.bayes_rule import bayes_rule
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.beliefs.hazard import HazardTerms, hazard_rule
 from lifelore.interaction.library.task_library import TaskLibrary
-from lifelore.interaction.outcomes.task_outcomes import mixed
 
 Array = NDArray[np.float64]
 
@@ -27,36 +26,55 @@ def learn(
     policy: int,
     signal: Any,
     outcome: float | None,
-    dynamics: TypeDynamics,
+    hazard: HazardTerms | None,
+    compiled: bool,
 ) -> tuple[Array, float]:
-    """Update the log belief (n_types,) in place and teach the task's models.
+    """Update the log belief (n_types,) in place, with the step of a hazard, and teach the task's models.
+
+    Parameters
+    ----------
+    hazard : HazardTerms, optional
+        None where types change by no hazard.
+    compiled : bool
+        Whether kernels update the belief; their bits are those of NumPy.
 
     Returns
     -------
     log_likelihood : (n_types,) float64
     log_evidence : float
-        Minus infinity where no type explains the signal; then nothing changes.
+        Minus infinity where no type explains the signal; then the task learns nothing.
     """
-    before = np.exp(log_belief)
+    before = log_belief.copy()
     if task.evidence is None:
         log_likelihood = np.array(task.signal.log_likelihood(policy, signal), np.float64)
-        log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
-        task.learn(policy, signal, outcome, np.zeros(1), before)
+        log_evidence = _step(log_belief, log_likelihood, hazard, compiled)
+        task.learn(policy, signal, outcome, np.zeros(1), np.exp(before))
         return log_likelihood, log_evidence
-    predicted = task.evidence.predicted(policy, signal)
-    log_likelihood = mixed(predicted.by_spread, task.evidence.log_weights)
-    changed = dynamics.changed_share(log_belief)
-    anew = None
-    if changed is not None:
-        with np.errstate(divide="ignore"):
-            anew = np.log(changed) + mixed(predicted.fresh, np.log(task.evidence.spread.weights))
-            log_likelihood = np.logaddexp(np.log1p(-changed) + log_likelihood, anew)
-    log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
+    anew = None if hazard is None else hazard.log_anew
+    log_likelihood, changed, gain = task.evidence.evidence(policy, signal, before, anew)
+    log_evidence = _step(log_belief, log_likelihood, hazard, compiled)
     if not log_evidence > -np.inf:
         return log_likelihood, log_evidence
     if anew is not None:
-        possible = log_likelihood > -np.inf
-        changes = np.exp(log_belief[possible]) @ np.exp(anew[possible] - log_likelihood[possible])
+        changes = np.exp(before + log_likelihood - log_evidence) @ changed
         task.fade(1 - min(float(changes), 1.0))
-    task.learn(policy, signal, outcome, task.evidence.weights_after(predicted.by_spread, before), before)
+    belief = None if task.signal_is_outcome else np.exp(before)
+    task.learn(policy, signal, outcome, task.evidence.weights_gained(gain), belief)
     return log_likelihood, log_evidence
+
+
+def _step(log_belief: Array, log_likelihood: Array, hazard: HazardTerms | None, compiled: bool) -> float:
+    """Bayes' rule and the step of a hazard, in place; the log evidence."""
+    if compiled:
+        if hazard is None:
+            from lifelore.interaction.beliefs.belief_kernels import bayes_row
+
+            return bayes_row(log_belief, log_likelihood)
+        from lifelore.interaction.beliefs.hazard_kernels import hazard_row
+
+        return hazard_row(log_belief, log_likelihood, hazard)
+    if hazard is None:
+        log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
+    else:
+        log_belief[:], log_evidence = hazard_rule(log_belief, log_likelihood, hazard)
+    return log_evidence
