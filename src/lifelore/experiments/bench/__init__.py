@@ -33,6 +33,7 @@ BENCHES = {
     "contexts": "action",
     "deep_layouts": "action",
     "long_user": "interaction",
+    "log": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar")
