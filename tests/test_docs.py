@@ -1,4 +1,4 @@
-"""The pages' Python runs as it stands, and their commands as they are told."""
+"""The pages name what exists, and their Python prints the numbers that they show."""
 
 import ast
 import json
@@ -11,26 +11,19 @@ from pathlib import Path
 
 import pytest
 
-from lifelore import make_world
 from lifelore.action.priors.prior_file import load_prior
-from lifelore.core.planning.planning import best_actions, optimal_q
 
 DOCS = Path(__file__).parents[1] / "docs"
 PRIORS = (DOCS / "action_priors.md").read_text(encoding="utf-8")
 COURIER = (DOCS / "courier.md").read_text(encoding="utf-8")
 EXPLORE, LEARNT, FEATURES = re.findall(r"```python\n(.*?)```", PRIORS, flags=re.S)
-TEACH, ADVISE = (re.sub(r"#.*", "", line).split() for line in re.findall(r"^lifelore .*", PRIORS, flags=re.M))
 
 
-def run(command: list[str], folder: Path, keys: str = "") -> str:
+def run(command: list[str], folder: Path) -> str:
     """What the command prints."""
-    done = subprocess.run(command, cwd=folder, input=keys, capture_output=True, text=True, check=False)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     return done.stdout
-
-
-def lifelore(arguments: list[str], folder: Path, keys: str = "") -> str:
-    return run([sys.executable, "-m", "lifelore.app.command_line", *arguments[1:]], folder, keys)
 
 
 PAGES = [
@@ -86,27 +79,6 @@ def test_vectors_become_contexts(tmp_path):
 def test_the_moves_that_pass_matter(tmp_path):
     alone, together = run([sys.executable, "-W", "error", "-c", FEATURES], tmp_path).splitlines()
     assert alone == together == "('f0', 'f1', 'f2', 'f3')"
-
-
-@pytest.mark.slow
-def test_advice_comes_line_by_line(tmp_path):
-    world = make_world("advice", seed=3)
-    best = best_actions(optimal_q(world.task(world.n_states - 1).tables(), 0.95)).argmax(axis=1)
-    steps, state = [], 0
-    for _ in range(20):
-        steps.append({"agent": "expert", "state": state, "action": int(best[state])})
-        state = int(world.neighbour[state, best[state]])
-    for name, lines in (("ways", steps), ("steps", [{**step, "agent": "guest"} for step in steps[:3]])):
-        (tmp_path / f"{name}.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-    answers = [json.loads(line) for line in lifelore(ADVISE, tmp_path).splitlines()]
-    assert len(answers) == 3
-    assert set(answers[0]) == {"agent", "advise", "theta", "p_normal", "gain"}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("keys", ["w\na\ns\nd\n" * 2, ""])
-def test_a_lesson_ends_with_its_keys(tmp_path, keys):
-    assert "tasks shown" in lifelore(TEACH, tmp_path, keys)
 
 
 def test_the_factorys_numbers_are_those_of_the_benchmark():

@@ -1,9 +1,11 @@
-"""Makes the example files of this folder again: an office's map, jobs and runs in it, a cloud of a table, a log.
+"""Makes the example files of this folder again: a map, jobs and runs in it, clouds, a log, walks and keys.
 
-All are simulated. The cloud needs the extra `sim`. Run: python examples/data/make.py
+All are simulated. The clouds need the extras `sim` and `ros`. Run: python examples/data/make.py
 """
 
+import json
 import sys
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -11,11 +13,13 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from lifelore.agent.teach import MOVE_OF
 from lifelore.core.planning.planning import greedy_policy, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import floor_of
 from lifelore.domains.buildings.occupancy_map import read_occupancy_map
 from lifelore.domains.buildings.office import office_map
+from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import make_world
 
 HERE = Path(__file__).parent
@@ -48,17 +52,22 @@ def make_jobs(folder: Path) -> None:
     (folder / "jobs.csv").write_text("\n".join(["time,name,x,y", *jobs]) + "\n")
 
 
+def steps_of(world: GridWorld, start: int, goal: int) -> Iterator[tuple[int, int]]:
+    """State and action of each step of a shortest path."""
+    best = greedy_policy(optimal_q(world.task(goal).tables(), world.discount))
+    state = start
+    while state != goal:
+        yield state, int(best[state])
+        state = int(world.neighbour[state, best[state]])
+
+
 def make_runs(folder: Path) -> None:
     """Twenty runs along shortest paths, with a pose every 0.1 m and localisation noise of 2 cm."""
     world = make_world("building", map=folder / "office.yaml")
     draw, lines = stream(0, "example runs"), ["run,time,x,y,outcome"]
     for run in range(20):
         start, goal = (int(state) for state in draw.choice(world.n_states, 2, replace=False))
-        best = greedy_policy(optimal_q(world.task(goal).tables(), world.discount))
-        path = [start]
-        while path[-1] != goal:
-            path.append(int(world.neighbour[path[-1], best[path[-1]]]))
-        points = world.positions(np.array(path))
+        points = world.positions(np.array([*(state for state, _ in steps_of(world, start, goal)), goal]))
         points = np.vstack([*(np.linspace(a, b, 6)[:-1] for a, b in pairwise(points)), points[-1:]])
         points[1:-1] += draw.normal(0, 0.02, points[1:-1].shape)
         last = len(points) - 1
@@ -68,17 +77,79 @@ def make_runs(folder: Path) -> None:
     (folder / "runs.csv").write_text("\n".join(lines) + "\n")
 
 
-def make_cloud(folder: Path) -> None:
-    """Four objects on a table, one on another, as a simulated depth camera sees them; each object has a label."""
+def make_clouds(folder: Path) -> None:
+    """Clouds of tables as a simulated depth camera sees them; each object has a label.
+
+    Four objects, one on another, in `table.pcd`; two objects in `pair.pcd`, and as a message in `pair.bag`.
+    """
     from lifelore.domains.tabletop.scene_folder import save_cloud
     from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 
-    scene = sample_scene(5, 0, TabletopSettings())
-    cloud = scene.cloud
-    # A third of the table's points is enough, and makes the file small.
-    kept = (cloud.labels > 1) | (stream(0, "example cloud").random(len(cloud.labels)) < 1 / 3)
-    cloud = replace(cloud, points=cloud.points[kept], labels=cloud.labels[kept], colours=cloud.colours[kept])
-    save_cloud(folder / "table.pcd", replace(scene, cloud=cloud))
+    for name, seed, settings, table_share, object_share in (
+        ("table", 5, TabletopSettings(), 1 / 3, 1.0),
+        ("pair", 1, TabletopSettings(n_objects=(2, 2)), 1 / 8, 1 / 2),
+    ):
+        scene = sample_scene(seed, 0, settings)
+        cloud = scene.cloud
+        assert cloud.colours is not None, "the simulated camera sees colours"
+        # A part of the points is enough, and makes the file small.
+        share = np.where(cloud.labels > 1, object_share, table_share)
+        kept = stream(0, "example cloud").random(len(cloud.labels)) < share
+        cloud = replace(cloud, points=cloud.points[kept], labels=cloud.labels[kept], colours=cloud.colours[kept])
+        save_cloud(folder / f"{name}.pcd", replace(scene, cloud=cloud))
+    write_bag(folder / "pair.bag", cloud.points.astype(np.float32), cloud.labels.astype(np.uint32))
+
+
+def write_bag(path: Path, points: np.ndarray, labels: np.ndarray) -> None:
+    """A ROS 1 bag with one sensor_msgs/PointCloud2 on the topic /camera/points; points (n, 3), labels (n,)."""
+    from rosbags.rosbag1 import Writer
+    from rosbags.typesys import Stores, get_typestore
+
+    types = get_typestore(Stores.ROS1_NOETIC)
+    cloud_type, field = "sensor_msgs/msg/PointCloud2", types.types["sensor_msgs/msg/PointField"]
+    data = np.rec.fromarrays(
+        [*points.T, labels], dtype=[("x", "<f4"), ("y", "<f4"), ("z", "<f4"), ("label", "<u4")]
+    )
+    message = types.types[cloud_type](
+        header=types.types["std_msgs/msg/Header"](
+            seq=0, stamp=types.types["builtin_interfaces/msg/Time"](0, 0), frame_id="camera"
+        ),
+        height=1, width=len(data),
+        fields=[*(field(name, 4 * i, 7, 1) for i, name in enumerate("xyz")), field("label", 12, 6, 1)],
+        is_bigendian=False, point_step=16, row_step=16 * len(data),
+        data=np.frombuffer(data.tobytes(), np.uint8), is_dense=True,
+    )  # fmt: skip
+    path.unlink(missing_ok=True)
+    with Writer(path) as bag:
+        connection = bag.add_connection("/camera/points", cloud_type, typestore=types)
+        bag.write(connection, 0, types.serialize_ros1(message, cloud_type))
+
+
+def make_walks(folder: Path) -> None:
+    """Walks of an expert and of a lost guest in an advice maze, and the keys of a lesson in a noise maze."""
+    maze = make_world("advice", seed=3)
+    goal = maze.n_states - 1
+    draw = stream(0, "example walks")
+    walks = [list(steps_of(maze, start, goal)) for start in (0, *draw.choice(goal, 6, replace=False).tolist())]
+    guest, place = [], 0
+    for move in draw.integers(4, size=400).tolist():  # a refused move leaves the guest in its place
+        guest.append((place, move))
+        place = int(maze.neighbour[place, move]) if maze.neighbour[place, move] >= 0 else place
+    for name, agent, steps in (
+        ("ways", "expert", [step for walk in walks for step in [*walk, (goal, None)]]),
+        ("steps", "guest", guest),
+    ):
+        lines = [json.dumps({"agent": agent, "state": state, "action": action}) for state, action in steps]
+        (folder / f"{name}.jsonl").write_text("\n".join(lines) + "\n")
+    lesson_world, key_of = (
+        make_world("noise", seed=0),
+        {move: key for key, move in MOVE_OF.items() if len(key) == 1},
+    )
+    lesson = []
+    for number in range(3):  # the goals and starts of `lifelore teach`
+        end, start = stream(0, "teach", number).choice(lesson_world.n_states, 2, replace=False).tolist()
+        lesson.append("".join(key_of[action] for _, action in steps_of(lesson_world, start, end)))
+    (folder / "keys.txt").write_text("\n".join(lesson) + "\n")
 
 
 def make_log(folder: Path) -> None:
@@ -96,5 +167,5 @@ def make_log(folder: Path) -> None:
 
 if __name__ == "__main__":
     place = Path(sys.argv[1]) if len(sys.argv) > 1 else HERE
-    for make in (make_map, make_jobs, make_runs, make_log, make_cloud):
+    for make in (make_map, make_jobs, make_runs, make_log, make_walks, make_clouds):
         make(place)

@@ -83,6 +83,9 @@ def live(
             help="building: job list with columns time (optional), name, x, y in metres; one task a job.",
         ),
     ] = None,
+    again: Annotated[
+        bool, Option("--again", help="Start an interrupted job list with its first job, not its first unfinished.")
+    ] = False,
     memory: Annotated[
         str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
     ] = None,
@@ -168,6 +171,7 @@ def live(
         goal=_place("goal", goal, domain),
         goals=() if goals is None else _jobs(goals, tasks),
         watch=watch is not None,
+        again=again,
     )
     new_folders = _missing_folders(memory, out)
     if out is not None:

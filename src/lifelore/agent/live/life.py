@@ -5,7 +5,7 @@ import time
 import uuid
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from threading import Event
 
@@ -14,6 +14,7 @@ from lifelore.agent.live.buildings.carried_model import carried_model
 from lifelore.agent.live.buildings.map_watch import MapWatch
 from lifelore.agent.live.buildings.recognition import Place, own_place, recognised_place
 from lifelore.agent.live.goals.destinations import NamedPlaces
+from lifelore.agent.live.goals.job_progress import JobProgress
 from lifelore.agent.live.goals.own_places import OwnGoal, own_places
 from lifelore.agent.live.life_settings import LifeSettings
 from lifelore.agent.live.life_size import size_of_life
@@ -122,7 +123,12 @@ def live(
         names, notice = size_of_life(settings, place.world.n_states)
         if notify and notice:
             notify(notice)
-        life = _RunningLife(settings, place, occupancy, names, memory, map_watch, notify)
+        jobs = _job_progress(settings, place, memory)
+        if jobs and jobs.finished:
+            settings = replace(settings, goals=jobs.unfinished(settings.goals))
+            if notify:
+                notify(jobs.notice())
+        life = _RunningLife(settings, place, occupancy, names, memory, map_watch, notify, jobs)
         with ThreadPoolExecutor(settings.jobs) as pool:
             results = life.run(pool, progress, stop, watch)
         report = _report(settings, life, time.perf_counter() - began)
@@ -158,6 +164,13 @@ def _floor_at(place: Place) -> Floor:
     return floor_of(place.occupancy, place.world)
 
 
+def _job_progress(settings: LifeSettings, place: Place, memory: Memory) -> JobProgress | None:
+    if not settings.goals:
+        return None
+    progress = JobProgress.recalled(settings.goals, settings.memory.robot, NamedPlaces.of(place).key, memory)
+    return replace(progress, finished=0) if settings.again else progress
+
+
 class _RunningLife:
     """A life in progress: the knowledge of each agent, and the memory that stores the first one's."""
 
@@ -170,7 +183,9 @@ class _RunningLife:
         memory: Memory,
         map_watch: MapWatch | None,
         notify: Callable[[str], None] | None,
+        jobs: JobProgress | None,
     ) -> None:
+        self.jobs = jobs
         self.settings, self.names, self.memory, self.notify = settings, names, memory, notify
         self.unstored: list[Record] = []
         self._settle(place, given, first=0)
@@ -284,7 +299,7 @@ class _RunningLife:
         about = {"index": index, "goal": self.world.cells[goal].tolist()}
         self.memory.contribute(
             self.settings.memory.robot,
-            records[self.names[0]] + self.unstored + self._names(own),
+            records[self.names[0]] + self.unstored + self._names(own) + self._job_records(seq),
             process=self.process,
             seq=seq,
             task=about | chosen | {"world": self.world.fingerprint},
@@ -300,6 +315,10 @@ class _RunningLife:
         if end is None or end.name is None or end.point is None:
             return []
         return [self.named.record(end.name, end.point)]
+
+    def _job_records(self, seq: int) -> list[Record]:
+        """The record by which memory knows that the job of task number `seq` is finished."""
+        return [] if self.jobs is None else [self.jobs.record(seq + 1)]
 
     def _learn(self, name: str, result: TaskResult, goal: int) -> list[Record]:
         """Add a finished task to the knowledge of one agent; return the records that memory is to store."""

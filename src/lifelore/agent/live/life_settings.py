@@ -196,6 +196,8 @@ class LifeSettings:
         Goal of every task; None: drawn.
     goals : tuple of Job
         Buildings alone: the goals of the tasks in order, one task a job, see ``goals.job_list.read_jobs``.
+    again : bool
+        Start an interrupted job list with its first job. Otherwise it goes on with its first unfinished job.
     watch : bool
         Read the map again between tasks when its files changed.
     jobs : int
@@ -227,6 +229,7 @@ class LifeSettings:
     goals: tuple[Job, ...] = ()
     watch: bool = False
     sensor: SensorSettings = field(default_factory=SensorSettings)
+    again: bool = False
 
     def __post_init__(self) -> None:
         _check_whole("tasks", self.tasks, 1, 10**6)
@@ -236,6 +239,8 @@ class LifeSettings:
         chosen = [name for name in ("goal", "goals", "destinations") if getattr(self, name)]
         if len(chosen) > 1:
             raise InputError(f"{chosen[0]} and {chosen[1]} exclude each other; give one of them")
+        if self.again and not self.goals:
+            raise InputError("again applies to a job list, got none; give goals, or leave again out")
         if self.goals and self.world.domain != "building":
             raise InputError(
                 f"goals needs a building, whose places have metres, got domain '{self.world.domain}'; "

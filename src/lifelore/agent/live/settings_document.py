@@ -44,6 +44,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
     optional = {
         "goal": settings.goal,
         "goals": len(settings.goals) or None,
+        "again": settings.again or None,
         "watch": settings.watch or None,
         "size": settings.world.size,
         "loops": settings.world.loops,

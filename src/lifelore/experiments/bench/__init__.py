@@ -37,6 +37,7 @@ BENCHES = {
     "bands": "interaction",
     "evaluation": "interaction",
     "novelty": "interaction",
+    "log": "interaction",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar")

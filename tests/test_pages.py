@@ -1,0 +1,154 @@
+"""Pages walked in a fresh checkout: their commands and Python run as printed, in the page's order."""
+
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+DOCS = Path(__file__).parents[1] / "docs"
+EXPECTED = {
+    "start/robots": [
+        "30 tasks in examples/data/office.yaml",
+        "recognised as office",
+        "this robot has finished 36 tasks in all",
+        "m from dock to lab over",
+        "20 of 20 runs are new; 20 reached their goal",
+        "4 objects",
+        "Relation(a=3, b=4, relation='on'",
+        "stands_on",
+    ],
+    "start/learning": ["what the thesis reports", "C3.2 (quick)"],
+    "start/personalisation": ["3 types found", "probability", "uplift"],
+    "nav2": ["11:15 dock 4.975,12.525: lore"],
+    "perception": [
+        "4 objects, 0 holes",
+        '"contact_points"',
+        "2 objects, 0 holes",
+        '"source": "examples/data/pair.pcd"',
+        '"source": "examples/data/table.pcd"',
+        '"source": "incoming/pair.pcd"',
+    ],
+    "action_priors": [
+        "prior: return",
+        "learnt contexts",
+        "('f0', 'f1', 'f2', 'f3')",
+        "3 tasks shown in 86 steps",
+        '"advise": false',
+        '"advise": true',
+    ],
+    "policy_reuse": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
+}
+"""Words of the output of each page, in this order."""
+NOT_RUN = {
+    "ros2 ": "needs ROS 2 and a robot",
+    "lifelore scenes --n 600": "takes minutes",
+    "lifelore learn-relations scenes": "reads these scenes",
+    "make ": "installs from the network",
+    "python3 -m venv": "an environment for the next command",
+    "pip install": "installs from the network",
+    "my_env/bin/": "installs from the network",
+    ". .venv/bin/activate": "the environment that make creates",
+}
+"""Beginnings of the commands that are not run, and why."""
+
+
+def blocks(page: str) -> list[tuple[str, str]]:
+    """(language, code) of the blocks of shell and Python, in the order of the page, without what is not run."""
+    text = (DOCS / f"{page}.md").read_text("utf-8")
+    found = re.findall(r"^```(sh|python)\n(.*?)^```", text, flags=re.S | re.M)
+    return [(language, without_not_run(code) if language == "sh" else code) for language, code in found]
+
+
+def without_not_run(code: str) -> str:
+    return "".join(line for line in code.splitlines(keepends=True) if not line.startswith(tuple(NOT_RUN)))
+
+
+def process(language: str, code: str, folder: Path, home: Path) -> subprocess.Popen[str]:
+    """A block that runs, with the program of this environment and a memory of its own."""
+    command = ["bash", "-euc", code] if language == "sh" else [sys.executable, "-W", "error", "-c", code]
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    environment = os.environ | {"PATH": path, "XDG_DATA_HOME": str(home), "COLUMNS": "120"}
+    return subprocess.Popen(
+        command, cwd=folder, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
+    )
+
+
+def walk(page: str, folder: Path, home: Path) -> str:
+    """The output of a page's blocks; `perceive --watch` runs during the next block, until Ctrl-C."""
+    shown, steps = [], iter(blocks(page))
+    for language, code in steps:
+        if language == "sh" and "perceive --watch" in code:
+            shown.append(watched(code, next(steps)[1], folder, home))
+            continue
+        shown.append(output(language, code, folder, home))
+    return "".join(shown)
+
+
+def output(language: str, code: str, folder: Path, home: Path) -> str:
+    """The output of a block."""
+    with process(language, code, folder, home) as child:
+        out, err = child.communicate()
+    assert child.returncode == 0, f"{code}\n{err}"
+    return out + err
+
+
+def watched(code: str, during: str, folder: Path, home: Path) -> str:
+    """The line that a watching command prints for the cloud that the second block gives it."""
+    with process("sh", f"exec {code}", folder, home) as child:
+        assert child.stderr is not None
+        assert child.stdout is not None
+        assert "Ctrl-C stops" in child.stderr.readline()
+        subprocess.run(["bash", "-euc", during], cwd=folder, check=True)
+        line = child.stdout.readline()
+        child.send_signal(signal.SIGINT)
+        child.communicate()
+    assert child.returncode == 130
+    return line
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", EXPECTED)
+def test_a_page_is_walked_from_a_fresh_checkout(page, tmp_path):
+    if page == "perception":
+        pytest.importorskip("rosbags")
+    checkout = tmp_path / "checkout"
+    shutil.copytree(DOCS.parent / "examples", checkout / "examples")
+    shown = walk(page, checkout, tmp_path / "home")
+    print(shown)
+    at = 0
+    for words in EXPECTED[page]:
+        assert words in shown[at:], f"{words!r} is missing, or comes too early"
+        at = shown.index(words, at) + len(words)
+
+
+@pytest.mark.slow
+def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
+    (line,) = re.findall(
+        r"^    (lifelore reuse update .*)", (DOCS / "policy_reuse.md").read_text("utf-8"), flags=re.M
+    )
+    log = DOCS.parent / "examples" / "data" / "log.csv"
+    made = output(
+        "sh", f"lifelore reuse fit {log} > fit.txt; lifelore reuse choose --user ann", tmp_path, tmp_path
+    )
+    (decision,) = re.findall(r"^decision (\S+) ", made, flags=re.M)
+    assert "5a0f…-0" in line
+    stored = output("sh", line.replace("5a0f…-0", decision), tmp_path, tmp_path)
+    assert f"outcome 1 of {made.splitlines()[0]} stored; ann is" in stored
+
+
+def test_every_page_with_commands_is_walked():
+    names = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
+    with_commands = {name for name in names if any(language == "sh" and code for language, code in blocks(name))}
+    assert with_commands <= {*EXPECTED, "install", "index"}
+    assert {name for name in names if name.startswith("start/")} <= set(EXPECTED)
+
+
+def test_every_reason_not_to_run_a_command_has_its_command():
+    text = "".join(path.read_text("utf-8") for path in DOCS.rglob("*.md"))
+    for start in NOT_RUN:
+        assert re.search(rf"^{re.escape(start)}", text, flags=re.M), start
