@@ -92,8 +92,16 @@ def ndtrs(z: Array) -> Array:
     x = np.minimum(np.abs(z) * _ROOT_HALF, 40.0)
     t = 2.0 / (2.0 + x)
     u = 2.0 * t - 1.0
-    f = np.full(u.shape, ERFC[-1])
-    for coefficient in ERFC[-2::-1]:
-        f = f * u + coefficient
+    square = u * u
+    v = square * square
+    a, b, c, d = (_power_sum(ERFC[first::4], v) for first in range(4))
+    f = (a + u * b) + square * (c + u * d)
     half = 0.5 * (t * exps(np.minimum(f - x * x, 0.0)))
     return np.where(z < 0, half, 1.0 - half)
+
+
+def _power_sum(coefficients: tuple[float, ...], v: Array) -> Array:
+    total = np.full(v.shape, coefficients[-1])
+    for coefficient in coefficients[-2::-1]:
+        total = total * v + coefficient
+    return total

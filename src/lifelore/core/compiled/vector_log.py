@@ -99,12 +99,13 @@ def plain_ndtr(z):
     x = min(abs(z) * _ROOT_HALF, 40.0)
     t = np.divide(2.0, 2.0 + x)
     u = 2.0 * t - 1.0
-    f = (((_E27 * u + _E26) * u + _E25) * u + _E24) * u + _E23
-    f = (((f * u + _E22) * u + _E21) * u + _E20) * u + _E19
-    f = (((f * u + _E18) * u + _E17) * u + _E16) * u + _E15
-    f = (((f * u + _E14) * u + _E13) * u + _E12) * u + _E11
-    f = (((f * u + _E10) * u + _E9) * u + _E8) * u + _E7
-    f = (((f * u + _E6) * u + _E5) * u + _E4) * u + _E3
-    f = ((f * u + _E2) * u + _E1) * u + _E0
+    square = u * u
+    v = square * square
+    # Four short sums rather than a long one, whose every step would wait for the last.
+    a = (((((_E24 * v + _E20) * v + _E16) * v + _E12) * v + _E8) * v + _E4) * v + _E0
+    b = (((((_E25 * v + _E21) * v + _E17) * v + _E13) * v + _E9) * v + _E5) * v + _E1
+    c = (((((_E26 * v + _E22) * v + _E18) * v + _E14) * v + _E10) * v + _E6) * v + _E2
+    d = (((((_E27 * v + _E23) * v + _E19) * v + _E15) * v + _E11) * v + _E7) * v + _E3
+    f = (a + u * b) + square * (c + u * d)
     half = 0.5 * (t * plain_exp(min(f - x * x, 0.0)))
     return half if z < 0 else 1.0 - half

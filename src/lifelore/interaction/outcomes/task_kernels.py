@@ -124,6 +124,26 @@ def _weigh(by, log_belief, before, gain):
 
 
 @kernel
+def renew_means(policies, shown, location, rarity, spreads, weights, mean):
+    """The means of `renew` alone."""
+    n = location.shape[1]
+    centre = np.empty(n)
+    for j in range(policies.shape[0]):
+        policy = policies[j]
+        count, average = shown[j, 0], shown[j, 1]
+        m0, r0 = location[policy], rarity[policy]
+        centre[:] = 0.0
+        for s in range(spreads.shape[0]):
+            spread, weight = spreads[s], weights[s]
+            for i in range(n):
+                rare = r0[i] + spread
+                left = np.divide(rare, 1 + count * rare)
+                centre[i] += weight * (m0[i] + count * left * (average - m0[i]))
+        for i in range(n):
+            mean[i, policy] = centre[i]
+
+
+@kernel
 def renew(policies, shown, location, variance, rarity, doubt, spreads, weights, mean, noise, mean_variance):
     """Write expected means, noise and variances of means, (n_types, n_policies), of `policies` (m,).
 

@@ -12,6 +12,7 @@ parameters are never drawn: (k, x̄, S) of each policy that was tried is all tha
 exactly (n and ν₀ infinite, no spread) keep their normal distribution. Thesis: §4.3.4; models as in §4.4.1.
 """
 
+from collections.abc import Iterable
 from functools import cache, lru_cache
 from math import lgamma, log, pi
 from types import ModuleType
@@ -72,6 +73,8 @@ class TaskNormals(TaskOutcomes):
         self._alike = (self._doubt == self._doubt[:, :1]).all(axis=1).tolist()
         self._new_heights: dict[int, Array] = {}
         self._log_first = np.log(spread.weights)
+        # Policies whose law has changed since their columns were computed: of the means, and of all else.
+        self._stale_means: set[int] = set()
         self._stale: set[int] = set()
         factor = variance_factor(moments.freedom)
         self._mean, self._noise = moments.mean.copy(), moments.variance * factor
@@ -127,7 +130,7 @@ class TaskNormals(TaskOutcomes):
             self._tried.append(policy)
         if log_weights is not None:
             self.log_weights = log_weights
-        self._stale.update(self._tried if len(self.log_weights) > 1 else (policy,))
+        self._changed(self._tried if len(self.log_weights) > 1 else (policy,))
 
     @property
     def shown(self) -> dict[int, tuple[float, float, float]]:
@@ -139,7 +142,7 @@ class TaskNormals(TaskOutcomes):
         self._numbers[:, 0] *= keep
         self._numbers[:, 2] *= keep
         self.fade_weights(keep)
-        self._stale.update(self._tried)
+        self._changed(self._tried)
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown: ``policies`` (m,), ``shown`` (m, 3): k, mean, squares; ``log_weights``."""
@@ -160,15 +163,15 @@ class TaskNormals(TaskOutcomes):
         self._tried = policies.tolist()
         self._numbers[:] = 0.0
         self._numbers[policies] = shown
-        self._stale.update(self._tried)
+        self._changed(self._tried)
 
     # ---- the model as rules use it -------------------------------------------------------------------------
 
     @property
     def mean(self) -> Array:  # type: ignore[override]
         """Expected mean outcome of each pair, (n_types, n_policies); read only."""
-        if self._stale:
-            self._renew()
+        if self._stale_means:
+            self._renew_means()
         return self._mean
 
     @property
@@ -323,10 +326,32 @@ class TaskNormals(TaskOutcomes):
                 return np.full(len(doubt), _height(float(1 / doubt[0] + count)))
             return np.array([_height(value) for value in (1 / doubt + count).tolist()])
 
+    def _changed(self, policies: Iterable[int]) -> None:
+        self._stale_means.update(policies)
+        self._stale.update(policies)
+
+    def _renew_means(self) -> None:
+        """Compute the means again of the policies whose law has changed; most rules need no more."""
+        if not kernel_pays(8 * len(self._stale_means) * self._mean.shape[0] * len(self.log_weights)):
+            return self._renew()
+        policies = np.array(sorted(self._stale_means))
+        self._stale_means.clear()
+        weights = np.exp(self.log_weights)
+        _kernels().renew_means(
+            policies,
+            self._numbers[policies],
+            self._location,
+            self._rarity,
+            self.spread.values,
+            weights,
+            self._mean,
+        )
+
     def _renew(self) -> None:
         """Compute the columns of the policies again whose law has changed."""
         policies, weights = np.array(sorted(self._stale)), np.exp(self.log_weights)
         self._stale.clear()
+        self._stale_means.clear()
         shown = self._numbers[policies]
         if kernel_pays(8 * len(policies) * self.n_types * len(weights)):
             _kernels().renew(

@@ -62,7 +62,7 @@ class SpreadWeights:
         self.spread = spread
         self.log_weights: Array = np.log(spread.weights)
 
-    def predicted(self, policy: int, signal: Any) -> Predicted:
+    def predicted(self, policy: int, signal: Any, /) -> Predicted:
         """The log density of a signal by spread and type; InputError or NotFoundError as `log_density`."""
         raise NotImplementedError
 
