@@ -66,15 +66,13 @@ class TaskLibrary(PolicyLibrary):
         if belief is not None and not self.signal_is_outcome and outcome is not None and self.outcomes_of_task:
             predicted = self.outcomes_of_task.predicted(policy, outcome).by_spread
             self.outcomes_of_task.learn(policy, outcome, self.outcomes_of_task.weights_after(predicted, belief))
-        for stale in self._stale.values():
-            stale.add(policy)
+        self._outdate()
 
     def fade(self, keep: float) -> None:
         """Let everything that the task has shown count `keep` of what it did: the type may have changed."""
         for model in self._models().values():
             model.fade(keep)
-        for stale in self._stale.values():
-            stale.update(range(self.n_policies))
+        self._outdate()
 
     def table(self, n_bins: int = 8) -> SignalTable:
         """The signals' table given what the task has shown; bins stay those of the beginning."""
@@ -83,7 +81,7 @@ class TaskLibrary(PolicyLibrary):
         table, cuts = self.of.task_table(n_bins)
         if n_bins not in self._tables:
             self._tables[n_bins] = table.copy()
-            self._stale[n_bins] = set(self.state()["signal.policies"].tolist())
+            self._stale[n_bins] = set(self.evidence.tried)
         if self._stale[n_bins]:
             some = sorted(self._stale[n_bins])
             rows = self.evidence.many_rows(some, [cuts[policy] for policy in some], table.n_signals)
@@ -128,6 +126,14 @@ class TaskLibrary(PolicyLibrary):
             raise InputError(f"the task's state is not of this library: {error}") from None
         self._tables.clear()
         self._stale.clear()
+
+    def _outdate(self) -> None:
+        """Have the rows of every policy that was tried computed again: all depend on the spreads' probabilities.
+
+        The rows of other policies stay as they were at the beginning, since nothing was shown of them.
+        """
+        for stale in self._stale.values():
+            stale.update(self.evidence.tried)
 
     def _models(self) -> dict[str, Any]:
         """The models that the task changes, by name."""

@@ -69,6 +69,11 @@ class TaskCounts(TaskOutcomes):
         self._stale.update(self._rows)
 
     @property
+    def tried(self) -> list[int]:
+        """The policies that have shown an outcome, in the order of their first."""
+        return list(self._rows)
+
+    @property
     def shown(self) -> dict[int, Array]:
         """Counts of the cells (n_cells,) of each policy that was tried."""
         return {policy: row.shown.copy() for policy, row in self._rows.items()}

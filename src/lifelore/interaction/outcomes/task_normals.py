@@ -133,6 +133,11 @@ class TaskNormals(TaskOutcomes):
         self._changed(self._tried if len(self.log_weights) > 1 else (policy,))
 
     @property
+    def tried(self) -> list[int]:
+        """The policies that have shown an outcome, in the order of their first."""
+        return list(self._tried)
+
+    @property
     def shown(self) -> dict[int, tuple[float, float, float]]:
         """Number, mean and sum of squares around the mean of the outcomes of each policy that was tried."""
         return {policy: tuple(self._numbers[policy].tolist()) for policy in self._tried}

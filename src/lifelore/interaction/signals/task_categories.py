@@ -63,6 +63,11 @@ class TaskCategories(SpreadWeights):
         for row in self._rows.values():
             row.shown *= keep
 
+    @property
+    def tried(self) -> list[int]:
+        """The policies that have shown a signal, in the order of their first."""
+        return list(self._rows)
+
     def cuts(self, n_bins: int) -> list[NDArray[np.int64]]:
         """The categories that are joined into each of at most `n_bins` bins, as their ends, for each policy."""
         return [joined_ends_of(self._probs(policy), n_bins) for policy in range(self.n_policies)]
