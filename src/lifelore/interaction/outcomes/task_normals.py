@@ -327,9 +327,10 @@ class TaskNormals(TaskOutcomes):
         """Log densities at the location, scale 1, of a policy with `count` outcomes, (n_types,)."""
         doubt = self._doubt[policy]
         with np.errstate(divide="ignore"):
-            if self._alike[policy]:
-                return np.full(len(doubt), _height(float(1 / doubt[0] + count)))
-            return np.array([_height(value) for value in (1 / doubt + count).tolist()])
+            freedom = 1 / doubt + count
+        if self._alike[policy]:
+            return np.full(len(doubt), _height(float(freedom[0])))
+        return np.array([_height(value) for value in freedom.tolist()])
 
     def _changed(self, policies: Iterable[int]) -> None:
         self._stale_means.update(policies)

@@ -9,10 +9,12 @@ from lifelore.domains.golf.golf import CLUBS, Golf
 from lifelore.experiments.chapter4.golf import rounds
 from lifelore.experiments.chapter4.golf.rounds import WOOD
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN, STANDARD
+from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
 from lifelore.interaction.selection.belief_program import best_plan, value_of_rule
 
 GREEDY = "greedy"
+DOUBTING = (GREEDY, "EI", "IDS", "sampling")
+"""Rules that also run with a belief over types and the parameters of their models."""
 
 
 def check(settings: Mapping) -> None:
@@ -24,7 +26,7 @@ def cells(settings: Mapping) -> list[dict]:
     """Each rule on each kind of model, greedy also with the 3-wood first, single clubs, and the program."""
     ways = [(m, name, None) for m in (LEARNT, EXACT) for name in RULES_SHOWN]
     ways += [(m, GREEDY, WOOD) for m in (LEARNT, EXACT)]
-    ways += [(UNCERTAIN, name, None) for name in STANDARD] + [(UNCERTAIN, GREEDY, WOOD)]
+    ways += [(UNCERTAIN, name, None) for name in DOUBTING] + [(UNCERTAIN, GREEDY, WOOD)]
     played = [{"part": "rule", "model": model, "rule": name, "first": first} for model, name, first in ways]
     return [*played, {"part": "clubs"}, {"part": "program"}]
 
