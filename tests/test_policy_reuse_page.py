@@ -17,7 +17,7 @@ from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
 RESULTS = Path(__file__).parents[1] / "results"
 PAGE = (Path(__file__).parents[1] / "docs" / "policy_reuse.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(python|sh)\n(.*?)^```", PAGE, flags=re.S | re.M)
-ALONE, TUTORIAL = BLOCKS[:4], BLOCKS[4:]
+ALONE, TUTORIAL = BLOCKS[:5], BLOCKS[5:]
 
 
 @pytest.fixture
@@ -42,8 +42,9 @@ def run(tmp_path, monkeypatch, capsys):
     [
         (0, r"C \[0\. 0\. 1\.\]\n"),
         (1, r"\[0\.\d+ 0\.\d+\] \[.*\]\n(left|right) \d+\.\d+\n"),
-        (2, r"\[0\.\d+ 0\.\d+\] 1\n"),
-        (3, r"\[0\.\d+ 0\.\d+\]\n"),
+        (2, r"\[0 1\] 3 \[\[0\. 1\.\]\]\n\[1 1\]\n\[\[0 1\]\]\n"),
+        (3, r"\[0\.\d+ 0\.\d+\] 1\n"),
+        (4, r"\[0\.\d+ 0\.\d+\]\n"),
     ],
 )
 def test_each_piece_alone(place, said, run):

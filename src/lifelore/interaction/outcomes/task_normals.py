@@ -339,7 +339,8 @@ class TaskNormals(TaskOutcomes):
     def _renew_means(self) -> None:
         """Compute the means again of the policies whose law has changed; most rules need no more."""
         if not kernel_pays(8 * len(self._stale_means) * self._mean.shape[0] * len(self.log_weights)):
-            return self._renew()
+            self._renew()
+            return
         policies = np.array(sorted(self._stale_means))
         self._stale_means.clear()
         weights = np.exp(self.log_weights)

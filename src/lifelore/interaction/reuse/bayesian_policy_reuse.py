@@ -90,7 +90,7 @@ class BayesianPolicyReuse:
     >>> agent = BayesianPolicyReuse(library)
     >>> agent.update("left", 0.5)
     >>> agent.belief.round(3).tolist(), library.policies[agent.select()]
-    ([0.0, 1.0], 'right')
+    ([0.001, 0.999], 'right')
     """
 
     def __init__(
