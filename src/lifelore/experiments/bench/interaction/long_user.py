@@ -103,7 +103,7 @@ def _write_history(memory: Memory, study: Study, user: str, n: int) -> None:
     parts: list[Record] = []
     for number, (policy, outcome) in enumerate(zip(policies, outcomes, strict=True)):
         one = Decision(number, study.library.policies[policy], 1 / POLICIES, False, 0, 0)
-        parts += [history.record_of(one), history.outcome_record(one, outcome, 0)]
+        parts += [*history.records_of(one), history.outcome_record(one, outcome, 0)]
     slots, values = (np.concatenate([getattr(part, name) for part in parts]) for name in ("slots", "values"))
     record = Record(parts[0].kind, parts[0].key, parts[0].version, "newest", slots, values, parts[0].about)
     memory.contribute(history.robot, [record], process="history", seq=0, task={})
