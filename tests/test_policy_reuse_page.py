@@ -152,3 +152,26 @@ def test_the_losses_of_models_of_categories_are_those_of_the_benchmark():
     told = [line.split("|")[2:-1] for line in PAGE.split("| runs a pair | 1 |")[1].splitlines()[2:6]]
     # Rows of the file are by number of runs, then by model; those of the page by model.
     assert np.array(told, float).T.ravel() == pytest.approx(np.array(values), abs=0.0006)
+
+
+def test_what_ten_runs_a_pair_give_is_what_the_claims_measured():
+    rules, bandits = (
+        json.loads((RESULTS / claim / "result.json").read_text(encoding="utf-8"))["measured"]
+        for claim in ("C4.5", "C4.7")
+    )
+    short = {
+        "expected improvement": "EI", "information-directed": "IDS", "knowledge gradient": "KG", "sampling": "sampling"
+    }  # fmt: skip
+    told = PAGE.split("| rule | plug-in, seen |")[1].splitlines()[2:6]
+    for line in told:
+        name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
+        ways = [(case, word) for word in ("seen", "unseen") for case in ("headline", "uncertain_with_unseen")]
+        for cell, (case, word) in zip(cells, ways, strict=True):
+            regret, stuck = (float(number.strip(" %").replace(",", "")) for number in cell.rsplit(", ", 1))
+            found = {key: rules[f"{key}_{word}_{short[name]}_{case}"]["value"] for key in ("cumulative", "stuck")}
+            assert (regret, stuck) == pytest.approx((found["cumulative"], 100 * found["stuck"]), abs=0.51)
+    best = bandits["cumulative_best_GP_UCB_unseen"]["value"]
+    assert f"a regret of {best:,.0f} on unseen tasks" in PAGE
+    ratio = bandits["IDS_doubting_over_best_GP_UCB_unseen"]
+    low, high = ratio["ci95"]
+    assert f"{ratio['value']:.2f} [{low:.2f} {high:.2f}] of that regret" in PAGE.replace("\n", " ")
