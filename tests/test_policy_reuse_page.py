@@ -159,9 +159,8 @@ def test_what_ten_runs_a_pair_give_is_what_the_claims_measured():
         json.loads((RESULTS / claim / "result.json").read_text(encoding="utf-8"))["measured"]
         for claim in ("C4.5", "C4.7")
     )
-    short = {
-        "expected improvement": "EI", "information-directed": "IDS", "knowledge gradient": "KG", "sampling": "sampling"
-    }  # fmt: skip
+    names = ("expected improvement", "information-directed", "knowledge gradient", "sampling")
+    short = dict(zip(names, ("EI", "IDS", "KG", "sampling"), strict=True))
     told = PAGE.split("| rule | plug-in, seen |")[1].splitlines()[2:6]
     for line in told:
         name, *cells = (cell.strip() for cell in line.strip("|").split("|"))
