@@ -118,7 +118,8 @@ class HistogramOutcomes(CountedOutcomes):
         return np.diff(self.edges) ** 2 / 12
 
     def _above(self, threshold: Array) -> Array:
-        return np.clip((self.edges[1:] - threshold) / self._sizes(), 0.0, 1.0)
+        with np.errstate(over="ignore"):
+            return np.clip((self.edges[1:] - threshold) / self._sizes(), 0.0, 1.0)
 
     def _excess(self, threshold: Array) -> Array:
         # Within the threshold's own bin: chance to lie above times half the way to the upper edge.

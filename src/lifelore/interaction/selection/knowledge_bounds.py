@@ -53,10 +53,12 @@ def rounded_gain(support: Ints, weighted_means: Array, rows: SignalRows) -> tupl
     step = max(1, _AT_ONCE // (weighted.shape[1] * rows.n_signals)) * rows.n_signals
     ones = np.ones(rows.n_signals, np.float32)
     # The best policy now is a candidate with products of 0, so no largest product is negative.
-    parts = [
-        np.dot(weighted.T, values[:, at : at + step]).max(axis=0).reshape(-1, rows.n_signals) @ ones
-        for at in range(0, values.shape[1], step)
-    ]
+    # BLAS may set the flag of an invalid operation on lanes of the processor that hold no number of the product.
+    with np.errstate(invalid="ignore"):
+        parts = [
+            np.dot(weighted.T, values[:, at : at + step]).max(axis=0).reshape(-1, rows.n_signals) @ ones
+            for at in range(0, values.shape[1], step)
+        ]
     found = parts[0] if len(parts) == 1 else np.concatenate(parts)
     # Each product of n types has an error of (n + 2) roundings of the sum of the sizes of its terms.
     return scale * found.astype(np.float64), ROUNDING * (len(support) + rows.n_signals + 4) * size
