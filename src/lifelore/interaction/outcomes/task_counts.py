@@ -172,15 +172,15 @@ class TaskCounts(TaskOutcomes):
 
     def cuts(self, n_bins: int) -> list[NDArray[np.int64]]:
         """The cells that are joined into each of at most `n_bins` bins, as their ends, for each policy."""
-        return [joined_ends_of(rows, n_bins) for rows in self._probs()]
+        return [joined_ends_of(self._probs(policy), n_bins) for policy in range(self.n_policies)]
 
     def table_rows(self, policy: int, cuts: NDArray[np.int64], n_bins: int) -> Array:
         """P(bin | type) of the next outcome of a policy, (n_types, n_bins)."""
-        rows = joined_to(self._probs()[policy], np.asarray(cuts, np.int64))
+        rows = joined_to(self._probs(policy), np.asarray(cuts, np.int64))
         return np.pad(rows, ((0, 0), (0, max(0, n_bins - rows.shape[1]))))
 
-    def _probs(self) -> Array:
-        return self.expected.counts / self.expected.totals[:, :, None]
+    def _probs(self, policy: int) -> Array:
+        return self.expected.counts[policy] / self.expected.totals[policy][:, None]
 
     def _cell(self, policy: int, value: float) -> int | None:
         if not is_outcome(policy, value, self.n_policies):
