@@ -49,7 +49,7 @@ from lifelore.interaction.outcomes import batch_likelihood, outcome_families, ou
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
-from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, TaskEvidence, TaskOutcomes
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.calibration import type_calibration
 from lifelore.interaction.reuse.outcome_laws import Shown
@@ -373,6 +373,7 @@ NOT_STATE = {
     FrameColumns: "reads the caller's table and is thrown away",
     TaskOutcomes: "a base",
     SpreadWeights: "a base",
+    TaskEvidence: "numbers of a call",
     DerivedArrays: "a cache of the module",
     novelty_calibration.Watched: "tasks that were played within `calibrate`",
     known_tasks.CategoryTasks: "tasks drawn within `calibrate`",
