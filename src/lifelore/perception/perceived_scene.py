@@ -25,7 +25,7 @@ def perceived_scene(
     """
     model = model or shipped_model()
     found = interfaces(cloud, model.settings)
-    if not consistent or model.multi_label or not set(model.names) <= set(CORE_RELATIONS):
+    if not consistent or model.multi_label or not set(model.names_) <= set(CORE_RELATIONS):
         return Scene(cloud, found, model.predict(cloud, found))
     decided = most_likely_scene(alternatives(model.beliefs(cloud, found)), cloud.objects)
     return Scene(cloud, found, decided.relations, decided.optimal)

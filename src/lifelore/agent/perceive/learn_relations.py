@@ -189,14 +189,14 @@ def _report(
     labelled = Counter(
         label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
     )
-    learnt = Counter(model.learnt_from)
+    learnt = Counter(model.learnt_from_)
     return {
         "name": settings.name,
         "scenes": len(truths),
-        "pairs": {name: learnt[name] for name in model.names},
+        "pairs": {name: learnt[name] for name in model.names_},
         "not_near": dict(sorted((labelled - learnt).items())),
-        "relations": list(model.names),
-        "symmetric": sorted(model.symmetric),
+        "relations": list(model.names_),
+        "symmetric": sorted(model.symmetric_),
         "method": model.method,
         "adjacent_gap": model.vocabulary.adjacent_gap,
     }
