@@ -34,6 +34,7 @@ from lifelore.perception.relations.relation_model import (
 )
 from lifelore.perception.relations.relation_model_file import SHIPPED, read_model, write_model
 from lifelore.perception.relations.symmetric_names import check_directions, symmetric_names
+from lifelore.perception.relations.words import Words
 from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
 from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
 
@@ -201,6 +202,11 @@ class RelationClassifier(Estimator):
     def vocabulary(self) -> Vocabulary:
         """The learned names, which are symmetric, and the limit of *adjacent* where it applies."""
         return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names_, self.symmetric_)
+
+    @property
+    def words(self) -> Words:
+        """The learned relations outside the core vocabulary."""
+        return Words.outside_core(self.names_, self.symmetric_)
 
     def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included; then of every object with the table.
