@@ -81,7 +81,10 @@ def test_the_answer_keeps_its_contract(small):
         for who in (*FEW, THESIS + LOGIC, OURS + LOGIC):
             assert 0 <= values[f"{who}, {where}, exact"]["value"] <= 1
             if who in (OURS + LOGIC,):
-                peer, name = "orientation histogram", f"{who} less orientation histogram, {where}, exact"
+                peer, name = (
+                    "orientation histogram",
+                    f"{who}, {where}, exact less that of the orientation histogram",
+                )
                 apart = values[f"{who}, {where}, exact"]["value"] - values[f"{peer}, {where}, exact"]["value"]
                 assert values[name]["value"] == pytest.approx(apart)
                 assert values[name]["ci95"][0] <= apart <= values[name]["ci95"][1]

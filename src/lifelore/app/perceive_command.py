@@ -49,7 +49,7 @@ def perceive(
         Option(
             metavar="P",
             help="Least probability, 0 to 1, of facts in JSON, graph and planning problem"
-            " [0; for the planning problem 0.5].",
+            " [0; for the planning problem 0.6].",
         ),
     ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,

@@ -84,6 +84,8 @@ def test_a_top_that_a_nearer_object_hides_is_unknown(make_scene, box):
         assert (Fact("clear", (2,)) not in state.stated) == hidden
         assert [one.reason for one in state.unknown] == ["hidden"] * hidden
         assert Fact("clear", (3,)) in state.stated
+        below = scene_state(make_scene({2: low, 3: high}, relations=rows, camera=np.array([0.0, -1.0, 0.0])))
+        assert below.unknown == ()
     # Without a camera nothing is known of what is hidden, and what carries an object is not clear anyway.
     assert scene_state(make_scene({2: low, 3: high}, relations=rows)).unknown == ()
     on = [(2, 1, "on"), (3, 2, "on")]

@@ -27,6 +27,9 @@ LEAST_HIDDEN = 6
 def hidden_tops(cloud: LabelledCloud) -> tuple[int, ...]:
     """The objects whose top is partly hidden by other objects, ascending; none without a camera.
 
+    A camera below a top does not see it at all, but such a position is often a placeholder, as in the header of a
+    cloud that was moved to another frame: these tops do not count.
+
     Parameters
     ----------
     cloud : LabelledCloud
@@ -67,9 +70,9 @@ class _Image:
         np.minimum.at(self._second, at[other], depths[other])
 
     def n_hidden(self, rays: NDArray[np.float64], label: int) -> int:
-        """Number of places, as rays from the camera ``(m, 3)``, before which another object than `label` lies."""
+        """Number of places below the camera before which another object than `label` lies; rays are ``(m, 3)``."""
         pixels = _pixels(rays) - self._low
-        inside = ((pixels >= 0) & (pixels < self._shape)).all(axis=1)
+        inside = ((pixels >= 0) & (pixels < self._shape)).all(axis=1) & (rays[:, 2] < 0)
         at = self._numbers(pixels[inside])
         depths = np.where(self._nearest[at] == label, self._second[at], self._first[at])
         return int((depths < _lengths(rays[inside]) - BEFORE).sum())

@@ -22,6 +22,6 @@ def difference_rows(where: str, answers: Mapping[str, Sequence[JudgedPair]]) -> 
             continue
         for name, right in MEASURES.items():
             found = difference(answers[who], answers[PEER], right)
-            line = row(f"{who} less {PEER}, {where}, {name}", found.value, "share")
+            line = row(f"{who}, {where}, {name} less that of the {PEER}", found.value, "share")
             rows.append(line | {"ci95": found.to_dict()["ci95"], "n": found.n})
     return rows
