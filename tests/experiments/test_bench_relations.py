@@ -16,7 +16,7 @@ from lifelore.experiments.chapter2.scoring.network_stability import contact_node
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.peers import PEERS
 
-FEW = ("majority", "bounding-box rule", THESIS, OURS)
+FEW = ("majority", "orientation histogram", "bounding-box rule", THESIS, OURS)
 
 
 def box(low, size, step=0.008) -> np.ndarray:
@@ -59,7 +59,7 @@ def small(monkeypatch):
     monkeypatch.setattr(relations, "JUDGED_SCENES", 4)
     monkeypatch.setattr(relations, "LEARNERS", few)
     monkeypatch.setattr(relation_learners, "LEARNERS", few)
-    monkeypatch.setattr(relation_learners, "PEERS", {name: PEERS[name] for name in FEW[:2]})
+    monkeypatch.setattr(relation_learners, "PEERS", {name: PEERS[name] for name in FEW[:3]})
     monkeypatch.setattr(relation_scenes, "real_scenes", lambda: real)
     monkeypatch.setattr(relations, "real_scenes_folder", lambda: "somewhere")
 
@@ -80,6 +80,14 @@ def test_the_answer_keeps_its_contract(small):
     for where in ("simulated", "real", "real, learnt from the others too"):
         for who in (*FEW, THESIS + LOGIC, OURS + LOGIC):
             assert 0 <= values[f"{who}, {where}, exact"]["value"] <= 1
+            if who in (OURS + LOGIC,):
+                peer, name = (
+                    "orientation histogram",
+                    f"{who}, {where}, exact less that of the orientation histogram",
+                )
+                apart = values[f"{who}, {where}, exact"]["value"] - values[f"{peer}, {where}, exact"]["value"]
+                assert values[name]["value"] == pytest.approx(apart)
+                assert values[name]["ci95"][0] <= apart <= values[name]["ci95"][1]
     assert values["majority, simulated, exact"]["n"] == 4
     assert values[f"{SHIPPED + LOGIC}, real, exact"]["n"] == 2
     # Boxes made along the axes are what the rule of boxes is for.

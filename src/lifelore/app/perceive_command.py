@@ -40,6 +40,18 @@ def perceive(
     pddl: Annotated[
         str | None, Option(metavar="FILE", help="File for a planning problem; its domain is written beside it.")
     ] = None,
+    goal: Annotated[
+        str | None,
+        Option(metavar="GOAL", help='Goal of the planning problem, such as "on(o2, o3) and not clear(o4)".'),
+    ] = None,
+    min_confidence: Annotated[
+        float | None,
+        Option(
+            metavar="P",
+            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem"
+            " [0; for the planning problem 0.6].",
+        ),
+    ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,
     plot: Annotated[
         str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
@@ -69,7 +81,9 @@ def perceive(
     _one_thread_for_matrices()
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
-    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
+    settings = PerceiveSettings(
+        direction(up), units, labels, _cut(segment, colours), model, memory, min_confidence, goal
+    )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)

@@ -16,6 +16,7 @@ from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.reasoning.planning_goal import Statement, read_goal
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
 from lifelore.perception.scene_json import DIGITS, scene_document
@@ -44,11 +45,16 @@ class PerceiveSettings:
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
         Memory that holds the named model.
+    min_confidence : float, optional
+        Least probability, in [0, 1], of facts in the document, the graph and the planning problem; default: 0, and
+        `planning_state.PLAN_CONFIDENCE` for the planning problem.
+    goal : str, optional
+        Goal of the planning problem, see `planning_goal`.
 
     Raises
     ------
     InputError
-        `memory` is given without the name of a model.
+        `memory` is given without the name of a model, `min_confidence` is no probability, or `goal` is no goal.
     """
 
     up: Up = "table"
@@ -57,13 +63,29 @@ class PerceiveSettings:
     segmentation: SegmentationSettings | None = None
     model: str | None = None
     memory: str | None = None
+    min_confidence: float | None = None
+    goal: str | None = None
 
     def __post_init__(self) -> None:
+        if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
+            raise InputError(f"min_confidence must be a probability from 0 to 1, got {self.min_confidence!r}")
+        _ = self.statements
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
             raise InputError(
                 "memory needs the name of a model in it, but"
                 f" {'no model is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
             )
+
+    @property
+    def statements(self) -> tuple[Statement, ...]:
+        """The statements of the goal; none without a goal."""
+        return () if self.goal is None else read_goal(self.goal)
+
+
+def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
+    """Raise InputError for a goal without a planning problem to write it to."""
+    if settings.goal is not None and pddl is None:
+        raise InputError("goal is written to the planning problem, but none is asked for: add pddl (--pddl FILE)")
 
 
 def is_file_name(model: str) -> bool:
@@ -115,6 +137,7 @@ def perceive(
         A file cannot be written.
     """
     files = SceneFiles(pddl, dot, plot)
+    check_goal(settings, pddl)
     check_scene_files(files, files_read([source], settings))
     return perceived(source, model_of(settings), settings, files, progress, notice)
 
@@ -137,10 +160,10 @@ def perceived(
     # Near pairs without support or adjacency do not belong to the contact network.
     scene = perceived_scene(labelled, model).without_unrelated_contacts
     _report_stage(progress, 3)
-    document = scene_document(scene)
+    document = scene_document(scene, min_confidence=settings.min_confidence or 0.0)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
-    write_scene_files(files, scene, document)
+    write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
     if notice is not None and cloud.from_parts and settings.labels == "auto":
         notice(f"the labels {PARTS_NOTICE}")
     return document

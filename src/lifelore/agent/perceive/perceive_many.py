@@ -12,7 +12,15 @@ from threading import Event
 from typing import Any
 
 from lifelore.agent.perceive.cloud_folder import new_clouds
-from lifelore.agent.perceive.perceive import DEFAULT, PerceiveSettings, Source, files_read, model_of, perceived
+from lifelore.agent.perceive.perceive import (
+    DEFAULT,
+    PerceiveSettings,
+    Source,
+    check_goal,
+    files_read,
+    model_of,
+    perceived,
+)
 from lifelore.agent.perceive.scene_files import (
     NAME,
     SceneFiles,
@@ -75,6 +83,7 @@ def perceive_many(
         ``{name}``, cannot be written, or is the same for two clouds.
     """
     _check_settings(settings)
+    check_goal(settings, pddl)
     files = [named_files(source, pddl, dot, plot) for source in sources]
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
@@ -129,6 +138,7 @@ def perceive_folder(
         disappeared.
     """
     _check_settings(settings)
+    check_goal(settings, pddl)
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
     check_scene_files(named_files(NAME, pddl, dot, plot), files_read([], settings))

@@ -12,6 +12,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
+from lifelore.experiments.bench.perception.relation_differences import difference_rows
 from lifelore.experiments.bench.perception.relation_learners import (
     LEARNERS,
     LOGIC,
@@ -61,6 +62,8 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
         WITH_OTHERS: _leaving_one_out(lessons, [test.scene for test in real], after),
     }
     rows = [line for where, said in answers.items() for line in _score_rows(where, said)]
+    for where, said in answers.items():
+        rows += difference_rows(where, {who: _things(judged, where) for who, judged in said.items()})
     lost = _lost(tests)
     networks = {SIMULATED: tests, REAL: real}
     rows += [
