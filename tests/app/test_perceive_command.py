@@ -298,10 +298,10 @@ def test_a_folder_is_watched_until_ctrl_c(start, answer, three, tmp_path):
 
 def test_a_start_loads_no_library_that_a_plain_scene_does_not_need(start, answer, three):
     command = [sys.executable, "-c", LOADED, "perceive", str(three[0]), "--up", "z", "--json"]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    heavy = {"networkx", "scipy.spatial", "scipy.sparse", "sklearn", "matplotlib", "trimesh", "psycopg", "rich"}
+    for _ in range(2):  # the first process may have to compile
+        done = subprocess.run(command, capture_output=True, text=True, check=True)
+    heavy = {"networkx", "scipy", "numba", "sklearn", "matplotlib", "trimesh", "psycopg", "rich"}
     assert heavy & set(done.stderr.split()) == set()
-    assert "numba" in done.stderr.split()
 
 
 LOADED = """
