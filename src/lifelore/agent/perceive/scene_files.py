@@ -4,9 +4,12 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.perception.scene import Scene
+
+if TYPE_CHECKING:
+    from lifelore.perception.scene import Scene
 
 NAME = "{name}"
 """Placeholder in the name of a file for the name of the cloud."""
@@ -100,7 +103,7 @@ def _check_writable(path: str) -> None:
         raise InputError(f"'{path}' cannot be written: its folder must exist and be writable")
 
 
-def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> None:
+def write_scene_files(files: SceneFiles, scene: "Scene", document: Mapping) -> None:
     """Write the files of a scene; `document` of `scene_json` is used for the picture.
 
     Raises
