@@ -1,11 +1,14 @@
-"""Perceives the objects, contacts and spatial relations of a point cloud (`lifelore perceive`)."""
+"""Perceives the objects, contacts and spatial relations of a point cloud (`lifelore perceive`).
+
+The cloud is read before the modules that perceive it are imported, so that a bad file is refused at once.
+"""
 
 import os
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
@@ -15,13 +18,12 @@ from lifelore.core.protocols import Progress
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.reasoning.planning_goal import Statement, read_goal
-from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
-from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
-from lifelore.perception.scene_json import DIGITS, scene_document
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_scene
+
+if TYPE_CHECKING:
+    from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.relations.relation_classifier import RelationClassifier
+    from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.table_frame import Up
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
 """A source for `read_cloud`, or a cloud."""
@@ -57,10 +59,10 @@ class PerceiveSettings:
         `memory` is given without the name of a model, `min_confidence` is no probability, or `goal` is no goal.
     """
 
-    up: Up = "table"
+    up: "Up" = "table"
     units: str = "m"
     labels: str = "auto"
-    segmentation: SegmentationSettings | None = None
+    segmentation: "SegmentationSettings | None" = None
     model: str | None = None
     memory: str | None = None
     min_confidence: float | None = None
@@ -77,9 +79,13 @@ class PerceiveSettings:
             )
 
     @property
-    def statements(self) -> tuple[Statement, ...]:
+    def statements(self) -> "tuple[Statement, ...]":
         """The statements of the goal; none without a goal."""
-        return () if self.goal is None else read_goal(self.goal)
+        if self.goal is None:
+            return ()
+        from lifelore.perception.reasoning.planning_goal import read_goal
+
+        return read_goal(self.goal)
 
 
 def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
@@ -90,7 +96,9 @@ def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
 
 def is_file_name(model: str) -> bool:
     """Whether the name of a model means a file, not a model in memory."""
-    return model.endswith(MODEL_SUFFIX)
+    from lifelore.perception.relations.relation_model_file import SUFFIX
+
+    return model.endswith(SUFFIX)
 
 
 DEFAULT = PerceiveSettings()
@@ -139,21 +147,30 @@ def perceive(
     files = SceneFiles(pddl, dot, plot)
     check_goal(settings, pddl)
     check_scene_files(files, files_read([source], settings))
-    return perceived(source, model_of(settings), settings, files, progress, notice)
+    model = None if settings.model is None else model_of(settings)
+    return perceived(source, model, settings, files, progress, notice)
 
 
 def perceived(
     source: Source,
-    model: RelationClassifier,
+    model: "RelationClassifier | None",
     settings: PerceiveSettings = DEFAULT,
     files: SceneFiles = NO_FILES,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """As `perceive`, with a loaded model and checked files."""
+    """As `perceive`, with a loaded model, or None for the shipped model, and checked files."""
     began = time.perf_counter()
     _report_stage(progress, 0)
     cloud = _read(source, settings)
+    reading = time.perf_counter() - began
+    from lifelore.perception.perceived_scene import perceived_scene
+    from lifelore.perception.relations.relation_classifier import shipped_model
+    from lifelore.perception.scene_json import DIGITS, scene_document
+    from lifelore.perception.segmentation.table_frame import to_scene
+
+    model = model or shipped_model()
+    began = time.perf_counter() - reading  # without imports and the model
     _report_stage(progress, 1)
     labelled = to_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
@@ -190,8 +207,10 @@ def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
     return source
 
 
-def model_of(settings: PerceiveSettings) -> RelationClassifier:
+def model_of(settings: PerceiveSettings) -> "RelationClassifier":
     """Load the relation model of the settings; a memory is only read."""
+    from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
+
     if settings.model is None:
         return shipped_model()
     if is_file_name(settings.model):

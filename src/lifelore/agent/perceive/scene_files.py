@@ -4,10 +4,13 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.perception.reasoning.planning_goal import Statement
-from lifelore.perception.scene import Scene
+
+if TYPE_CHECKING:
+    from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.scene import Scene
 
 NAME = "{name}"
 """Placeholder in the name of a file for the name of the cloud."""
@@ -103,10 +106,10 @@ def _check_writable(path: str) -> None:
 
 def write_scene_files(
     files: SceneFiles,
-    scene: Scene,
+    scene: "Scene",
     document: Mapping,
     min_confidence: float | None = None,
-    goal: Sequence[Statement] = (),
+    goal: Sequence["Statement"] = (),
 ) -> None:
     """Write the files of a scene.
 

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 
+_WIDER = 1.001
+"""Width of the band of directions that is searched, in reaches; more costs time, not accuracy."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sight:
@@ -35,10 +38,13 @@ class Sight:
         distance = float(np.linalg.norm(away))
         if distance == 0:
             return True
-        reach = self.radius / distance
-        beside = self._directions - (away / distance)[:, None]
-        near = beside[0] ** 2 + beside[1] ** 2 + beside[2] ** 2 <= reach * reach
-        depths = self._depths[near]
+        reach, towards = self.radius / distance, away / distance
+        # Slightly wider than the reach, so that rounding loses no point.
+        edges = towards[0] - _WIDER * reach, towards[0] + _WIDER * reach
+        beside = slice(*np.searchsorted(self._directions[0], edges))
+        apart = self._directions[:, beside] - towards[:, None]
+        near = apart[0] ** 2 + apart[1] ** 2 + apart[2] ** 2 <= reach * reach
+        depths = self._depths[beside][near]
         return bool((depths > distance + self.radius).any() and not (depths < distance - self.radius).any())
 
     @cached_property
@@ -46,10 +52,17 @@ class Sight:
         return self.cloud.points - np.asarray(self.cloud.camera)
 
     @cached_property
-    def _depths(self) -> NDArray[np.float64]:
-        return np.linalg.norm(self._rays, axis=1)
+    def _sorted(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Unit vectors from the camera, one a column, ascending in x; and the distances of their points."""
+        depths = np.linalg.norm(self._rays, axis=1)
+        directions = (self._rays / np.maximum(depths, 1e-9)[:, None]).T
+        order = np.argsort(directions[0])
+        return np.ascontiguousarray(directions[:, order]), depths[order]
 
-    @cached_property
+    @property
     def _directions(self) -> NDArray[np.float64]:
-        """Unit vectors from the camera, one a column."""
-        return np.ascontiguousarray((self._rays / np.maximum(self._depths, 1e-9)[:, None]).T)
+        return self._sorted[0]
+
+    @property
+    def _depths(self) -> NDArray[np.float64]:
+        return self._sorted[1]
