@@ -243,15 +243,17 @@ class PolicyLibrary:
         self._tables.clear()
         self._task_tables.clear()
 
-    def for_task(self) -> "TaskLibrary | None":
+    def for_task(self, closest: bool = False) -> "TaskLibrary | None":
         """The library as one task sees it, whose models the task's own signals change.
 
-        None where nothing is to be learnt about the models: all are exact, or the caller's own.
+        None where nothing is to be learnt about the models: all are exact, or the caller's own. With `closest` the
+        task is as close to its type as the spread of the tasks of a type allows.
         """
         from lifelore.interaction.library.task_library import TaskLibrary
 
-        outcomes = getattr(self.performance, "for_task", _nothing)()
-        signal = None if isinstance(self.signal, ReturnSignal) else getattr(self.signal, "for_task", _nothing)()
+        outcomes = getattr(self.performance, "for_task", _nothing)(closest)
+        own_signal = not isinstance(self.signal, ReturnSignal)
+        signal = getattr(self.signal, "for_task", _nothing)(closest) if own_signal else None
         return None if outcomes is None and signal is None else TaskLibrary(self, outcomes, signal)
 
     def task_table(self, n_bins: int) -> tuple[SignalTable, list[Any]]:
@@ -412,5 +414,5 @@ class PolicyLibrary:
         raise InputError("signals are not returns here; give the new library's signal model as signal=")
 
 
-def _nothing() -> None:
+def _nothing(closest: bool) -> None:
     """What a model without a `for_task` of its own has to learn in a task."""

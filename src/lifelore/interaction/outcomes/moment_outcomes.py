@@ -93,11 +93,15 @@ class MomentOutcomes:
     def spread(self, spread: Spread) -> None:
         self.moments.spread = spread
 
-    def for_task(self) -> TaskNormals | None:
-        """A model of one task, which its own outcomes change; None where all is known exactly."""
-        if np.isinf(self.moments.count).all() and not self.spread.values.any():
+    def for_task(self, closest: bool = False) -> TaskNormals | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly.
+
+        With `closest` the task is as close to its type as the spread allows.
+        """
+        spread = self.spread.least if closest else self.spread
+        if np.isinf(self.moments.count).all() and not spread.values.any():
             return None
-        return TaskNormals(self.moments, self.spread)
+        return TaskNormals(self.moments, spread)
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""

@@ -6,6 +6,7 @@ far, for each type. `TaskNormals` does so for Gaussian and Student's t outcomes,
 categories. Rules score it like any outcome model.
 """
 
+from math import exp, inf, log
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -86,16 +87,19 @@ class SpreadWeights:
         """Log probabilities of the spreads after a signal of `gain`, see `TaskEvidence`."""
         if len(self.log_weights) == 1:
             return self.log_weights
-        found = self.log_weights + gain
-        if not (top := found.max()) > -np.inf:
+        # A few numbers: plain Python is faster than NumPy.
+        found = [weight + more for weight, more in zip(self.log_weights.tolist(), gain.tolist(), strict=True)]
+        if not (top := max(found)) > -inf:
             return self.log_weights
-        found -= top
-        return found - np.log(np.exp(found).sum())
+        total = top + log(sum(exp(weight - top) for weight in found))
+        return np.array([weight - total for weight in found])
 
     def fade_weights(self, keep: float) -> None:
         """The probabilities where with probability 1 − `keep` the task is a new one."""
         if len(self.log_weights) > 1:
-            self.log_weights = np.log(keep * np.exp(self.log_weights) + (1 - keep) * self.spread.weights)
+            pairs = zip(self.log_weights.tolist(), self.spread.weights.tolist(), strict=True)
+            found = [keep * exp(weight) + (1 - keep) * first for weight, first in pairs]
+            self.log_weights = np.array([log(weight) if weight > 0 else -inf for weight in found])
 
     def restore_weights(self, log_weights: ArrayLike) -> None:
         """Take over log probabilities; InputError where they are not this spread's."""
