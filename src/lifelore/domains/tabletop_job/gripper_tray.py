@@ -1,6 +1,6 @@
 """MuJoCo's part of the tabletop job: two kinematic fingers and a grip of limited force among settled objects.
 
-The fingers are mocap boxes that collide with all objects but the gripped one. The grip is a weld between the
+The fingers are mocap capsules that collide with all objects but the gripped one. The grip is a weld between the
 gripped object and the hand, which is released where its force exceeds the gripper's limit for `SLIP_TIME` seconds.
 Other objects move by contact alone.
 """
@@ -18,12 +18,12 @@ from lifelore.domains.tabletop_job.job_types import Gripper
 
 CLEARANCE = 0.004
 """Metres between an object and each finger when the fingers descend."""
-FINGER_WIDTH, FINGER_LENGTH = 0.02, 0.3
+FINGER_LENGTH = 0.3
 """Metres."""
 SLIP_TIME = 0.03
 """Seconds for which the force must exceed the limit until the grip is lost."""
-PRESS = 12.0
-"""Newtons of upward force on a descending finger at which it stops: something is in the way."""
+PRESS = 40.0
+"""Newtons of upward force on a descending finger at which it stops; below, it pushes objects aside."""
 EDGE = 0.75
 """Metres from the tray's middle to the table's edge; an object beyond it is lost."""
 STEP = 0.004
@@ -306,9 +306,10 @@ class GripperTray(Tabletop):
 def _tools_xml(gripper: Gripper) -> str:
     """The hand, the fingers, a pointer that touches nothing, and the grip."""
     away = " ".join(map(str, _AWAY))
-    size = f"{gripper.thickness / 2:.9g} {FINGER_WIDTH / 2:.9g} {FINGER_LENGTH / 2:.9g}"
+    # A capsule's length is that of its straight part.
+    size = f"{gripper.thickness / 2:.9g} {(FINGER_LENGTH - gripper.thickness) / 2:.9g}"
     fingers = "".join(
-        f'<body name="finger{k}" mocap="true" pos="{away}"><geom name="finger{k}" type="box" size="{size}" '
+        f'<body name="finger{k}" mocap="true" pos="{away}"><geom name="finger{k}" type="capsule" size="{size}" '
         'group="2" contype="2" conaffinity="0"/></body>'
         for k in range(2)
     )

@@ -42,7 +42,7 @@ class Gripper:
     ----------
     name : str
     thickness : float
-        Of a finger, metres: neighbours nearer than that (plus `gripper_tray.CLEARANCE`) are hit when it descends.
+        Of a finger, metres: a neighbour nearer than that (plus `gripper_tray.CLEARANCE`) is knocked, or is in the way.
     strength : float
         Largest force on the held or pushed object, newtons.
     grip : float
