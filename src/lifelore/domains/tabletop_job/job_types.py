@@ -42,7 +42,7 @@ class Gripper:
     ----------
     name : str
     thickness : float
-        Of a finger, metres: a neighbour nearer than that (plus `gripper_tray.CLEARANCE`) is knocked, or is in the way.
+        Of a finger, metres: a neighbour nearer than it and `gripper_tray.CLEARANCE` is knocked or in the way.
     strength : float
         Largest force on the held or pushed object, newtons.
     grip : float
