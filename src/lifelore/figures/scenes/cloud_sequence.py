@@ -1,0 +1,67 @@
+"""A sequence of labelled clouds seen by one camera, e.g. a tray after each action of a job."""
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.figures.scenes.camera_projection import camera_of
+from lifelore.figures.scenes.cloud_image import render_cloud
+from lifelore.figures.scenes.object_palette import object_palette
+from lifelore.figures.style import INK, PAPER, house_style, new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+_SIZE = (480, 360)
+"""Pixels of a picture."""
+_WIDE, _HIGH, _CAPTION = 2.6, 1.95, 0.42
+"""Inches."""
+
+
+def draw_cloud_sequence(
+    clouds: Sequence[LabelledCloud], captions: Sequence[str], marked: int | None = None, columns: int = 4
+) -> "Figure":
+    """Pictures in reading order, all from the first cloud's camera; an object has one colour in all of them.
+
+    Parameters
+    ----------
+    clouds : sequence of LabelledCloud
+        In one frame.
+    captions : sequence of str
+        One for each cloud; two lines at most.
+    marked : int, optional
+        Label of an object that a star marks.
+    columns : int
+        At least 1.
+
+    Raises
+    ------
+    InputError
+        There is no cloud, no column, or not one caption for each cloud.
+    """
+    if not clouds or columns < 1 or len(captions) != len(clouds):
+        raise InputError(
+            "a sequence needs clouds, a caption for each and a column, got "
+            f"{len(clouds)} clouds, {len(captions)} captions and {columns} columns"
+        )
+    palette = object_palette({label for cloud in clouds for label in cloud.objects})
+    also = np.concatenate([cloud.points[cloud.labels > TABLE] for cloud in clouds])
+    camera = camera_of(clouds[0], _SIZE, also)
+    columns = min(columns, len(clouds))
+    rows = -(-len(clouds) // columns)
+    with house_style():
+        figure = new_figure(columns * _WIDE, rows * (_HIGH + _CAPTION))
+        grid = figure.subplots(rows, columns, squeeze=False).ravel()
+        for axes in grid[len(clouds) :]:
+            axes.set_visible(False)
+        for axes, cloud, caption in zip(grid, clouds, captions, strict=False):
+            axes.imshow(render_cloud(cloud, camera, palette).colours, interpolation="bilinear")
+            axes.set_axis_off()
+            axes.set_title(caption, fontsize=8, loc="left")
+            if marked in cloud.objects and marked is not None:
+                pixels, _ = camera.project(np.median(cloud.of(marked), axis=0))
+                axes.plot(*pixels[0], marker="*", markersize=11, color=PAPER, markeredgecolor=INK)
+    return figure
