@@ -3,6 +3,8 @@
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import CORE_RELATIONS
 from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.scene import Scene
@@ -27,5 +29,7 @@ def perceived_scene(
     found = interfaces(cloud, model.settings)
     if not consistent or model.multi_label or not set(model.names) <= set(CORE_RELATIONS):
         return Scene(cloud, found, model.predict(cloud, found))
-    decided = most_likely_scene(alternatives(model.beliefs(cloud, found)), cloud.objects)
+    pairs = scene_pairs(cloud, found, model.settings)
+    beliefs = alternatives(model.beliefs_of(pairs))
+    decided = most_likely_scene(beliefs, cloud.objects, beside=pairs_beside(pairs))
     return Scene(cloud, found, decided.relations, decided.optimal)

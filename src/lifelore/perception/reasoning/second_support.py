@@ -1,0 +1,57 @@
+"""Soft rule of leaning: an object that leans on another rests on something else as well, or touches its side.
+
+A label *both(x, y)* is a *lone lean* where x rests on nothing but y and no side face of y is at x: physics needs a
+second support for x (the table or another object). Perception confuses such pairs with *on(x, y)* in staggered
+piles. The rule is soft, because the second support may be hidden: a lone lean costs `LONE_LEAN` nats.
+"""
+
+from collections.abc import Collection, Mapping, Sequence
+
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.relations import BOTH
+from lifelore.perception.reasoning.label_distribution import Label, LabelDistribution, carries
+
+LONE_LEAN = 2.0
+"""Nats that a lone lean costs; more removes more of them, 0 switches the rule off."""
+
+
+def leans(label: Label, beside: Collection[frozenset[int]], judged: Collection[int]) -> bool:
+    """Whether the label says that x leans on another object and the rule applies.
+
+    Parameters
+    ----------
+    label : Label
+    beside : collection of frozenset of int
+        Pairs whose side faces are beside each other.
+    judged : collection of int
+        Objects whose support by the table perception judged; for others the table may always be the second.
+    """
+    name, x, y = label
+    return name == BOTH and y != TABLE and x in judged and frozenset((x, y)) not in beside
+
+
+def supports(labels: Sequence[Label]) -> dict[int, set[int]]:
+    """What each object rests on, by the labels of all pairs."""
+    rests: dict[int, set[int]] = {}
+    for step in map(carries, labels):
+        if step is not None:
+            rests.setdefault(step[0], set()).add(step[1])
+    return rests
+
+
+def is_lone(label: Label, rests: Mapping[int, set[int]]) -> bool:
+    """Whether x of ``both(x, y)`` rests on nothing but y."""
+    return rests.get(label[1], set()) <= {label[2]}
+
+
+def given_the_rest(
+    belief: LabelDistribution,
+    rests: Mapping[int, set[int]],
+    beside: Collection[frozenset[int]],
+    judged: Collection[int],
+) -> LabelDistribution:
+    """The belief of a pair once the other pairs are decided: lone leans weigh less by `LONE_LEAN`."""
+    costs = [
+        LONE_LEAN if leans(label, beside, judged) and is_lone(label, rests) else 0.0 for label in belief.labels
+    ]
+    return belief.weighed(costs) if any(costs) else belief
