@@ -2,7 +2,8 @@
 
 A label *both(x, y)* is a *lone lean* where x rests on nothing but y and no side face of y is at x: physics needs a
 second support for x (the table or another object). Perception confuses such pairs with *on(x, y)* in staggered
-piles. The rule is soft, because the second support may be hidden: a lone lean costs `LONE_LEAN` nats.
+piles. In simulation, 52 of 54 objects that lean on one object alone stand beside a side face of it, and so
+do 37 of 693 that rest on one object alone. The rule is soft, because the second support may be hidden.
 """
 
 from collections.abc import Collection, Mapping, Sequence
@@ -11,8 +12,10 @@ from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import BOTH
 from lifelore.perception.reasoning.label_distribution import Label, LabelDistribution, carries
 
-LONE_LEAN = 2.0
-"""Nats that a lone lean costs; more removes more of them, 0 switches the rule off."""
+LONE_LEAN = 3.0
+"""Nats that a lone lean costs; more removes more of them, 0 switches the rule off.
+
+From 1 to 3, no answer differs on 500 simulated pairs in piles by a model that learnt from no pile."""
 
 
 def leans(label: Label, beside: Collection[frozenset[int]], judged: Collection[int]) -> bool:
