@@ -1,7 +1,7 @@
 """`LabelDistribution`: how likely each label of the core vocabulary is for a pair, ready to be reasoned with."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 from lifelore.core.errors import InputError
@@ -67,12 +67,6 @@ class LabelDistribution:
     def cost(self, number: int) -> float:
         """``-ln p`` of a label, nats."""
         return -math.log(self.probabilities[number])
-
-    def weighed(self, costs: Sequence[float]) -> "LabelDistribution":
-        """The distribution in which each label is less likely by its cost (nats, ≥ 0), made to sum to the same."""
-        raised = [p * math.exp(-cost) for p, cost in zip(self.probabilities, costs, strict=True)]
-        scale = sum(self.probabilities) / sum(raised)
-        return LabelDistribution(self.labels, tuple(max(p * scale, FLOOR) for p in raised), self.gap)
 
     def carried(self, thing: int) -> float:
         """Probability that this object of the pair rests on the other, in [0, 1]."""

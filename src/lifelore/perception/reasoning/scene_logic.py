@@ -32,7 +32,7 @@ from lifelore.perception.reasoning.label_distribution import (
     label_distributions,
     relation_label,
 )
-from lifelore.perception.reasoning.second_support import LONE_LEAN, given_the_rest, is_lone, leans, supports
+from lifelore.perception.reasoning.second_support import LONE_LEAN, is_lone, leans, supports
 from lifelore.perception.relations.relation import PairBelief, Relation
 
 SCALE = 1000
@@ -62,8 +62,7 @@ class ConsistentScene:
     Parameters
     ----------
     relations : tuple of Relation
-        One a pair, pairs ascending, then those with the table; confidence is the label's probability, given the
-        supports that the other pairs leave its objects.
+        One a pair, pairs ascending, then those with the table; confidence is the label's probability.
     overruled : tuple of Relation
         What perception held likeliest where another label replaced it.
     contradictions : tuple of str
@@ -127,11 +126,7 @@ def most_likely_scene(
     lone = any(leans(label, beside, judged) and is_lone(label, rests) for label in labels)
     picked, optimal = _solve(beliefs, beside, most_conflicts) if wrong or lone else (best, True)
     changed = [(b, was, now) for b, was, now in zip(beliefs, best, picked, strict=True) if was != now]
-    rests = supports([b.labels[k] for b, k in zip(beliefs, picked, strict=True)])
-    decided = [
-        given_the_rest(belief, rests, beside, judged).relation(k)
-        for belief, k in zip(beliefs, picked, strict=True)
-    ]
+    decided = [belief.relation(k) for belief, k in zip(beliefs, picked, strict=True)]
     return ConsistentScene(
         (*decided, *_on_the_table(decided, beliefs, things), *_others(candidates)),
         tuple(belief.relation(was) for belief, was, _ in changed),

@@ -10,7 +10,7 @@ from collections.abc import Collection, Mapping, Sequence
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import BOTH
-from lifelore.perception.reasoning.label_distribution import Label, LabelDistribution, carries
+from lifelore.perception.reasoning.label_distribution import Label, carries
 
 LONE_LEAN = 3.0
 """Nats that a lone lean costs; more removes more of them, 0 switches the rule off.
@@ -45,16 +45,3 @@ def supports(labels: Sequence[Label]) -> dict[int, set[int]]:
 def is_lone(label: Label, rests: Mapping[int, set[int]]) -> bool:
     """Whether x of ``both(x, y)`` rests on nothing but y."""
     return rests.get(label[1], set()) <= {label[2]}
-
-
-def given_the_rest(
-    belief: LabelDistribution,
-    rests: Mapping[int, set[int]],
-    beside: Collection[frozenset[int]],
-    judged: Collection[int],
-) -> LabelDistribution:
-    """The belief of a pair once the other pairs are decided: lone leans weigh less by `LONE_LEAN`."""
-    costs = [
-        LONE_LEAN if leans(label, beside, judged) and is_lone(label, rests) else 0.0 for label in belief.labels
-    ]
-    return belief.weighed(costs) if any(costs) else belief
