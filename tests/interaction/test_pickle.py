@@ -380,7 +380,6 @@ NOT_STATE = {
     known_tasks.CategoryTasks: "tasks drawn within `calibrate`",
     known_tasks.NormalTasks: "tasks drawn within `calibrate`",
     signal_laws.Cells: "numbers of a call",
-    TaskEvidence: "numbers of a call",
     Shown: "a view of `UserOutcomes` within a call",
 }
 

@@ -4,6 +4,8 @@ from collections.abc import Sequence
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.contacts.interface import Interface, interfaces
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
@@ -42,8 +44,9 @@ def _core_scene(
 ) -> Scene:
     if not consistent or model.multi_label:
         return Scene(cloud, found, model.predict(cloud, found))
-    beliefs = model.beliefs(cloud, found)
-    decided = most_likely_scene(alternatives(beliefs), cloud.objects)
+    pairs = scene_pairs(cloud, found, model.settings)
+    beliefs = model.beliefs_of(pairs)
+    decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
     return Scene(cloud, found, decided.relations, decided.optimal, beliefs)
 
 
