@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.array_log import exps, log1ps, logs, ndtrs
+from lifelore.core.compiled.array_log import log1ps, logs, ndtrs
 from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts
@@ -30,7 +30,7 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, ove
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes, normal_excess
 
 Array = NDArray[np.float64]
 
@@ -418,14 +418,6 @@ def spread_of(moments: OutcomeMoments) -> Spread:
             found[number, place] = -0.5 * (apart / variance + np.log(variance)).sum(axis=1)
         found[:, place, i] = -np.inf
     return Spread.up_to(likeliest(found))
-
-
-def normal_excess(above: Array, variance: Array) -> Array:
-    """E[max(X, 0)] of normal X with mean `above` and a variance; 0 where the mean is ten deviations below 0."""
-    deviation = np.sqrt(variance)
-    z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
-    found = np.maximum(deviation * (exps(-0.5 * z * z) / _ROOT_2_PI) + above * ndtrs(z), 0.0)
-    return np.where((above > 0) | (above * above < 100 * variance), found, 0.0)
 
 
 @cache
