@@ -24,7 +24,7 @@ _WIDE, _HIGH, _CAPTION = 2.6, 1.95, 0.42
 def draw_cloud_sequence(
     clouds: Sequence[LabelledCloud], captions: Sequence[str], marked: int | None = None, columns: int = 4
 ) -> "Figure":
-    """Pictures in reading order, all from the first cloud's camera; an object has one colour in all of them.
+    """Pictures in reading order, from the first cloud's camera; objects carry labels and keep their colours.
 
     Parameters
     ----------
@@ -61,7 +61,12 @@ def draw_cloud_sequence(
             axes.imshow(render_cloud(cloud, camera, palette).colours, interpolation="bilinear")
             axes.set_axis_off()
             axes.set_title(caption, fontsize=8, loc="left")
-            if marked in cloud.objects and marked is not None:
-                pixels, _ = camera.project(np.median(cloud.of(marked), axis=0))
-                axes.plot(*pixels[0], marker="*", markersize=11, color=PAPER, markeredgecolor=INK)
+            for label in cloud.objects:
+                (right, down), *_ = camera.project(np.median(cloud.of(label), axis=0))[0]
+                if label == marked:
+                    axes.plot(right, down, marker="*", markersize=17, color=PAPER, markeredgecolor=INK)
+                colour = INK if label == marked else PAPER
+                axes.text(
+                    right, down, str(label), ha="center", va="center", fontsize=7, color=colour, weight="bold"
+                )
     return figure
