@@ -18,6 +18,7 @@ def test_a_picture_and_a_caption_for_each_cloud(tmp_path):
     shown = [axes for axes in figure.axes if axes.get_visible()]
     assert [axes.get_title("left") for axes in shown] == ["start", "later", "end"]
     assert [len(axes.lines) for axes in shown] == [1, 0, 0]
+    assert [[text.get_text() for text in axes.texts] for axes in shown] == [["2", "3"], ["3"], ["3"]]
     first, later = (axes.images[0].get_array().reshape(-1, 3) for axes in shown[:2])
     assert len(np.unique(first.round(2), axis=0)) > len(np.unique(later.round(2), axis=0))
     save_figure(figure, tmp_path / "sequence.png")

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
@@ -24,7 +25,7 @@ _WIDE, _HIGH, _CAPTION = 2.6, 1.95, 0.42
 def draw_cloud_sequence(
     clouds: Sequence[LabelledCloud], captions: Sequence[str], marked: int | None = None, columns: int = 4
 ) -> "Figure":
-    """Pictures in reading order, all from the first cloud's camera; an object has one colour in all of them.
+    """Pictures in reading order, from the first cloud's camera; objects carry labels and keep their colours.
 
     Parameters
     ----------
@@ -58,10 +59,25 @@ def draw_cloud_sequence(
         for axes in grid[len(clouds) :]:
             axes.set_visible(False)
         for axes, cloud, caption in zip(grid, clouds, captions, strict=False):
-            axes.imshow(render_cloud(cloud, camera, palette).colours, interpolation="bilinear")
+            image = render_cloud(cloud, camera, palette)
+            axes.imshow(image.colours, interpolation="bilinear")
             axes.set_axis_off()
             axes.set_title(caption, fontsize=8, loc="left")
-            if marked in cloud.objects and marked is not None:
-                pixels, _ = camera.project(np.median(cloud.of(marked), axis=0))
-                axes.plot(*pixels[0], marker="*", markersize=11, color=PAPER, markeredgecolor=INK)
+            for label in np.intersect1d(cloud.objects, image.labels).tolist():
+                right, down = _widest_place(image.labels == label)
+                if label == marked:
+                    axes.plot(right, down, marker="*", markersize=17, color=PAPER, markeredgecolor=INK)
+                colour = INK if label == marked else PAPER
+                axes.text(
+                    right, down, str(label), ha="center", va="center", fontsize=7, color=colour, weight="bold"
+                )
     return figure
+
+
+def _widest_place(seen: NDArray[np.bool_]) -> tuple[int, int]:
+    """Column and row of the pixel that is farthest from the edge of what is seen."""
+    from scipy.ndimage import distance_transform_edt
+
+    depth = np.asarray(distance_transform_edt(np.pad(seen, 1)))[1:-1, 1:-1]
+    row, column = np.unravel_index(int(depth.argmax()), depth.shape)
+    return int(column), int(row)
