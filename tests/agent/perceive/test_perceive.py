@@ -108,7 +108,7 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
 def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
     from lifelore.perception import scene_json
 
-    def slow(scene):
+    def slow(scene, **options):
         time.sleep(0.4)
         return {"made": "late"}
 

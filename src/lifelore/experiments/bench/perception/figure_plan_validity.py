@@ -31,7 +31,7 @@ def draw_plan_validity(
             _panel(place, thresholds, default, unknown, as_clear)
             place.set(title=title, xlabel="least probability of a stated fact", ylim=(0.5, 1.02))
         axes[0].set_ylabel("share")
-        axes[0].legend(loc="lower left", framealpha=1, edgecolor="none", fontsize=7.5)
+        axes[0].legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none", fontsize=7.5)
         figure.suptitle("Plans that fetch an object, from perceived facts")
     return figure
 
