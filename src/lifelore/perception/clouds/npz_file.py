@@ -54,7 +54,8 @@ def cloud_from_arrays(
     Parameters
     ----------
     points : (n, 3) or (rows, columns, 3) numbers
-        With a fourth column for labels where `labels` is not given.
+        Three axes make an organised cloud, with `PointCloud.grid`. With a fourth column for labels where
+        `labels` is not given.
     labels : (n,) or (rows, columns) numbers, optional
         Turned to ids by `rule`, see `label_rule`.
     colours : (n, 3) or (rows, columns, 3), optional
@@ -72,7 +73,7 @@ def cloud_from_arrays(
         raise InputError(
             f"points must be numbers of shape (n, 3) or (rows, columns, 3), got {table.dtype} {table.shape}"
         )
-    shape = (table.shape[0], table.shape[1]) if table.ndim == 3 else None
+    grid = (table.shape[0], table.shape[1]) if table.ndim == 3 else None
     table = table.reshape(-1, table.shape[-1])
     if labels is None and table.shape[1] == 4:
         labels = table[:, 3]
@@ -81,7 +82,7 @@ def cloud_from_arrays(
         np.ascontiguousarray(table[:, :3], kind),
         None if labels is None else ids_from_labels(np.asarray(labels).reshape(-1), rule),
         None if colours is None else colours_as_bytes(np.asarray(colours).reshape(-1, 3)),
-        shape,
+        grid,
         None if camera is None else np.asarray(camera, np.float64),
     )
 
