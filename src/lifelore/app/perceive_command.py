@@ -17,7 +17,8 @@ Files = dict[str, str | None]
 
 def perceive(
     clouds: Annotated[
-        list[str] | None, typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy or a rosbag; one or more.")
+        list[str] | None,
+        typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy, depth image or rosbag; one or more."),
     ] = None,
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
@@ -31,6 +32,27 @@ def perceive(
     ] = None,
     colours: Annotated[
         int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")
+    ] = None,
+    intrinsics: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="Read a depth image with this camera: camera_info YAML, or JSON of fx fy cx cy."
+        ),
+    ] = None,
+    colour: Annotated[
+        str | None, Option(metavar="IMAGE", help="Colour image aligned with the depth image, PNG or JPEG.")
+    ] = None,
+    depth_scale: Annotated[
+        float | None, Option(help="Metres for each unit of depth [0.001 for whole numbers, 1 for floats].")
+    ] = None,
+    masks: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="Masks of the objects: a label image (PNG), or labels or masks in npz or npy."
+        ),
+    ] = None,
+    table_mask: Annotated[
+        int | None, Option(help="Number of the table's mask [the plane without a mask is the table].")
     ] = None,
     model: Annotated[
         str | None,
@@ -68,8 +90,10 @@ def perceive(
         )  # fmt: skip
     _one_thread_for_matrices()
     from lifelore.agent.perceive.perceive import PerceiveSettings
+    from lifelore.agent.perceive.source_files import SourceFiles
 
-    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
+    beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
+    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory, beside)
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)

@@ -10,9 +10,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.agent.perceive.source_files import NO_SOURCE_FILES, SourceFiles, read_source
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
-from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.perceived_scene import perceived_scene
@@ -44,6 +44,8 @@ class PerceiveSettings:
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
         Memory that holds the named model.
+    beside : SourceFiles
+        Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
 
     Raises
     ------
@@ -57,6 +59,7 @@ class PerceiveSettings:
     segmentation: SegmentationSettings | None = None
     model: str | None = None
     memory: str | None = None
+    beside: SourceFiles = NO_SOURCE_FILES
 
     def __post_init__(self) -> None:
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
@@ -90,7 +93,8 @@ def perceive(
     Parameters
     ----------
     source : path, (n, 3) array or PointCloud
-        A source that `read_cloud` reads, or a cloud (for example from a rosbag).
+        A source that `read_cloud` reads, a depth image (with `settings.beside.intrinsics`), or a cloud (for
+        example from a rosbag).
     settings : PerceiveSettings
     pddl, dot, plot : str, optional
         Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
@@ -148,7 +152,9 @@ def perceived(
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
     """Paths of the files that are read, with the model's; they must not be overwritten."""
-    read = [*sources, settings.model if settings.model and is_file_name(settings.model) else None]
+    sources = list(sources)
+    beside = [path for source in sources for path in settings.beside.of(source).paths]
+    read = [*sources, *beside, settings.model if settings.model and is_file_name(settings.model) else None]
     return [path for path in read if isinstance(path, str | os.PathLike)]
 
 
@@ -158,13 +164,12 @@ def _report_stage(progress: Progress | None, stage: int) -> None:
 
 
 def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
-    if not isinstance(source, PointCloud):
-        source = read_cloud(source, units=settings.units, labels=settings.labels)
-    if settings.segmentation is not None and source.is_labelled:
+    cloud = read_source(source, settings.units, settings.labels, settings.up, settings.beside)
+    if settings.segmentation is not None and cloud.is_labelled:
         raise InputError(
             "segmentation (--segment) needs a cloud without labels, but this cloud has labels: leave it out"
         )
-    return source
+    return cloud
 
 
 def model_of(settings: PerceiveSettings) -> RelationClassifier:

@@ -23,11 +23,9 @@ def read_npz(content: bytes, labels: str = "auto") -> PointCloud:
     InputError
         The archive is damaged, `points` is missing, or an array breaks its rule.
     """
-    with zipfile.ZipFile(BytesIO(content)) as archive:
-        held = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
-        arrays = {name: _array(archive, held[name], name) for name in _NAMES if name in held}
+    arrays, held = arrays_of_npz(content, _NAMES)
     if "points" not in arrays:
-        raise InputError(f"has no array 'points'; its arrays are {', '.join(held)[:200] or 'none'}")
+        raise InputError(f"has no array 'points'; its arrays are {held or 'none'}")
     return cloud_from_arrays(
         arrays["points"],
         arrays.get("labels"),
@@ -39,7 +37,7 @@ def read_npz(content: bytes, labels: str = "auto") -> PointCloud:
 
 def read_npy(content: bytes, labels: str = "auto") -> PointCloud:
     """The cloud in the bytes of an npy file; see `cloud_from_arrays` for its shapes."""
-    return cloud_from_arrays(_checked(BytesIO(content), len(content), "points"), rule=labels)
+    return cloud_from_arrays(array_of_npy(content, "points"), rule=labels)
 
 
 def cloud_from_arrays(
@@ -85,6 +83,30 @@ def cloud_from_arrays(
         grid,
         None if camera is None else np.asarray(camera, np.float64),
     )
+
+
+def array_of_npy(content: bytes, name: str) -> NDArray:
+    """The array in the bytes of an npy file; `name` is for the messages.
+
+    Raises
+    ------
+    InputError
+        It holds no numbers, or its header contradicts its size.
+    """
+    return _checked(BytesIO(content), len(content), name)
+
+
+def arrays_of_npz(content: bytes, names: tuple[str, ...]) -> tuple[dict[str, NDArray], str]:
+    """The arrays of these names in the bytes of an npz file, and the names of all its arrays for a message.
+
+    Raises
+    ------
+    InputError
+        An array holds no numbers, or its header contradicts its size.
+    """
+    with zipfile.ZipFile(BytesIO(content)) as archive:
+        held = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
+        return {name: _array(archive, held[name], name) for name in names if name in held}, ", ".join(held)[:200]
 
 
 def _array(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str) -> NDArray:

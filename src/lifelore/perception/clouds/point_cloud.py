@@ -6,6 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
+from lifelore.perception.clouds.depth_image import metres_of_depth
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +59,61 @@ class PointCloud:
             raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
         if self.camera is not None and not np.isfinite(self.camera).all():
             raise InputError(f"camera must be three finite numbers, got {self.camera.tolist()}; leave it out")
+
+    @classmethod
+    def from_depth(
+        cls,
+        depth: NDArray,
+        intrinsics: CameraIntrinsics,
+        colours: NDArray[np.uint8] | None = None,
+        *,
+        depth_scale: float | None = None,
+    ) -> "PointCloud":
+        """The organised cloud of a depth image, in the camera's frame: x right, y down, z forward.
+
+        Parameters
+        ----------
+        depth : (height, width) numbers
+            Depth along the optical axis; zero, negative and NaN mean that nothing was measured.
+        intrinsics : CameraIntrinsics
+            Of an image of this size.
+        colours : (height, width, 3) uint8, optional
+            Aligned with the depth.
+        depth_scale : float, optional
+            Metres for each unit of depth. Default: 0.001 for integers, 1 for floats.
+
+        Returns
+        -------
+        PointCloud
+            One point for each pixel, row by row, NaN where nothing was measured; `grid` is (height, width) and
+            `camera` the origin.
+
+        Raises
+        ------
+        InputError
+            Shapes differ, a type or the scale breaks its rule, or nothing was measured.
+
+        Examples
+        --------
+        >>> camera = CameraIntrinsics(2, 1, fx=100.0, fy=100.0, cx=0.0, cy=0.0)
+        >>> PointCloud.from_depth(np.array([[500, 1000]], np.uint16), camera).points.round(3).tolist()
+        [[0.0, 0.0, 0.5], [0.01, 0.0, 1.0]]
+        """
+        z = metres_of_depth(depth, depth_scale)
+        if z.shape != intrinsics.grid:
+            raise InputError(
+                f"the depth image has {z.shape[1]} × {z.shape[0]} pixels, but the intrinsics are of"
+                f" {intrinsics.width} × {intrinsics.height}: give the intrinsics of this image"
+            )
+        if colours is not None and colours.shape[:2] != z.shape:
+            raise InputError(
+                f"the colour image has {colours.shape[1]} × {colours.shape[0]} pixels, the depth image"
+                f" {z.shape[1]} × {z.shape[0]}: give a colour image aligned with the depth"
+            )
+        rays = intrinsics.rays().astype(z.dtype)
+        points = np.stack([rays[..., 0] * z, rays[..., 1] * z, z], axis=-1).reshape(-1, 3)
+        flat = None if colours is None else np.ascontiguousarray(colours.reshape(-1, 3))
+        return cls(points, None, flat, intrinsics.grid, np.zeros(3))
 
     def _check_grid(self) -> None:
         n, pixels = len(self.points), 0 if self.grid is None else self.grid[0] * self.grid[1]
