@@ -134,7 +134,7 @@ def perceived(
     """As `perceive`, with a loaded model and checked files."""
     began = time.perf_counter()
     _report_stage(progress, 0)
-    cloud = _read(source, settings)
+    cloud = read_scene(source, settings)
     _report_stage(progress, 1)
     labelled = to_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
@@ -163,7 +163,8 @@ def _report_stage(progress: Progress | None, stage: int) -> None:
         progress(stage, len(STAGES), STAGES[stage])
 
 
-def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
+def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
+    """Read the cloud of a source, with its files beside it; refuse a segmentation of a labelled cloud."""
     cloud = read_source(source, settings.units, settings.labels, settings.up, settings.beside)
     if settings.segmentation is not None and cloud.is_labelled:
         raise InputError(

@@ -47,9 +47,14 @@ def choose_view(outlines: list[NDArray[np.float64]], rng: np.random.Generator, c
 
 
 def photograph(
-    table: Tabletop, outlines: list[NDArray[np.float64]], view: Pose, camera: Camera, rng: np.random.Generator
+    table: Tabletop,
+    outlines: list[NDArray[np.float64]],
+    view: Pose,
+    camera: Camera,
+    rng: np.random.Generator,
+    fewest: int = FEW_POINTS,
 ) -> Photograph | None:
-    """What the camera sees of the objects and of the table around them; None where an object is hidden."""
+    """What the camera sees of the objects and of the table; None where an object has less than `fewest` points."""
     rays = _rays_at(outlines, view, camera)
     world = rays.reshape(-1, 3) @ view.rotation.T
     hits, depth, normals = table.cast(view.position, world)
@@ -59,7 +64,7 @@ def photograph(
     noisy = measure(depth.reshape(rays.shape[:2]), camera, rng).ravel()
     seen = np.flatnonzero(np.isfinite(noisy) & (depth < _FARTHEST))
     labels = np.where(on_table, TABLE, hits + FIRST_OBJECT)[seen]
-    if np.bincount(labels, minlength=FIRST_OBJECT + len(outlines))[FIRST_OBJECT:].min() < FEW_POINTS:
+    if np.bincount(labels, minlength=FIRST_OBJECT + len(outlines))[FIRST_OBJECT:].min() < fewest:
         return None
     normals[on_table] = (0.0, 0.0, 1.0)
     colours = _colours(labels, normals[seen], rng)

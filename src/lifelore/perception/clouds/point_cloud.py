@@ -31,6 +31,8 @@ class PointCloud:
     pixel_numbers : (n,) int64, optional
         Number of each point's pixel in the `grid`, row by row from 0. None if the points are all pixels in this
         order. `only` keeps them, so that a part of an organised cloud still knows its neighbours in the image.
+    other_cameras : (k, 3) float64, optional
+        Positions of further cameras, of a cloud that several views make.
 
     Raises
     ------
@@ -45,6 +47,7 @@ class PointCloud:
     camera: NDArray[np.float64] | None = None
     from_parts: bool = False
     pixel_numbers: NDArray[np.int64] | None = None
+    other_cameras: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -57,6 +60,9 @@ class PointCloud:
         self._check_grid()
         if self.camera is not None and self.camera.shape != (3,):
             raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+        others = self.other_cameras
+        if others is not None and (self.camera is None or others.ndim != 2 or others.shape[1] != 3):
+            raise InputError(f"other_cameras must have shape (k, 3) and stand beside a camera, got {others.shape}")
         if self.camera is not None and not np.isfinite(self.camera).all():
             raise InputError(f"camera must be three finite numbers, got {self.camera.tolist()}; leave it out")
 

@@ -3,7 +3,7 @@
 Voxels belong to labels: where two objects share a cube, each keeps a point in it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +71,7 @@ def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
     """
     inverse, first, counts, means = _voxels(cloud.points, cloud.labels, size)
     colours = None if cloud.colours is None else cloud.colours[first]
-    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera)
+    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera, cloud.other_cameras)
     return VoxelCloud(thin, inverse, first, counts, size)
 
 
@@ -93,7 +93,10 @@ def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POI
         while len(voxels.points) > at_most:
             size *= 2
             voxels = voxels.merged(origin, size)
-    return PointCloud(voxels.points.astype(cloud.points.dtype), voxels.labels, voxels.colours, camera=cloud.camera)
+    points = voxels.points.astype(cloud.points.dtype)
+    return replace(
+        cloud, points=points, labels=voxels.labels, colours=voxels.colours, grid=None, pixel_numbers=None
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -1,4 +1,4 @@
-"""`Sight`: what the camera saw to be empty, as opposed to what it merely did not see."""
+"""`Sight`: what a camera saw to be empty, as opposed to what it merely did not see."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,7 +11,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """Lines of sight from the camera to every point of a cloud.
+    """Lines of sight from the camera, or from several cameras, to every point of a cloud.
 
     Parameters
     ----------
@@ -25,31 +25,37 @@ class Sight:
     radius: float
 
     def is_free(self, place: NDArray[np.float64]) -> bool:
-        """Whether the camera saw through `place`, (3,) metres: something behind it on the line, nothing before it.
+        """Whether a camera saw through `place`, (3,) metres: something behind it on the line, nothing before it.
 
         Where nothing at all was measured, nothing was seen. Without a camera there is no telling: True.
         """
         if self.cloud.camera is None or not len(self.cloud.points):
             return True
-        away = place - self.cloud.camera
+        return any(self._is_free_from(number, place) for number in range(len(self._cameras)))
+
+    def _is_free_from(self, number: int, place: NDArray[np.float64]) -> bool:
+        away = place - self._cameras[number]
         distance = float(np.linalg.norm(away))
         if distance == 0:
             return True
         reach = self.radius / distance
-        beside = self._directions - (away / distance)[:, None]
+        all_depths, directions = self._lines[number]
+        beside = directions - (away / distance)[:, None]
         near = beside[0] ** 2 + beside[1] ** 2 + beside[2] ** 2 <= reach * reach
-        depths = self._depths[near]
+        depths = all_depths[near]
         return bool((depths > distance + self.radius).any() and not (depths < distance - self.radius).any())
 
     @cached_property
-    def _rays(self) -> NDArray[np.float64]:
-        return self.cloud.points - np.asarray(self.cloud.camera)
+    def _cameras(self) -> tuple[NDArray[np.float64], ...]:
+        others = () if self.cloud.other_cameras is None else tuple(self.cloud.other_cameras)
+        return () if self.cloud.camera is None else (self.cloud.camera, *others)
 
     @cached_property
-    def _depths(self) -> NDArray[np.float64]:
-        return np.linalg.norm(self._rays, axis=1)
-
-    @cached_property
-    def _directions(self) -> NDArray[np.float64]:
-        """Unit vectors from the camera, one a column."""
-        return np.ascontiguousarray((self._rays / np.maximum(self._depths, 1e-9)[:, None]).T)
+    def _lines(self) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+        """For each camera, the distance of every point, and unit vectors to the points as columns."""
+        lines = []
+        for camera in self._cameras:
+            rays = self.cloud.points - camera
+            depths = np.linalg.norm(rays, axis=1)
+            lines.append((depths, np.ascontiguousarray((rays / np.maximum(depths, 1e-9)[:, None]).T)))
+        return tuple(lines)
