@@ -64,7 +64,7 @@ def test_clouds_come_back_in_order(tmp_path, kind):
         np.testing.assert_allclose(cloud.points[:, 0], np.arange(6) * 0.1 + k, atol=1e-6)
         assert cloud.labels.tolist() == [0, 1, 1, 2, 3, 3]
         assert cloud.colours.tolist() == [[10, 11, 12]] * 6
-        assert cloud.shape == (2, 3)
+        assert cloud.grid == (2, 3)
     assert read_bag_cloud(path, "/points", 1).points[0, 0] == 1.0
 
 

@@ -11,7 +11,7 @@ def bench(
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
             "long_user, log. Benefit: courier, recognition, lidar, worlds, contexts, relations, plans, pictures, "
-            "deep, deep_layouts, novelty, changing_types, bands. Statistics: evaluation."
+            "views, deep, deep_layouts, novelty, changing_types, bands. Statistics: evaluation."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

@@ -17,7 +17,8 @@ Files = dict[str, str | None]
 
 def perceive(
     clouds: Annotated[
-        list[str] | None, typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy or a rosbag; one or more.")
+        list[str] | None,
+        typer.Argument(metavar="CLOUD...", help="PCD, PLY, npz, npy, depth image or rosbag; one or more."),
     ] = None,
     up: Annotated[
         str, Option(metavar="table|z|X,Y,Z", help="Upward direction: the table's normal, +z, or a vector.")
@@ -31,6 +32,31 @@ def perceive(
     ] = None,
     colours: Annotated[
         int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")
+    ] = None,
+    intrinsics: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="Read a depth image with this camera: camera_info YAML, or JSON of fx fy cx cy."
+        ),
+    ] = None,
+    colour: Annotated[
+        str | None, Option(metavar="IMAGE", help="Colour image aligned with the depth image, PNG or JPEG.")
+    ] = None,
+    depth_scale: Annotated[
+        float | None, Option(help="Metres for each unit of depth [0.001 for whole numbers, 1 for floats].")
+    ] = None,
+    masks: Annotated[
+        str | None,
+        Option(
+            metavar="FILE", help="Masks of the objects: a label image (PNG), or labels or masks in npz or npy."
+        ),
+    ] = None,
+    table_mask: Annotated[
+        int | None, Option(help="Number of the table's mask [the plane without a mask is the table].")
+    ] = None,
+    poses: Annotated[
+        str | None,
+        Option(metavar="FILE", help="The clouds are views of one scene with these camera-to-world poses."),
     ] = None,
     model: Annotated[
         str | None,
@@ -69,6 +95,7 @@ def perceive(
 
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
+    With --poses, the clouds are views of one scene and give one document.
     A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
     perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
     several clouds, and --watch, need it.
@@ -80,11 +107,15 @@ def perceive(
         )  # fmt: skip
     _one_thread_for_matrices()
     from lifelore.agent.perceive.perceive import PerceiveSettings
+    from lifelore.agent.perceive.source_files import SourceFiles
 
+    beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
     settings = PerceiveSettings(
-        direction(up), units, labels, _cut(segment, colours), model, memory, min_confidence, goal
+        direction(up), units, labels, _cut(segment, colours), model, memory, min_confidence, goal, beside
     )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
+    if watch is not None and poses is not None:
+        raise typer.BadParameter("--watch perceives each cloud alone: leave --poses out")
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)
     if watch is not None:
@@ -93,6 +124,8 @@ def perceive(
     def source(cloud: str):
         return _out_of_bag(cloud, topic, index or 0, units, labels) if is_bag(cloud) else cloud
 
+    if poses is not None:
+        return _views(clouds or [], source, settings, files, poses, as_json)
     if clouds and len(clouds) > 1:
         return _several(clouds, source, settings, files, as_json)
     return _one(clouds[0], source, settings, files, as_json) if clouds else 0
@@ -133,6 +166,28 @@ def _several(clouds: list[str], source: Callable[[str], Any], settings: Any, fil
     if as_json:
         print_json(document)
     return INTERRUPTED if stop.is_set() else 2 if document["failed"] else 0
+
+
+def _views(
+    clouds: list[str],
+    source: Callable[[str], Any],
+    settings: Any,
+    files: Files,
+    poses: str,
+    as_json: bool,
+) -> int:
+    from lifelore.agent.perceive.scene_files import named_files
+    from lifelore.agent.perceive.views import perceive_views
+    from lifelore.app.console import print_json, progress_bar
+
+    own = named_files(clouds[0], **files)
+    with progress_bar("perceiving") as progress:
+        document = perceive_views(
+            clouds, settings, poses=poses, pddl=own.pddl, dot=own.dot, plot=own.plot,
+            read=source, progress=progress, notice=to_stderr,
+        )  # fmt: skip
+    print_json(document) if as_json else _print_scene(clouds[0], document, files)
+    return 0
 
 
 def _watched(folder: str, settings: Any, files: Files, as_json: bool) -> int:

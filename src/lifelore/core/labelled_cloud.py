@@ -25,6 +25,8 @@ class LabelledCloud:
     colours : (n, 3) uint8, optional
     camera : (3,) float64, optional
         Position of the camera, in the same frame.
+    other_cameras : (k, 3) float64, optional
+        Positions of further cameras, of a cloud that several views make.
 
     Raises
     ------
@@ -36,6 +38,7 @@ class LabelledCloud:
     labels: NDArray[np.int64]
     colours: NDArray[np.uint8] | None = None
     camera: NDArray[np.float64] | None = None
+    other_cameras: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -47,6 +50,9 @@ class LabelledCloud:
             raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
         if self.camera is not None and self.camera.shape != (3,):
             raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+        others = self.other_cameras
+        if others is not None and (self.camera is None or others.ndim != 2 or others.shape[1] != 3):
+            raise InputError(f"other_cameras must have shape (k, 3) and stand beside a camera, got {others.shape}")
 
     @property
     def objects(self) -> tuple[int, ...]:

@@ -43,9 +43,9 @@ def test_singles_stay_singles_and_doubles_doubles() -> None:
 
 
 def test_a_row_of_points_is_no_image() -> None:
-    assert cloud_from_columns(XYZ, shape=(1, 2)).shape is None
+    assert cloud_from_columns(XYZ, grid=(1, 2)).grid is None
     four = {name: np.zeros(4) for name in "xyz"}
-    assert cloud_from_columns(four, shape=(2, 2)).shape == (2, 2)
+    assert cloud_from_columns(four, grid=(2, 2)).grid == (2, 2)
 
 
 def test_a_missing_coordinate_is_named() -> None:

@@ -36,7 +36,7 @@ def test_every_array_comes_back():
 
 
 def test_an_image_of_points_keeps_its_shape_and_a_fourth_column_is_labels():
-    assert cloud_from_arrays(POINTS.reshape(2, 2, 3)).shape == (2, 2)
+    assert cloud_from_arrays(POINTS.reshape(2, 2, 3)).grid == (2, 2)
     cloud = cloud_from_arrays(np.column_stack([POINTS, [0, 1, 2, 3]]))
     assert cloud.points.tolist() == POINTS.tolist()
     assert cloud.labels.tolist() == [0, 1, 2, 3]

@@ -55,7 +55,7 @@ def test_text_by_hand() -> None:
     assert cloud.labels.tolist() == [1, 2]
     assert cloud.camera is not None
     assert cloud.camera.tolist() == [0.5, 0, 1]
-    assert cloud.shape is None
+    assert cloud.grid is None
 
 
 def test_padding_and_fields_of_several_numbers_are_passed_over() -> None:
@@ -65,7 +65,7 @@ def test_padding_and_fields_of_several_numbers_are_passed_over() -> None:
     header = b"FIELDS n x _ y z\nSIZE 4 4 1 4 8\nTYPE F F U F F\nCOUNT 3 1 5 1 1\nWIDTH 2\nHEIGHT 2\nDATA binary\n"
     cloud = read_pcd(header + rows.tobytes())
     assert cloud.points.tolist() == [[1, 5, 6], [2, 5, 7], [3, 5, 8], [4, 5, 9]]
-    assert cloud.shape == (2, 2)
+    assert cloud.grid == (2, 2)
 
 
 @pytest.mark.skipif("LIFELORE_DATA" not in os.environ, reason="LIFELORE_DATA names no data")
@@ -83,7 +83,7 @@ def test_real_scenes_agree_with_pypcd4(name: str) -> None:
     assert (cloud.labels == np.where((label > 0) & (label < 10), 1, label // 10)).all()
     assert cloud.colours is not None
     assert (cloud.colours[:, 1] == (raw["rgba"] >> 8 & 255)).all()
-    assert cloud.shape == (480, 640)
+    assert cloud.grid == (480, 640)
 
 
 @pytest.mark.parametrize(

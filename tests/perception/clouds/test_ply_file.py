@@ -22,6 +22,16 @@ def test_text_by_hand():
     assert cloud.camera is None
 
 
+def test_a_range_image_with_a_vertex_for_every_pixel_is_organised():
+    header = HEADER.replace("vertex 2", "vertex 4").replace(
+        "comment by hand", "obj_info num_cols 2\nobj_info num_rows 2"
+    )
+    rows = ROWS.replace("3 0 1 1\n", "0 0 0 1 2 3 2\n0 0 0 1 2 3 2\n3 0 1 1\n")
+    assert read_ply((header + rows).encode()).grid == (2, 2)
+    assert read_ply((header.replace("num_rows 2", "num_rows 3") + rows).encode()).grid is None
+    assert read_ply((HEADER + ROWS).encode()).grid is None
+
+
 @pytest.mark.parametrize("order", ["<", ">"])
 def test_binary_in_both_byte_orders(order):
     code = {"<": "binary_little_endian", ">": "binary_big_endian"}[order]

@@ -14,7 +14,7 @@ def test_a_point_is_measured_when_all_three_coordinates_are_finite() -> None:
     assert PointCloud(POINTS).measured.tolist() == [True, False, False, True]
 
 
-def test_only_keeps_what_belongs_together_and_forgets_the_image() -> None:
+def test_only_keeps_what_belongs_together_and_the_pixels() -> None:
     cloud = PointCloud(
         POINTS, np.array([0, 1, 2, 3]), np.arange(12, dtype=np.uint8).reshape(4, 3), (2, 2), np.ones(3)
     )
@@ -23,9 +23,17 @@ def test_only_keeps_what_belongs_together_and_forgets_the_image() -> None:
     assert part.colours is not None
     assert part.labels.tolist() == [3, 0]
     assert part.colours.tolist() == [[9, 10, 11], [0, 1, 2]]
-    assert part.shape is None
+    assert part.grid == (2, 2)
+    assert part.pixels.tolist() == [[1, 1], [0, 0]]
+    assert part.only(np.array([False, True])).pixels.tolist() == [[0, 0]]
     assert part.camera is cloud.camera
     assert PointCloud(POINTS, from_parts=True).only(np.array([0])).from_parts
+
+
+def test_pixels_are_rows_and_columns_of_an_organised_cloud() -> None:
+    assert PointCloud(POINTS, grid=(2, 2)).pixels.tolist() == [[0, 0], [0, 1], [1, 0], [1, 1]]
+    with pytest.raises(InputError, match="organised"):
+        PointCloud(POINTS).pixels  # noqa: B018
 
 
 def test_labels_of_nothing_but_zero_are_no_labels() -> None:
@@ -42,7 +50,11 @@ def test_labels_of_nothing_but_zero_are_no_labels() -> None:
         ({"labels": np.zeros(3, np.int64)}, "labels must be 4"),
         ({"labels": np.full(4, -1)}, "from 0"),
         ({"colours": np.zeros((4, 4), np.uint8)}, "colours must have shape"),
-        ({"shape": (3, 2)}, "must hold the 4 points"),
+        ({"grid": (3, 2)}, "must hold the 4 points"),
+        ({"pixel_numbers": np.arange(4)}, "numbers of pixels in a grid"),
+        ({"grid": (3, 2), "pixel_numbers": np.arange(3)}, "must be 4 numbers"),
+        ({"grid": (3, 2), "pixel_numbers": np.array([0, 1, 2, 6])}, "lie in 0 to 5"),
+        ({"grid": (3, 2), "pixel_numbers": np.array([0, 1, 2, -1])}, "lie in 0 to 5"),
         ({"camera": np.zeros(2)}, "camera must have shape"),
         ({"camera": np.array([0, np.nan, 0])}, "camera must be three finite numbers"),
         ({"camera": np.array([0, 0, -np.inf])}, "camera must be three finite numbers"),

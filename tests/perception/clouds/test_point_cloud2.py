@@ -30,7 +30,7 @@ def test_points_colours_and_shape(order):
     assert cloud.points[[0, 1, 3]].tolist() == [[0, 0.5, 1], [1, 0.5, 2], [3, 0.5, 4]]
     assert cloud.measured.tolist() == [True, True, False, True]
     assert cloud.colours.tolist() == [[1, 2, 3]] * 4
-    assert cloud.shape == (2, 2)
+    assert cloud.grid == (2, 2)
     assert cloud.camera.tolist() == [0, 0, 0]
 
 

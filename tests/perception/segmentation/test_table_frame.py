@@ -138,7 +138,7 @@ def test_planes_of_real_scenes(scene):
         row = next(row for row in csv.DictReader(file) if row["scene"] == scene)
     normal = np.array([float(row[name]) for name in ("nx", "ny", "nz")])
     cloud = read_cloud(folder / f"{scene}.pcd")
-    bare = PointCloud(cloud.points, None, cloud.colours, cloud.shape, cloud.camera)
+    bare = PointCloud(cloud.points, None, cloud.colours, cloud.grid, cloud.camera)
     for given in (cloud, bare):
         plane = table_plane(given)
         # A fifth of a degree tilts a height by 1.7 mm across half a table, the sensor's own noise.

@@ -26,6 +26,18 @@ def test_free_is_what_something_is_seen_behind():
     assert not sight([[0, 1.001, 0]]).is_free(place)
 
 
+def test_what_any_camera_saw_through_is_free():
+    place = np.array([0, 1.0, 0])
+    points = np.array([[0, 0.5, 0], [0, 2.0, 0], [-2.0, 1, 0]])
+    labels = np.full(3, 2)
+    # The first camera sees (0, 0.5, 0) before the place; the second looks along -x and sees (-2, 1, 0) behind it.
+    assert not Sight(LabelledCloud(points, labels, camera=CAMERA), 0.01).is_free(place)
+    both = LabelledCloud(points, labels, camera=CAMERA, other_cameras=np.array([[3.0, 1, 0]]))
+    assert Sight(both, 0.01).is_free(place)
+    away = LabelledCloud(points, labels, camera=CAMERA, other_cameras=np.array([[0.0, 1, 3]]))
+    assert not Sight(away, 0.01).is_free(place)
+
+
 def test_without_a_camera_there_is_no_telling():
     assert sight([[0, 0.5, 0]], camera=None).is_free(np.array([0, 1.0, 0]))
 

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 from numpy.typing import NDArray
 
 from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files, write_scene_files
+from lifelore.agent.perceive.source_files import NO_SOURCE_FILES, SourceFiles, read_source
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
-from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
 
@@ -52,6 +52,8 @@ class PerceiveSettings:
         `planning_state.PLAN_CONFIDENCE` for the planning problem.
     goal : str, optional
         Goal of the planning problem, see `planning_goal`.
+    beside : SourceFiles
+        Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
 
     Raises
     ------
@@ -67,6 +69,7 @@ class PerceiveSettings:
     memory: str | None = None
     min_confidence: float | None = None
     goal: str | None = None
+    beside: SourceFiles = NO_SOURCE_FILES
 
     def __post_init__(self) -> None:
         if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
@@ -120,7 +123,8 @@ def perceive(
     Parameters
     ----------
     source : path, (n, 3) array or PointCloud
-        A source that `read_cloud` reads, or a cloud (for example from a rosbag).
+        A source that `read_cloud` reads, a depth image (with `settings.beside.intrinsics`), or a cloud (for
+        example from a rosbag).
     settings : PerceiveSettings
     pddl, dot, plot : str, optional
         Files to write: a planning problem (its domain beside it, as ``NAME-domain.pddl``), a graph for Graphviz,
@@ -162,7 +166,7 @@ def perceived(
     """As `perceive`, with a loaded model, or None for the shipped model, and checked files."""
     began = time.perf_counter()
     _report_stage(progress, 0)
-    cloud = _read(source, settings)
+    cloud = read_scene(source, settings)
     reading = time.perf_counter() - began
     from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.relations.relation_classifier import shipped_model
@@ -188,7 +192,9 @@ def perceived(
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:
     """Paths of the files that are read, with the model's; they must not be overwritten."""
-    read = [*sources, settings.model if settings.model and is_file_name(settings.model) else None]
+    sources = list(sources)
+    beside = [path for source in sources for path in settings.beside.of(source).paths]
+    read = [*sources, *beside, settings.model if settings.model and is_file_name(settings.model) else None]
     return [path for path in read if isinstance(path, str | os.PathLike)]
 
 
@@ -197,14 +203,14 @@ def _report_stage(progress: Progress | None, stage: int) -> None:
         progress(stage, len(STAGES), STAGES[stage])
 
 
-def _read(source: Source, settings: PerceiveSettings) -> PointCloud:
-    if not isinstance(source, PointCloud):
-        source = read_cloud(source, units=settings.units, labels=settings.labels)
-    if settings.segmentation is not None and source.is_labelled:
+def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
+    """Read the cloud of a source, with its files beside it; refuse a segmentation of a labelled cloud."""
+    cloud = read_source(source, settings.units, settings.labels, settings.up, settings.beside)
+    if settings.segmentation is not None and cloud.is_labelled:
         raise InputError(
             "segmentation (--segment) needs a cloud without labels, but this cloud has labels: leave it out"
         )
-    return source
+    return cloud
 
 
 def model_of(settings: PerceiveSettings) -> "RelationClassifier":

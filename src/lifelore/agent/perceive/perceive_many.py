@@ -29,6 +29,7 @@ from lifelore.agent.perceive.scene_files import (
     check_scene_files,
     named_files,
 )
+from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError, LifeloreError
 from lifelore.core.protocols import Progress
 from lifelore.perception.clouds.cloud_file import read_cloud
@@ -84,6 +85,8 @@ def perceive_many(
     """
     _check_settings(settings)
     check_goal(settings, pddl)
+    if len(sources) > 1:
+        settings.beside.check_for_many()
     files = [named_files(source, pddl, dot, plot) for source in sources]
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
@@ -139,6 +142,10 @@ def perceive_folder(
     """
     _check_settings(settings)
     check_goal(settings, pddl)
+    if settings.beside != NO_SOURCE_FILES:
+        raise InputError(
+            "watch perceives clouds alone: leave out intrinsics, colour, depth_scale, masks and table_mask"
+        )
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
     check_scene_files(named_files(NAME, pddl, dot, plot), files_read([], settings))

@@ -54,8 +54,7 @@ def photograph(
     rng: np.random.Generator,
     fewest: int = FEW_POINTS,
 ) -> Photograph | None:
-    """The camera's picture of the objects and of the table around them; None where an object has fewer points than
-    `fewest`."""
+    """What the camera sees of the objects and of the table; None where an object has less than `fewest` points."""
     rays = _rays_at(outlines, view, camera)
     world = rays.reshape(-1, 3) @ view.rotation.T
     hits, depth, normals = table.cast(view.position, world)

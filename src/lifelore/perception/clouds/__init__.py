@@ -1,5 +1,6 @@
-"""Point clouds: file formats, units, checks, voxels and distances between clouds.
+"""Point clouds: file formats, depth images, units, checks, voxels and distances between clouds.
 
-Read in this order: `point_cloud`, `cloud_file` (with `pcd_file`, `ply_file`, `npz_file`), `cloud_columns`,
-`label_rule`, `cloud_scale`, `voxel`; then `cell_cloud` and `nearest_points` for distances.
+Read in this order: `point_cloud`, `cloud_file` (with `pcd_file`, `ply_file`, `npz_file`), `depth_file` (with
+`camera_intrinsics`, `depth_image`), `mask_file`, `cloud_columns`, `label_rule`, `cloud_scale`, `voxel`; then
+`cell_cloud` and `nearest_points` for distances.
 """

@@ -33,7 +33,7 @@ def cast_to_header_type(column: NDArray[np.float64], dtype: np.dtype) -> NDArray
 def cloud_from_columns(
     columns: Mapping[str, NDArray],
     labels: str = "auto",
-    shape: tuple[int, int] | None = None,
+    grid: tuple[int, int] | None = None,
     camera: NDArray[np.float64] | None = None,
 ) -> PointCloud:
     """A cloud of the columns `x y z`, of colours where given, and of the first label column.
@@ -45,6 +45,9 @@ def cloud_from_columns(
         0–255, or floats 0–1). Labels as any of `LABEL_NAMES`.
     labels : {"auto", "plain", "parts"}
         See `label_rule`.
+    grid : (height, width), optional
+        Of the image whose pixels the points are, row by row; a height or width of 1 means no image.
+    camera : (3,), optional
 
     Raises
     ------
@@ -60,7 +63,7 @@ def cloud_from_columns(
         _points(columns),
         None if named is None else ids_from_labels(named, labels),
         _colours(columns),
-        shape if shape and shape[0] > 1 and shape[1] > 1 else None,
+        grid if grid and grid[0] > 1 and grid[1] > 1 else None,
         camera,
     )
 

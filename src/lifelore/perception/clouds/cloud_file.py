@@ -1,7 +1,6 @@
 """`read_cloud`: a cloud from a PCD, PLY, npz or npy file, or from an array; every failure is one line."""
 
 import os
-import warnings
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -11,16 +10,19 @@ from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.cloud_scale import in_metres
+from lifelore.perception.clouds.file_content import file_content, one_line_errors
 from lifelore.perception.clouds.label_rule import check_rule, ids_from_labels
 from lifelore.perception.clouds.npz_file import cloud_from_arrays, read_npy, read_npz
 from lifelore.perception.clouds.pcd_file import read_pcd
 from lifelore.perception.clouds.ply_file import read_ply
 from lifelore.perception.clouds.point_cloud import PointCloud
 
-MAX_FILE_BYTES = 4 * 2**30
+KINDS = "a PCD, PLY, npz or npy file"
 _READERS: dict[str, Callable[[bytes, str], PointCloud]] = {
     ".pcd": read_pcd, ".ply": read_ply, ".npz": read_npz, ".npy": read_npy,
 }  # fmt: skip
+IMAGES = (b"\x89PNG", b"\xff\xd8\xff", b"II*\0", b"MM\0*")
+"""First bytes of PNG, JPEG and TIFF files."""
 _BAGS = (b"#ROSBAG", b"\x89MCAP0", b"SQLite format 3")
 
 
@@ -51,16 +53,17 @@ def read_cloud(source: str | os.PathLike[str] | NDArray, *, units: str = "m", la
     """
     check_rule(labels)
     if isinstance(source, np.ndarray):
-        return _one_line_errors(
+        return one_line_errors(
             "array",
+            "a cloud",
             lambda: _with_objects(in_metres(cloud_from_arrays(source, rule="plain"), units), labels),
         )
     path = Path(source)
-    return _one_line_errors(str(path), lambda: _with_objects(in_metres(_decoded(path), units), labels))
+    return one_line_errors(str(path), "a cloud", lambda: _with_objects(in_metres(_decoded(path), units), labels))
 
 
 def _decoded(path: Path) -> PointCloud:
-    content = _content(path)
+    content = file_content(path, KINDS)
     return _reader(path, content)(content, "plain")
 
 
@@ -70,39 +73,6 @@ def _with_objects(cloud: PointCloud, rule: str) -> PointCloud:
         return cloud
     ids = ids_from_labels(cloud.labels, rule)
     return replace(cloud, labels=ids, from_parts=not np.array_equal(ids, cloud.labels))
-
-
-def _one_line_errors(name: str, read: Callable[[], PointCloud]) -> PointCloud:
-    try:
-        # A damaged number may overflow in between; later checks judge the result.
-        with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return read()
-    except InputError as error:
-        raise InputError(f"{name}: {_one_line(str(error))}") from None
-    except MemoryError:
-        raise InputError(f"{name}: does not fit into memory; crop or thin the cloud") from None
-    except Exception as error:  # a damaged file can fail anywhere in its decoder
-        raise InputError(f"{name}: is damaged or not a cloud ({_one_line(str(error))}); write it again") from error
-
-
-def _one_line(text: str) -> str:
-    # A damaged file may hold any characters, including control characters of a terminal.
-    return "".join(letter if letter.isprintable() else "?" for letter in " ".join(text.split()))[:300]
-
-
-def _content(path: Path) -> bytes:
-    try:
-        # Reading a pipe or a device could block for ever.
-        if path.exists() and not path.is_file():
-            raise InputError("is no file; give a PCD, PLY, npz or npy file")
-        if path.stat().st_size > MAX_FILE_BYTES:
-            raise InputError(f"is larger than {MAX_FILE_BYTES // 2**30} GiB; crop or thin the cloud")
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise InputError("no such file") from None
-    except (OSError, ValueError) as error:
-        raise InputError(f"cannot be read ({error})") from None
 
 
 def _reader(path: Path, content: bytes) -> Callable[[bytes, str], PointCloud]:
@@ -116,6 +86,10 @@ def _reader(path: Path, content: bytes) -> Callable[[bytes, str], PointCloud]:
         return read_pcd
     if content.startswith(_BAGS):
         raise InputError("is a rosbag, not a cloud; pass the .bag or .mcap file, or the bag's folder (extra ros)")
+    if content.startswith(IMAGES):
+        raise InputError(
+            "is an image, not a cloud; a depth image needs the camera's intrinsics (--intrinsics FILE)"
+        )
     if path.suffix.lower() in _READERS and content:
         return _READERS[path.suffix.lower()]
-    raise InputError(f"is {'no cloud we know' if content else 'empty'}; give a PCD, PLY, npz or npy file")
+    raise InputError(f"is {'no cloud we know' if content else 'empty'}; give {KINDS}")

@@ -1,5 +1,7 @@
 """Checks of a new cloud: units are metres, and stray points are removed."""
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -48,7 +50,7 @@ def in_metres(cloud: PointCloud, units: str = "m") -> PointCloud:
         measured &= np.abs(points[:, axis] - middle[axis].astype(points.dtype)) <= STRAY
     points[~measured] = np.nan
     camera = None if cloud.camera is None else cloud.camera * UNITS[units]
-    return PointCloud(points, cloud.labels, cloud.colours, cloud.shape, camera)
+    return replace(cloud, points=points, camera=camera)
 
 
 def check_units(units: str) -> None:

@@ -23,11 +23,9 @@ def read_npz(content: bytes, labels: str = "auto") -> PointCloud:
     InputError
         The archive is damaged, `points` is missing, or an array breaks its rule.
     """
-    with zipfile.ZipFile(BytesIO(content)) as archive:
-        held = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
-        arrays = {name: _array(archive, held[name], name) for name in _NAMES if name in held}
+    arrays, held = arrays_of_npz(content, _NAMES)
     if "points" not in arrays:
-        raise InputError(f"has no array 'points'; its arrays are {', '.join(held)[:200] or 'none'}")
+        raise InputError(f"has no array 'points'; its arrays are {held or 'none'}")
     return cloud_from_arrays(
         arrays["points"],
         arrays.get("labels"),
@@ -39,7 +37,7 @@ def read_npz(content: bytes, labels: str = "auto") -> PointCloud:
 
 def read_npy(content: bytes, labels: str = "auto") -> PointCloud:
     """The cloud in the bytes of an npy file; see `cloud_from_arrays` for its shapes."""
-    return cloud_from_arrays(_checked(BytesIO(content), len(content), "points"), rule=labels)
+    return cloud_from_arrays(array_of_npy(content, "points"), rule=labels)
 
 
 def cloud_from_arrays(
@@ -54,7 +52,8 @@ def cloud_from_arrays(
     Parameters
     ----------
     points : (n, 3) or (rows, columns, 3) numbers
-        With a fourth column for labels where `labels` is not given.
+        Three axes make an organised cloud, with `PointCloud.grid`. With a fourth column for labels where
+        `labels` is not given.
     labels : (n,) or (rows, columns) numbers, optional
         Turned to ids by `rule`, see `label_rule`.
     colours : (n, 3) or (rows, columns, 3), optional
@@ -72,7 +71,7 @@ def cloud_from_arrays(
         raise InputError(
             f"points must be numbers of shape (n, 3) or (rows, columns, 3), got {table.dtype} {table.shape}"
         )
-    shape = (table.shape[0], table.shape[1]) if table.ndim == 3 else None
+    grid = (table.shape[0], table.shape[1]) if table.ndim == 3 else None
     table = table.reshape(-1, table.shape[-1])
     if labels is None and table.shape[1] == 4:
         labels = table[:, 3]
@@ -81,9 +80,33 @@ def cloud_from_arrays(
         np.ascontiguousarray(table[:, :3], kind),
         None if labels is None else ids_from_labels(np.asarray(labels).reshape(-1), rule),
         None if colours is None else colours_as_bytes(np.asarray(colours).reshape(-1, 3)),
-        shape,
+        grid,
         None if camera is None else np.asarray(camera, np.float64),
     )
+
+
+def array_of_npy(content: bytes, name: str) -> NDArray:
+    """The array in the bytes of an npy file; `name` is for the messages.
+
+    Raises
+    ------
+    InputError
+        It holds no numbers, or its header contradicts its size.
+    """
+    return _checked(BytesIO(content), len(content), name)
+
+
+def arrays_of_npz(content: bytes, names: tuple[str, ...]) -> tuple[dict[str, NDArray], str]:
+    """The arrays of these names in the bytes of an npz file, and the names of all its arrays for a message.
+
+    Raises
+    ------
+    InputError
+        An array holds no numbers, or its header contradicts its size.
+    """
+    with zipfile.ZipFile(BytesIO(content)) as archive:
+        held = {info.filename.removesuffix(".npy"): info for info in archive.infolist()}
+        return {name: _array(archive, held[name], name) for name in names if name in held}, ", ".join(held)[:200]
 
 
 def _array(archive: zipfile.ZipFile, info: zipfile.ZipInfo, name: str) -> NDArray:

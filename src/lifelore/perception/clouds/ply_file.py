@@ -1,6 +1,7 @@
 """PLY files: the vertices of an ascii or binary file, with colours and a label property where it has them.
 
-The sizes in the header are compared with the bytes that follow before any decoding. Faces and other elements are
+The sizes in the header are compared with the bytes that follow before any decoding. Lines ``obj_info num_rows``
+and ``num_cols`` make an organised cloud if the vertices are as many as these pixels. Faces and other elements are
 skipped. The tests compare with trimesh: it reads the same vertices, but took 2.5 to 4 times as long, and its
 import adds 0.5 s to each start.
 """
@@ -52,19 +53,21 @@ def read_ply(content: bytes, labels: str = "auto") -> PointCloud:
     InputError
         The header breaks a rule of the format, or the data does not fit it.
     """
-    order, elements, start = _header(content)
+    order, elements, start, sides = _header(content)
     before, vertices = _up_to_vertices(elements)
     data = memoryview(content)[start:]
     columns = _from_text(before, vertices, data) if order == "" else _from_records(order, before, vertices, data)
-    return cloud_from_columns(columns, labels)
+    grid = (sides.get("num_rows", 0), sides.get("num_cols", 0))
+    return cloud_from_columns(columns, labels, grid if grid[0] * grid[1] == vertices.n else None)
 
 
-def _header(content: bytes) -> tuple[str, list[_Element], int]:
+def _header(content: bytes) -> tuple[str, list[_Element], int, dict[str, int]]:
+    """Order of bytes, elements, bytes of the header, and the sides of a range image by name."""
     end = content.find(b"end_header", 0, _MAX_HEADER_BYTES)
     stop = content.find(b"\n", end, end + 20)
     if not content.startswith(b"ply") or end < 0 or stop < 0:
         raise InputError("PLY header has no end_header line; the file is cut off or no PLY file")
-    order, elements = None, []
+    order, elements, sides = None, [], {}
     for line in content[:end].decode("ascii", "replace").splitlines()[1:]:
         match line.split():
             case ["format", name, _] if name in _ORDERS:
@@ -75,13 +78,15 @@ def _header(content: bytes) -> tuple[str, list[_Element], int]:
                 elements[-1].properties.append((name, None))
             case ["property", code, name] if elements and code in _CODES:
                 elements[-1].properties.append((name, _CODES[code]))
+            case ["obj_info", ("num_rows" | "num_cols") as name, n]:
+                sides[name] = _whole(n)
             case [] | ["comment", *_] | ["obj_info", *_]:
                 pass
             case _:
                 raise InputError(f"PLY header line is not understood: {line[:60]!r}")
     if order is None:
         raise InputError(f"PLY header names no format; it must be one of {', '.join(_ORDERS)}")
-    return order, elements, stop + 1
+    return order, elements, stop + 1, sides
 
 
 def _whole(word: str) -> int:

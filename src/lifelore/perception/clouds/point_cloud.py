@@ -1,11 +1,13 @@
 """`PointCloud`: points of a sensor or a file in the sensor's frame, with optional labels and colours."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
+from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
+from lifelore.perception.clouds.depth_image import metres_of_depth
 
 
 @dataclass(frozen=True, eq=False)
@@ -20,12 +22,17 @@ class PointCloud:
         Ids as in `LabelledCloud`: 0 nothing, 1 the table, 2 and above objects. None without labels.
     colours : (n, 3) uint8, optional
         Red, green, blue.
-    shape : (rows, columns), optional
-        Of the organised image, row by row; None where the points have no such order.
+    grid : (height, width), optional
+        Pixels of the sensor's image, if the cloud is organised; None if the points belong to no image.
     camera : (3,) float64, optional
         Position of the camera, in the frame of the points; finite.
     from_parts : bool
         Whether the file labelled parts of objects; `labels` are then the objects of these parts.
+    pixel_numbers : (n,) int64, optional
+        Number of each point's pixel in the `grid`, row by row from 0. None if the points are all pixels in this
+        order. `only` keeps them, so that a part of an organised cloud still knows its neighbours in the image.
+    other_cameras : (k, 3) float64, optional
+        Positions of further cameras, of a cloud that several views make.
 
     Raises
     ------
@@ -36,9 +43,11 @@ class PointCloud:
     points: NDArray[np.floating]
     labels: NDArray[np.int64] | None = None
     colours: NDArray[np.uint8] | None = None
-    shape: tuple[int, int] | None = None
+    grid: tuple[int, int] | None = None
     camera: NDArray[np.float64] | None = None
     from_parts: bool = False
+    pixel_numbers: NDArray[np.int64] | None = None
+    other_cameras: NDArray[np.float64] | None = None
 
     def __post_init__(self) -> None:
         n = len(self.points)
@@ -48,12 +57,98 @@ class PointCloud:
             raise InputError(f"labels must be {n} whole numbers from 0, got shape {self.labels.shape}")
         if self.colours is not None and self.colours.shape != (n, 3):
             raise InputError(f"colours must have shape ({n}, 3), got {self.colours.shape}")
-        if self.shape is not None and self.shape[0] * self.shape[1] != n:
-            raise InputError(f"shape {self.shape} must hold the {n} points")
+        self._check_grid()
         if self.camera is not None and self.camera.shape != (3,):
             raise InputError(f"camera must have shape (3,), got {self.camera.shape}")
+        others = self.other_cameras
+        if others is not None and (self.camera is None or others.ndim != 2 or others.shape[1] != 3):
+            raise InputError(f"other_cameras must have shape (k, 3) and stand beside a camera, got {others.shape}")
         if self.camera is not None and not np.isfinite(self.camera).all():
             raise InputError(f"camera must be three finite numbers, got {self.camera.tolist()}; leave it out")
+
+    @classmethod
+    def from_depth(
+        cls,
+        depth: NDArray,
+        intrinsics: CameraIntrinsics,
+        colours: NDArray[np.uint8] | None = None,
+        *,
+        depth_scale: float | None = None,
+    ) -> "PointCloud":
+        """The organised cloud of a depth image, in the camera's frame: x right, y down, z forward.
+
+        Parameters
+        ----------
+        depth : (height, width) numbers
+            Depth along the optical axis; zero, negative and NaN mean that nothing was measured.
+        intrinsics : CameraIntrinsics
+            Of an image of this size.
+        colours : (height, width, 3) uint8, optional
+            Aligned with the depth.
+        depth_scale : float, optional
+            Metres for each unit of depth. Default: 0.001 for integers, 1 for floats.
+
+        Returns
+        -------
+        PointCloud
+            One point for each pixel, row by row, NaN where nothing was measured; `grid` is (height, width) and
+            `camera` the origin.
+
+        Raises
+        ------
+        InputError
+            Shapes differ, a type or the scale breaks its rule, or nothing was measured.
+
+        Examples
+        --------
+        >>> camera = CameraIntrinsics(2, 1, fx=100.0, fy=100.0, cx=0.0, cy=0.0)
+        >>> PointCloud.from_depth(np.array([[500, 1000]], np.uint16), camera).points.round(3).tolist()
+        [[0.0, 0.0, 0.5], [0.01, 0.0, 1.0]]
+        """
+        z = metres_of_depth(depth, depth_scale)
+        if z.shape != intrinsics.grid:
+            raise InputError(
+                f"the depth image has {z.shape[1]} × {z.shape[0]} pixels, but the intrinsics are of"
+                f" {intrinsics.width} × {intrinsics.height}: give the intrinsics of this image"
+            )
+        if colours is not None and colours.shape[:2] != z.shape:
+            raise InputError(
+                f"the colour image has {colours.shape[1]} × {colours.shape[0]} pixels, the depth image"
+                f" {z.shape[1]} × {z.shape[0]}: give a colour image aligned with the depth"
+            )
+        rays = intrinsics.rays().astype(z.dtype)
+        points = np.stack([rays[..., 0] * z, rays[..., 1] * z, z], axis=-1).reshape(-1, 3)
+        flat = None if colours is None else np.ascontiguousarray(colours.reshape(-1, 3))
+        return cls(points, None, flat, intrinsics.grid, np.zeros(3))
+
+    def _check_grid(self) -> None:
+        n, pixels = len(self.points), 0 if self.grid is None else self.grid[0] * self.grid[1]
+        if self.pixel_numbers is None:
+            if self.grid is not None and pixels != n:
+                raise InputError(f"grid {self.grid} must hold the {n} points; give pixel_numbers for a part of it")
+        elif self.grid is None or self.pixel_numbers.shape != (n,):
+            raise InputError(
+                f"pixel_numbers must be {n} numbers of pixels in a grid, "
+                f"got shape {self.pixel_numbers.shape} and grid {self.grid}"
+            )
+        elif n and not 0 <= self.pixel_numbers.min() <= self.pixel_numbers.max() < pixels:
+            raise InputError(f"pixel_numbers must lie in 0 to {pixels - 1} for grid {self.grid}")
+
+    @property
+    def pixels(self) -> NDArray[np.int64]:
+        """(n, 2) int64: row and column of each point in the grid.
+
+        Raises
+        ------
+        InputError
+            The cloud is not organised.
+        """
+        if self.grid is None:
+            raise InputError(
+                "pixels need an organised cloud (grid of height and width), but this cloud has no grid"
+            )
+        numbers = np.arange(len(self.points)) if self.pixel_numbers is None else self.pixel_numbers
+        return np.stack(np.divmod(numbers, self.grid[1]), axis=1)
 
     @property
     def measured(self) -> NDArray[np.bool_]:
@@ -66,14 +161,17 @@ class PointCloud:
         return self.labels is not None and bool(self.labels.any())
 
     def only(self, keep: NDArray) -> "PointCloud":
-        """The points that `keep` ((n,) bool, or indices) names; the order of the image is lost."""
+        """The points that `keep` ((n,) bool, or indices) names; points of an organised cloud keep their pixels."""
         rows = np.flatnonzero(keep) if keep.dtype == bool else keep
-        return PointCloud(
-            self.points.take(rows, axis=0),
-            None if self.labels is None else self.labels[rows],
-            None if self.colours is None else self.colours.take(rows, axis=0),
-            camera=self.camera,
-            from_parts=self.from_parts,
+        pixel_numbers = self.pixel_numbers
+        if self.grid is not None:
+            pixel_numbers = rows.astype(np.int64) if pixel_numbers is None else pixel_numbers[rows]
+        return replace(
+            self,
+            points=self.points.take(rows, axis=0),
+            labels=None if self.labels is None else self.labels[rows],
+            colours=None if self.colours is None else self.colours.take(rows, axis=0),
+            pixel_numbers=pixel_numbers,
         )
 
 

@@ -3,7 +3,7 @@
 Voxels belong to labels: where two objects share a cube, each keeps a point in it.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,15 +71,15 @@ def voxelised(cloud: LabelledCloud, size: float = VOXEL) -> VoxelCloud:
     """
     inverse, first, counts, means = _voxels(cloud.points, cloud.labels, size)
     colours = None if cloud.colours is None else cloud.colours[first]
-    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera)
+    thin = LabelledCloud(means, cloud.labels[first], colours, cloud.camera, cloud.other_cameras)
     return VoxelCloud(thin, inverse, first, counts, size)
 
 
 def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POINTS) -> PointCloud:
     """The cloud itself while it has at most `at_most` measured points; else its voxels, in bounded memory.
 
-    The cloud is voxelised by chunks of 10⁶ points. Where the voxels are more than `at_most`, their size
-    doubles until they are not.
+    Voxels are means of points, so that they have no pixels (`grid` is None). The cloud is voxelised by chunks of
+    10⁶ points. Where the voxels are more than `at_most`, their size doubles until they are not.
     """
     measured = cloud.measured
     if np.count_nonzero(measured) <= at_most:
@@ -93,7 +93,10 @@ def thinned(cloud: PointCloud, size: float = VOXEL, at_most: int = MAX_SCENE_POI
         while len(voxels.points) > at_most:
             size *= 2
             voxels = voxels.merged(origin, size)
-    return PointCloud(voxels.points.astype(cloud.points.dtype), voxels.labels, voxels.colours, camera=cloud.camera)
+    points = voxels.points.astype(cloud.points.dtype)
+    return replace(
+        cloud, points=points, labels=voxels.labels, colours=voxels.colours, grid=None, pixel_numbers=None
+    )
 
 
 @dataclass(frozen=True, eq=False)

@@ -59,10 +59,11 @@ def to_scene(
     rotation, shift = _pose(points, cloud, up)
     points = points @ rotation.T + shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
+    others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is None:
         labels = segmented(points, cloud.colours, segmentation or SegmentationSettings())
-    return LabelledCloud(points, labels, cloud.colours, camera)
+    return LabelledCloud(points, labels, cloud.colours, camera, others)
 
 
 def _check_camera(camera: NDArray[np.float64] | None) -> None:

@@ -1,4 +1,4 @@
-"""`Sight`: what the camera saw to be empty, as opposed to what it merely did not see."""
+"""`Sight`: what a camera saw to be empty, as opposed to what it merely did not see."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -14,7 +14,7 @@ _WIDER = 1.001
 
 @dataclass(frozen=True, eq=False)
 class Sight:
-    """Lines of sight from the camera to every point of a cloud.
+    """Lines of sight from the camera, or from several cameras, to every point of a cloud.
 
     Parameters
     ----------
@@ -28,41 +28,42 @@ class Sight:
     radius: float
 
     def is_free(self, place: NDArray[np.float64]) -> bool:
-        """Whether the camera saw through `place`, (3,) metres: something behind it on the line, nothing before it.
+        """Whether a camera saw through `place`, (3,) metres: something behind it on the line, nothing before it.
 
         Where nothing at all was measured, nothing was seen. Without a camera there is no telling: True.
         """
         if self.cloud.camera is None or not len(self.cloud.points):
             return True
-        away = place - self.cloud.camera
+        return any(self._is_free_from(number, place) for number in range(len(self._cameras)))
+
+    def _is_free_from(self, number: int, place: NDArray[np.float64]) -> bool:
+        away = place - self._cameras[number]
         distance = float(np.linalg.norm(away))
         if distance == 0:
             return True
         reach, towards = self.radius / distance, away / distance
+        all_depths, directions = self._lines[number]
         # Slightly wider than the reach, so that rounding loses no point.
         edges = towards[0] - _WIDER * reach, towards[0] + _WIDER * reach
-        beside = slice(*np.searchsorted(self._directions[0], edges))
-        apart = self._directions[:, beside] - towards[:, None]
+        beside = slice(*np.searchsorted(directions[0], edges))
+        apart = directions[:, beside] - towards[:, None]
         near = apart[0] ** 2 + apart[1] ** 2 + apart[2] ** 2 <= reach * reach
-        depths = self._depths[beside][near]
+        depths = all_depths[beside][near]
         return bool((depths > distance + self.radius).any() and not (depths < distance - self.radius).any())
 
     @cached_property
-    def _rays(self) -> NDArray[np.float64]:
-        return self.cloud.points - np.asarray(self.cloud.camera)
+    def _cameras(self) -> tuple[NDArray[np.float64], ...]:
+        others = () if self.cloud.other_cameras is None else tuple(self.cloud.other_cameras)
+        return () if self.cloud.camera is None else (self.cloud.camera, *others)
 
     @cached_property
-    def _sorted(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-        """Unit vectors from the camera, one a column, ascending in x; and the distances of their points."""
-        depths = np.linalg.norm(self._rays, axis=1)
-        directions = (self._rays / np.maximum(depths, 1e-9)[:, None]).T
-        order = np.argsort(directions[0])
-        return np.ascontiguousarray(directions[:, order]), depths[order]
-
-    @property
-    def _directions(self) -> NDArray[np.float64]:
-        return self._sorted[0]
-
-    @property
-    def _depths(self) -> NDArray[np.float64]:
-        return self._sorted[1]
+    def _lines(self) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+        """For each camera: distances of the points, and unit vectors to them as columns, ascending in x."""
+        lines = []
+        for camera in self._cameras:
+            rays = self.cloud.points - camera
+            depths = np.linalg.norm(rays, axis=1)
+            directions = (rays / np.maximum(depths, 1e-9)[:, None]).T
+            order = np.argsort(directions[0])
+            lines.append((depths[order], np.ascontiguousarray(directions[:, order])))
+        return tuple(lines)

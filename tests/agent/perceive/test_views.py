@@ -1,0 +1,79 @@
+"""Several views of a simulated scene: fused with their true poses, they give the scene's relations once."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.agent.perceive.perceive import PerceiveSettings
+from lifelore.agent.perceive.source_files import SourceFiles
+from lifelore.agent.perceive.views import perceive_views
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.depth_camera import KINECT
+from lifelore.domains.tabletop.pose import Pose
+from lifelore.domains.tabletop.tabletop import sample_scene
+from lifelore.domains.tabletop.views import views_around
+
+pytest.importorskip("mujoco")
+
+
+def matrix(pose: Pose) -> np.ndarray:
+    whole = np.eye(4)
+    whole[:3, :3], whole[:3, 3] = pose.rotation, pose.position
+    return whole
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Two views of a scene in their own frames, and the poses of their cameras."""
+    path = tmp_path_factory.mktemp("views")
+    scene = sample_scene(5, 0)
+    photos = views_around(scene, [0.0, 2.0], KINECT, stream(5, "tests", "views"))
+    for name, photo in zip("ab", photos, strict=True):
+        local = (photo.cloud.points - photo.view.position) @ photo.view.rotation
+        np.savez(path / f"{name}.npz", points=local, labels=photo.cloud.labels, camera=np.zeros(3))
+    (path / "poses.json").write_text(json.dumps([matrix(photo.view).tolist() for photo in photos]))
+    return path
+
+
+def names(folder: Path) -> list[str]:
+    return [str(folder / "a.npz"), str(folder / "b.npz")]
+
+
+def test_two_views_give_one_scene(folder: Path) -> None:
+    document = perceive_views(names(folder), poses=str(folder / "poses.json"))
+    truth = {
+        (label.a, "table" if label.b == TABLE else label.b)
+        for label in sample_scene(5, 0).truth
+        if label.relation == "on"
+    }
+    found = {(r["a"], r["b"]) for r in document["relations"] if r["relation"] == "on"}
+    assert found == truth
+    assert [view["source"] for view in document["views"]] == names(folder)
+    np.testing.assert_allclose(document["views"][0]["pose"], np.eye(4), atol=1e-6)
+    first, second = np.array(json.loads((folder / "poses.json").read_text()))
+    np.testing.assert_allclose(document["views"][1]["pose"], np.linalg.inv(first) @ second, atol=1e-6)
+    assert all(view["points"] > 10_000 for view in document["views"])
+
+
+def test_views_of_the_turned_camera_see_the_objects_where_they_are() -> None:
+    scene = sample_scene(5, 0)
+    (photo,) = views_around(scene, [0.0], KINECT, stream(5, "tests", "same view"))
+    # The same camera without a turn: the same clean points, except at pixels that one of the two lost.
+    keys = {tuple(point) for point in scene.clean.round(4)}
+    assert np.mean([tuple(point) in keys for point in photo.clean.round(4)]) > 0.9
+
+
+def test_what_does_not_go_together_is_refused(folder: Path) -> None:
+    both, poses = names(folder), str(folder / "poses.json")
+    with pytest.raises(InputError, match="two or more clouds"):
+        perceive_views(both[:1], poses=poses)
+    with pytest.raises(InputError, match="leave out --masks"):
+        perceive_views(both, PerceiveSettings(beside=SourceFiles(masks="m.png")), poses=poses)
+    with pytest.raises(InputError, match="must hold 3 poses"):
+        perceive_views([*both, both[0]], poses=poses)
+    with pytest.raises(InputError, match="would be overwritten"):
+        perceive_views(both, poses=poses, dot=poses)
