@@ -39,7 +39,7 @@ class PerceiveSettings:
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     segmentation : SegmentationSettings, optional
-        Segmentation of a cloud without labels, default by distance; with a labelled cloud it is an error.
+        Segmentation of a cloud without labels, default by convexity; with a labelled cloud it is an error.
     model : str, optional
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional

@@ -20,6 +20,7 @@ BENCHES = {
     "perceive": "perception",
     "relations": "perception",
     "pictures": "perception",
+    "segmentation": "perception",
     "factory": "action",
     "deep": "action",
     "reuse": "interaction",
@@ -53,8 +54,9 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs
-        of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
+        lives; for ``recognition``: offices; for ``relations`` and ``segmentation``: lots of scenes, judged
+        together; for ``deep``: runs of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``:
+        libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -61,7 +61,7 @@ def to_scene(
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is None:
-        labels = segmented(points, cloud.colours, segmentation or SegmentationSettings())
+        labels = segmented(points, cloud.colours, segmentation or SegmentationSettings(), camera)
     return LabelledCloud(points, labels, cloud.colours, camera)
 
 
