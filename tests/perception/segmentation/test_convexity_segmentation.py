@@ -51,9 +51,8 @@ def cut(parts, camera=CAMERA, seed=0):
     """The objects' true and found labels."""
     points = np.concatenate(parts)
     noisy = points + np.random.default_rng(seed).normal(0, NOISE, points.shape)
-    return np.repeat(np.arange(2, 2 + len(parts)), [len(part) for part in parts]), convex_objects(
-        noisy, camera, LEAST
-    )
+    truth = np.repeat(np.arange(2, 2 + len(parts)), [len(part) for part in parts])
+    return truth, convex_objects(noisy, camera, LEAST).labels
 
 
 def assert_found(parts, least=0.85, **kwargs):
@@ -106,7 +105,7 @@ def test_without_a_camera_the_outer_side_is_guessed():
 
 def test_labels_are_by_size_and_specks_are_noise():
     large, small = box(0, 0, 0.01, 0.2, 0.2, 0.08), box(0.4, 0, 0.01, 0.05, 0.05, 0.05)
-    labels = convex_objects(np.concatenate([small, large, [[0.0, 0.5, 0.1]]]), CAMERA, LEAST)
+    labels = convex_objects(np.concatenate([small, large, [[0.0, 0.5, 0.1]]]), CAMERA, LEAST).labels
     assert set(labels[: len(small)]) == {3}
     assert set(labels[len(small) : -1]) == {2}
     assert labels[-1] == 0
@@ -115,9 +114,18 @@ def test_labels_are_by_size_and_specks_are_noise():
 @pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 30])
 def test_few_points_are_no_object(n):
     points = np.random.default_rng(n).uniform(0, 0.01, (n, 3))
-    assert convex_objects(points, CAMERA, LEAST).tolist() == [0] * n
+    assert convex_objects(points, CAMERA, LEAST).labels.tolist() == [0] * n
     same = np.zeros((n, 3))
-    assert convex_objects(same, None, LEAST).tolist() == [0] * n
+    assert convex_objects(same, None, LEAST).labels.tolist() == [0] * n
+
+
+def test_a_large_box_alone_is_surer_than_a_small_box_on_another():
+    points = np.concatenate([*under_and_over(), box(0.4, 0, 0.01, 0.2, 0.2, 0.1)])
+    found = convex_objects(points, CAMERA, LEAST)
+    assert set(found.confidence) == {2, 3, 4}
+    alone, on_top = found.labels[-1], found.labels[len(under_and_over()[0]) + 10]
+    assert 0 < found.confidence[on_top] < found.confidence[alone] <= 1
+    assert found.confidence[alone] > 0.9
 
 
 def test_an_empty_table_has_no_objects():
@@ -137,12 +145,12 @@ def test_order_and_place_of_the_points_do_not_matter(seed):
     rng = np.random.default_rng(seed)
     points = np.concatenate(under_and_over()) + np.random.default_rng(0).normal(0, NOISE, (len(truth), 3))
     order = rng.permutation(len(points))
-    assert (convex_objects(points[order], CAMERA, LEAST) == labels[order]).mean() > 0.99
+    assert (convex_objects(points[order], CAMERA, LEAST).labels == labels[order]).mean() > 0.99
     turn = rng.uniform(0, 2 * np.pi)
     rotation = np.array([[np.cos(turn), -np.sin(turn), 0], [np.sin(turn), np.cos(turn), 0], [0, 0, 1]])
     shift = rng.uniform(-1, 1, 3)
     # Cells lie elsewhere then, so a few points at creases change sides.
-    moved = convex_objects(points @ rotation.T + shift, rotation @ CAMERA + shift, LEAST)
+    moved = convex_objects(points @ rotation.T + shift, rotation @ CAMERA + shift, LEAST).labels
     assert min(o.iou for o in overlaps(truth, moved)) > 0.85
     assert len(np.unique(moved)) == 2
 
@@ -165,7 +173,7 @@ def test_hostile_points_give_labels_for_all():
         if rng.random() < 0.3:
             points = points[rng.integers(0, n, n)]
         camera = None if rng.random() < 0.3 else points[0] if rng.random() < 0.5 else rng.normal(0, 1, 3)
-        labels = convex_objects(points, camera, LEAST)
+        labels = convex_objects(points, camera, LEAST).labels
         found = np.unique(labels[labels > 0])
         assert labels.shape == (n,)
         assert found.tolist() == list(range(2, 2 + len(found)))

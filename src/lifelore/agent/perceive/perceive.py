@@ -20,7 +20,7 @@ from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
 from lifelore.perception.scene_json import DIGITS, scene_document
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_scene
+from lifelore.perception.segmentation.table_frame import Up, to_cut_scene
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
 """A source for `read_cloud`, or a cloud."""
@@ -132,12 +132,12 @@ def perceived(
     _report_stage(progress, 0)
     cloud = _read(source, settings)
     _report_stage(progress, 1)
-    labelled = to_scene(cloud, settings.up, settings.segmentation)
+    labelled, cut_confidence = to_cut_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
     scene = perceived_scene(labelled, model).without_unrelated_contacts
     _report_stage(progress, 3)
-    document = scene_document(scene)
+    document = scene_document(scene, cut_confidence=cut_confidence)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
     write_scene_files(files, scene, document)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED, LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.plane import over_outline
 
 _MAX_VOXELS = 200_000
@@ -63,6 +64,20 @@ def segmented(
 ) -> NDArray[np.int64]:
     """(n,) int64 labels of a scene in its own frame: 1 the table, 2 … objects by size, 0 the rest.
 
+    As `cut_cloud`, without confidences.
+    """
+    return cut_cloud(points, colours, settings, camera).labels
+
+
+def cut_cloud(
+    points: NDArray[np.float64],
+    colours: NDArray[np.uint8] | None,
+    settings: SegmentationSettings,
+    camera: NDArray[np.float64] | None = None,
+) -> CutCloud:
+    """Labels of a scene in its own frame: 1 the table, 2 … objects by size, 0 the rest; ``"convexity"`` is sure to
+    a degree.
+
     `camera` (3,), where known, tells ``"convexity"`` the outer side of each surface.
 
     Raises
@@ -80,13 +95,15 @@ def segmented(
         if colours is None:
             raise InputError("method=colour needs colours, and the cloud has none; use method=convexity")
         labels[above] = colour_classes(points[above], colours[above], settings.colours)
-    elif settings.method == "convexity":
+    if settings.method == "convexity":
         from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
-        labels[above] = convex_objects(points[above], camera, settings.min_area)
-    else:
+        found = convex_objects(points[above], camera, settings.min_area)
+        labels[above] = found.labels
+        return CutCloud(labels, found.confidence)
+    if settings.method == "clusters":
         labels[above] = euclidean_clusters(points[above], settings.tolerance, settings.min_area)
-    return labels
+    return CutCloud(labels)
 
 
 def euclidean_clusters(points: NDArray[np.float64], tolerance: float, min_area: float) -> NDArray[np.int64]:

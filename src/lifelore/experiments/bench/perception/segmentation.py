@@ -6,6 +6,7 @@ define the measures. Four real scenes are drawn as each method finds them, under
 """
 
 from collections.abc import Sequence
+from itertools import pairwise
 from pathlib import Path
 from statistics import median
 
@@ -33,6 +34,8 @@ SCENES = 10
 DRAWN = ("learn18", "learn38", "test49", "test53")
 """Real scenes of the figure: an occluded box, a bowl, and the two with the most objects."""
 OUT = Path("results/segmentation")
+BANDS = (0.0, 0.5, 0.8, 0.95, 1.01)
+"""Of confidence."""
 Found = dict[str, list[FoundScene]]
 """The scenes as each method finds them."""
 
@@ -88,8 +91,22 @@ def _rows(name: str, results: Sequence[FoundScene]) -> list[dict]:
     }
     return [
         *(_share_row(f"{name}, {measure}", estimate) for measure, estimate in estimates.items()),
+        *_confidence_rows(name, results),
         *(row(f"{name}, processor time, {part}", 1e3 * seconds, "ms") for part, seconds in times.items()),
     ]
+
+
+def _confidence_rows(name: str, results: Sequence[FoundScene]) -> list[dict]:
+    """Whether cuts are right as often as their confidence says, by bands of confidence."""
+    cuts = np.array([cut for result in results for cut in result.cuts], float).reshape(-1, 2)
+    rows = []
+    for low, high in pairwise(BANDS):
+        band = cuts[(cuts[:, 0] >= low) & (cuts[:, 0] < high)]
+        if len(band):
+            label = f"{name}, cut confidence {low:g} to {min(high, 1):g}"
+            rows.append(row(f"{label}, mean", float(band[:, 0].mean()), "share") | {"n": len(band)})
+            rows.append(row(f"{label}, right", float(band[:, 1].mean()), "share") | {"n": len(band)})
+    return rows
 
 
 def _share_row(name: str, estimate: Estimate) -> dict:

@@ -1,8 +1,8 @@
 """The scenes of `bench segmentation`, without their labels, and what each method finds in them."""
 
 import time
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,7 +20,7 @@ from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_truth import read_relations
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_scene
+from lifelore.perception.segmentation.table_frame import Up, to_cut_scene, to_scene
 
 GIVEN = "labels given"
 METHODS = {
@@ -46,13 +46,17 @@ class TrueScene:
 
 @dataclass(frozen=True, eq=False)
 class FoundScene:
-    """A scene as a method finds it; `seconds` of processor time to find objects, `all_seconds` with relations."""
+    """A scene as a method finds it; `seconds` of processor time to find objects, `all_seconds` with relations.
+
+    `cuts` holds the confidence of each cut object, and whether it finds a true object.
+    """
 
     cloud: LabelledCloud
     overlaps: list[ObjectOverlap]
     relations: RelationCounts
     seconds: float
     all_seconds: float
+    cuts: list[tuple[float, bool]] = field(default_factory=list)
 
 
 def real_true_scenes() -> list[TrueScene]:
@@ -85,13 +89,15 @@ def found_scene(scene: TrueScene, method: str, model: RelationClassifier) -> Fou
     if settings is not None:
         cloud = PointCloud(cloud.points, None, cloud.colours, camera=cloud.camera)
     began = time.process_time()
-    labelled = _scene(cloud, scene.up, settings)
+    labelled, confidence = _scene(cloud, scene.up, settings)
     between = time.process_time()
     relations = perceived_scene(labelled, model).relations
     ended = time.process_time()
     found = overlaps(true_labels(scene), labelled.labels)
-    counts = relation_counts(scene.truth, relations, matched_objects(found))
-    return FoundScene(labelled, found, counts, between - began, ended - began)
+    stands_for = matched_objects(found)
+    counts = relation_counts(scene.truth, relations, stands_for)
+    cuts = [(sure, label in stands_for) for label, sure in confidence.items()]
+    return FoundScene(labelled, found, counts, between - began, ended - began, cuts)
 
 
 def true_labels(scene: TrueScene) -> NDArray[np.int64]:
@@ -102,15 +108,17 @@ def true_labels(scene: TrueScene) -> NDArray[np.int64]:
     return labels
 
 
-def _scene(cloud: PointCloud, up: Up, settings: SegmentationSettings | None) -> LabelledCloud:
-    """As `to_scene`; if a scene shows too few colours to be cut by colour, it has no objects."""
+def _scene(
+    cloud: PointCloud, up: Up, settings: SegmentationSettings | None
+) -> tuple[LabelledCloud, Mapping[int, float]]:
+    """As `to_cut_scene`; if a scene shows too few colours to be cut by colour, it has no objects."""
     try:
-        return to_scene(cloud, up, settings)
+        return to_cut_scene(cloud, up, settings)
     except InputError as error:
         if settings is None or settings.method != "colour" or "colours" not in str(error):
             raise
         bare = to_scene(cloud, up, SegmentationSettings(method="clusters"))
-        return LabelledCloud(bare.points, np.minimum(bare.labels, 1), bare.colours, bare.camera)
+        return LabelledCloud(bare.points, np.minimum(bare.labels, 1), bare.colours, bare.camera), {}
 
 
 def _measured(cloud: PointCloud) -> PointCloud:
