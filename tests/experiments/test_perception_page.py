@@ -8,7 +8,10 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "perception.md").read_text(encoding="utf-8")
-METHODS = re.findall(r"^\| (?!method)([a-z][^|]+?) \| (0\.\d{3} \[.+)\|$", PAGE, flags=re.M)
+SEGMENTATION = re.findall(r"^\| (real|simulated): method .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)
+METHODS = re.findall(
+    r"^\| (?!method)([a-z][^|]+?) \| (0\.\d{3} \[.+)\|$", PAGE.split("## Accuracy beside")[1], flags=re.M
+)
 COLUMNS = (
     ("simulated", "exact"),
     ("simulated", "on"),
@@ -72,3 +75,39 @@ def test_what_the_goals_measured_is_told():
             for number in re.findall(r"\d+(?:\.\d+)?", text.split("(")[0]):
                 decimals = len(number.partition(".")[2])
                 assert any(f"{value:.{decimals}f}" == number for value in measured), number
+
+
+def test_segmentation():
+    found = rows("segmentation")
+    measures = ("weighted overlap", "over-segmentation", "under-segmentation", "found")
+    relations = ("relation precision", "relation recall", "relation F1")
+    assert [where for where, _ in SEGMENTATION] == ["real", "simulated"]
+    for where, table in SEGMENTATION:
+        lines = [[cell.strip() for cell in line.strip("|\n").split("|")] for line in table.splitlines()]
+        told = {name.split(",")[0] for name in found if f", {where}, weighted" in name}
+        assert {line[0] for line in lines} == told
+        for method, *cells, milliseconds in lines:
+            for cell, measure in zip(cells, measures + relations, strict=True):
+                row = found[f"{method}, {where}, {measure}"]
+                if row["value"] is None:
+                    assert cell == "–"
+                    continue
+                value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+                assert value == pytest.approx(row["value"], abs=6e-4)
+                assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
+            seconds = found[f"{method}, {where}, processor time, objects"]["value"]
+            assert float(milliseconds) == pytest.approx(seconds, abs=0.51)
+
+
+def test_confidences_of_cuts_are_those_of_the_benchmark():
+    found = rows("segmentation")
+    told = re.search(r"by bands of confidence: real scenes (.*?); simulated scenes (.*?)\.\n", PAGE, flags=re.S)
+    assert told
+    for where, text in zip(("real", "simulated"), told.groups(), strict=True):
+        bands = [name for name in found if f", {where}, cut confidence" in name and name.endswith("mean")]
+        stated = re.findall(r"([\d.]+) stated,\s+([\d.]+)\s+right\s+\((\d+)\)", text)
+        assert len(stated) == len(bands)
+        for (mean, right, n), name in zip(stated, bands, strict=True):
+            assert float(mean) == pytest.approx(found[name]["value"], abs=6e-3)
+            assert float(right) == pytest.approx(found[name.replace("mean", "right")]["value"], abs=6e-3)
+            assert int(n) == found[name]["n"]

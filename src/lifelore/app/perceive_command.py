@@ -28,7 +28,8 @@ def perceive(
     topic: Annotated[str | None, Option(help="Topic of a rosbag's clouds; needed if it has several.")] = None,
     index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
     segment: Annotated[
-        str | None, Option(help="Segmentation of a cloud without labels: clusters or colour [clusters].")
+        str | None,
+        Option(help="Segmentation of a cloud without labels: convexity, clusters or colour [convexity]."),
     ] = None,
     colours: Annotated[
         int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")

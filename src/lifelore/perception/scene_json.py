@@ -9,8 +9,10 @@
 Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
 ``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a
 faces contact point j of b; a hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their
-positions, ``outline`` the border of its opening. A relation's ``gap`` is the mean of the five smallest distances
-between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
+positions, ``outline`` the border of its opening. An object that was cut automatically also has ``cut_confidence``,
+the probability that it is a true object (`cut_confidence.CutCloud`). A relation's ``gap`` is the mean of the five
+smallest distances between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an
+unknown gap is null.
 
 A relation with a confidence below the threshold stays in ``relations`` with ``stated`` false, and no fact follows
 from it. ``unknown`` lists facts of the most likely scene that are not stated: ``doubtful`` ones below the
@@ -18,7 +20,7 @@ threshold, and ``clear`` of an object whose top other objects hide in part (``hi
 """
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.contacts.contact_points import ContactPoint
@@ -29,11 +31,19 @@ from lifelore.perception.scene import TABLE_NAME, Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed, grasp_seeds
 from lifelore.perception.topology.holes import Hole, find_holes
 
+NOT_CUT: Mapping[int, float] = {}
+"""Confidences of a scene whose labels were given."""
 DIGITS = 6
 """Decimals of a metre: a micrometre, far below any sensor's noise."""
 
 
-def scene_document(scene: Scene, *, seconds: float | None = None, min_confidence: float = 0.0) -> dict:
+def scene_document(
+    scene: Scene,
+    *,
+    seconds: float | None = None,
+    min_confidence: float = 0.0,
+    cut_confidence: Mapping[int, float] = NOT_CUT,
+) -> dict:
     """The scene as plain data that ``json.dumps(…, allow_nan=False)`` takes.
 
     Parameters
@@ -43,6 +53,8 @@ def scene_document(scene: Scene, *, seconds: float | None = None, min_confidence
         How long perception took; null where left out.
     min_confidence : float
         Least probability of a stated relation or fact, in [0, 1].
+    cut_confidence : mapping of int to float
+        How surely each object was cut, for objects that were cut automatically.
 
     Raises
     ------
@@ -53,7 +65,7 @@ def scene_document(scene: Scene, *, seconds: float | None = None, min_confidence
     holes = find_holes(scene)
     seeds = grasp_seeds(scene, holes)
     return {
-        "objects": [_object(scene, label, seeds) for label in scene.objects],
+        "objects": [_object(scene, label, seeds, cut_confidence) for label in scene.objects],
         "relations": [_relation(relation, min_confidence) for relation in scene.relations],
         "facts": [str(fact) for fact in sure_facts(scene, state, min_confidence)],
         "unknown": [_unknown(one) for one in state.unknown],
@@ -63,7 +75,7 @@ def scene_document(scene: Scene, *, seconds: float | None = None, min_confidence
     }
 
 
-def _object(scene: Scene, label: int, seeds: Iterable[GraspSeed]) -> dict:
+def _object(scene: Scene, label: int, seeds: Iterable[GraspSeed], sure: Mapping[int, float]) -> dict:
     points, network = scene.cloud.of(label), scene.networks[label]
     return {
         "id": _name(label),
@@ -72,6 +84,7 @@ def _object(scene: Scene, label: int, seeds: Iterable[GraspSeed]) -> dict:
         "contact_points": [_contact(node) for node in network.nodes],
         "edges": network.edges.tolist(),
         "grasp_seeds": [_seed(seed) for seed in seeds if seed.object_id == label],
+        **({"cut_confidence": _number(sure[label])} if label in sure else {}),
     }
 
 

@@ -105,6 +105,21 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
 
 
 @pytest.mark.slow
+def test_without_labels_the_same_objects_are_found_and_say_how_surely_they_were_cut(pile, document):
+    points, labels = (np.load(pile)[key] for key in ("points", "labels"))
+    cloud = PointCloud(points, camera=np.array([0.2, -0.9, 0.8]))
+    found = perceive(cloud, PerceiveSettings(up="z"))
+    for true in (2, 3, 4):
+        centre = points[(labels == true) & (points[:, 2] > 0.01)].mean(axis=0)
+        near = [o for o in found["objects"] if np.linalg.norm(np.array(o["centroid"]) - centre) < 0.02]
+        assert len(near) == 1
+        assert 0.5 < near[0]["cut_confidence"] <= 1
+    assert len(found["objects"]) == 3
+    # Labels that are given are not in doubt.
+    assert not any("cut_confidence" in o for o in document["objects"])
+
+
+@pytest.mark.slow
 def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
     from lifelore.perception import scene_json
 

@@ -17,6 +17,7 @@ from lifelore.perception.segmentation.distance_segmentation import (
 from lifelore.perception.segmentation.table_frame import to_scene
 
 RNG = np.random.default_rng(1)
+CLUSTERS = SegmentationSettings(method="clusters")
 TABLE = RNG.uniform([-0.4, -0.4, 0], [0.4, 0.4, 0.002], (4000, 3))
 
 
@@ -32,9 +33,7 @@ def test_boxes_apart_are_objects_by_size_and_the_rest_is_table_or_nothing():
     small, large = box(0.2, 0.2, 0.05, 0.05), box(-0.2, -0.2, 0.10, 0.20, 6000)
     speck, beyond = np.array([[0.0, 0.3, 0.1]]), box(0.6, 0.0, 0.1, 0.2) + np.array([0, 0, 0.05])
     parts = [TABLE, small, large, speck, beyond]
-    labels = np.split(
-        segmented(np.concatenate(parts), None, SegmentationSettings()), np.cumsum([len(p) for p in parts])
-    )
+    labels = np.split(segmented(np.concatenate(parts), None, CLUSTERS), np.cumsum([len(p) for p in parts]))
     assert set(labels[0]) == {1}
     assert set(labels[1][small[:, 2] > 0.01]) == {3}
     assert set(labels[2][large[:, 2] > 0.01]) == {2}
@@ -44,7 +43,7 @@ def test_boxes_apart_are_objects_by_size_and_the_rest_is_table_or_nothing():
 
 def test_two_things_that_touch_are_one():
     pair = np.concatenate([box(0, 0, 0.08, 0.1), box(0.08, 0, 0.08, 0.1)])
-    labels = segmented(np.concatenate([TABLE, pair]), None, SegmentationSettings())
+    labels = segmented(np.concatenate([TABLE, pair]), None, CLUSTERS)
     assert set(labels[len(TABLE) :][pair[:, 2] > 0.01]) == {2}
 
 
@@ -68,7 +67,7 @@ def test_clusters_agree_with_single_linkage():
 
 
 def test_nothing_above_the_table_is_no_object():
-    assert set(segmented(TABLE, None, SegmentationSettings())) == {1}
+    assert set(segmented(TABLE, None, CLUSTERS)) == {1}
     assert len(euclidean_clusters(np.empty((0, 3)), 0.01, 1e-4)) == 0
 
 

@@ -42,7 +42,7 @@ class PerceiveSettings:
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     segmentation : SegmentationSettings, optional
-        Segmentation of a cloud without labels, default by distance; with a labelled cloud it is an error.
+        Segmentation of a cloud without labels, default by convexity; with a labelled cloud it is an error.
     model : str, optional
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
@@ -171,17 +171,17 @@ def perceived(
     from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.relations.relation_classifier import shipped_model
     from lifelore.perception.scene_json import DIGITS, scene_document
-    from lifelore.perception.segmentation.table_frame import to_scene
+    from lifelore.perception.segmentation.table_frame import to_cut_scene
 
     model = model or shipped_model()
     began = time.perf_counter() - reading  # without imports and the model
     _report_stage(progress, 1)
-    labelled = to_scene(cloud, settings.up, settings.segmentation)
+    labelled, cut_confidence = to_cut_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
     scene = perceived_scene(labelled, model).without_unrelated_contacts
     _report_stage(progress, 3)
-    document = scene_document(scene, min_confidence=settings.min_confidence or 0.0)
+    document = scene_document(scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=cut_confidence)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
     write_scene_files(files, scene, document, settings.min_confidence, settings.statements)

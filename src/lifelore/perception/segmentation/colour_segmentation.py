@@ -76,7 +76,7 @@ def _clusters_of_bins(shares: NDArray[np.float64], k: int) -> NDArray[np.int64]:
         np.ravel_multi_index(tuple(cells.T), (BINS,) * 3), return_inverse=True, return_counts=True
     )
     if len(bins) < k:
-        raise InputError(f"the points show {len(bins)} colours where {k} are asked for; use method=clusters")
+        raise InputError(f"the points show {len(bins)} colours where {k} are asked for; use method=convexity")
     centres = np.stack(np.unravel_index(bins, (BINS,) * 3), axis=1) + 0.5
     seed = int(stream(0, "perception", "colour bins").integers(2**31))
     means = KMeans(k, n_init=10, random_state=seed)  # type: ignore[arg-type]  its hints forget the number

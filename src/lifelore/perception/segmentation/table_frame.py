@@ -1,5 +1,6 @@
 """The frame of a scene: z up, z = 0 at the table, x to the camera's right."""
 
+from collections.abc import Mapping
 from typing import Literal
 
 import numpy as np
@@ -11,7 +12,7 @@ from lifelore.core.streams import stream
 from lifelore.perception.clouds.cloud_scale import FAR
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane, over_outline
 
 Up = Literal["table", "z"] | ArrayLike
@@ -24,6 +25,13 @@ _FEW = 20
 def to_scene(
     cloud: PointCloud, up: Up = "table", segmentation: SegmentationSettings | None = None
 ) -> LabelledCloud:
+    """A cloud as a scene: upright, on its table, labelled; see `to_cut_scene`."""
+    return to_cut_scene(cloud, up, segmentation)[0]
+
+
+def to_cut_scene(
+    cloud: PointCloud, up: Up = "table", segmentation: SegmentationSettings | None = None
+) -> tuple[LabelledCloud, Mapping[int, float]]:
     """A cloud as a scene: upright, on its table, labelled.
 
     Parameters
@@ -38,10 +46,12 @@ def to_scene(
 
     Returns
     -------
-    LabelledCloud
+    scene : LabelledCloud
         Measured points only, z = 0 at the table. Under ``up="table"`` and a vector, x is the camera's right
         seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible table, z = 0
         is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
+    confidence : mapping of int to float
+        How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
 
     Raises
     ------
@@ -61,9 +71,10 @@ def to_scene(
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
-    if labels is None:
-        labels = segmented(points, cloud.colours, segmentation or SegmentationSettings())
-    return LabelledCloud(points, labels, cloud.colours, camera, others)
+    if labels is not None:
+        return LabelledCloud(points, labels, cloud.colours, camera, others), {}
+    cut = cut_cloud(points, cloud.colours, segmentation or SegmentationSettings(), camera)
+    return LabelledCloud(points, cut.labels, cloud.colours, camera, others), cut.confidence
 
 
 def _check_camera(camera: NDArray[np.float64] | None) -> None:

@@ -1,0 +1,66 @@
+"""How surely an object was cut from its neighbours: the probability that it finds a true object.
+
+A region is doubtful if it is small, if the evidence for a cut at its weakest border is small, or if it has creases
+inside. Logistic regression on 60 simulated scenes gives the weights.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.perception.segmentation.supervoxels import Supervoxels
+
+_BASE, _OF_BORDER, _OF_CREASES, _OF_SIZE = -20.0, -0.75, -1.7, 3.15
+"""Log odds: constant, and weights of the mean evidence of one object at the weakest border (≤ 0; the least
+evidence without a neighbour), of the share of creases inside, and of the logarithm of the voxels. Fitted as
+`cut_confidence` says; others change only the probabilities, not the objects."""
+_NO_BORDER = -5.0
+
+
+@dataclass(frozen=True, eq=False)
+class CutCloud:
+    """Labels of a segmented cloud, and how surely each object was cut.
+
+    Parameters
+    ----------
+    labels : (n,) int64
+        As in `LabelledCloud`.
+    confidence : mapping of int to float
+        Probability in 0–1 that an object has an IoU of at least 0.5 with a true object, by its label; empty if the
+        method gives none.
+    """
+
+    labels: NDArray[np.int64]
+    confidence: Mapping[int, float] = field(default_factory=dict)
+
+
+def cut_confidence(
+    patches: Supervoxels, evidence: NDArray[np.float64], regions: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """(r,) probability in 0–1 that each region has an IoU of at least 0.5 with a true object.
+
+    Parameters
+    ----------
+    patches : Supervoxels
+    evidence : (e,) float64
+        Log odds of each pair of patches.
+    regions : (k,) int64
+        Region of each patch, from 0.
+    """
+    n = int(regions.max()) + 1
+    ends = np.sort(regions[patches.pairs], axis=1).reshape(-1, 2)
+    inside = ends[:, 0] == ends[:, 1]
+    length = patches.borders.astype(float)
+    own = np.bincount(ends[inside, 0], length[inside], minlength=n)
+    creases = np.bincount(ends[inside, 0], (length * (evidence < 0))[inside], minlength=n) / np.maximum(own, 1.0)
+    weakest = np.full(n, _NO_BORDER)
+    borders, border = np.unique(ends[~inside], axis=0, return_inverse=True)
+    border = border.reshape(-1)
+    mean = np.bincount(border, (length * evidence)[~inside]) / np.bincount(border, length[~inside])
+    for side in borders.reshape(-1, 2).T:
+        np.maximum.at(weakest, side, mean)
+    voxels = np.bincount(regions, patches.counts, minlength=n)
+    odds = _BASE + _OF_BORDER * weakest + _OF_CREASES * creases + _OF_SIZE * np.log(np.maximum(voxels, 1.0))
+    return 1.0 / (1.0 + np.exp(-np.clip(odds, -30.0, 30.0)))

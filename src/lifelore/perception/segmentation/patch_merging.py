@@ -1,0 +1,91 @@
+"""Merging of patches into objects: the two regions with the strongest evidence along their border join first."""
+
+import heapq
+
+import numpy as np
+from numpy.typing import NDArray
+
+
+def merged(
+    n: int, pairs: NDArray[np.int64], borders: NDArray[np.int64], evidence: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    """(n,) int64: region of each patch, from 0.
+
+    The evidence between two regions is the mean over their border, weighed by its length. The pair with the
+    greatest mean is merged until no mean is above 0. So a few pairs of convex patches do not merge two objects
+    that meet in a long crease, and a few concave pairs do not split a box along an edge.
+
+    Parameters
+    ----------
+    n : int
+        Number of patches.
+    pairs, borders, evidence : (e, 2), (e,) and (e,)
+        As of `Supervoxels`, and log odds of one object.
+    """
+    beside: list[dict[int, tuple[float, float]]] = [{} for _ in range(n)]
+    for (a, b), border, odds in zip(pairs.tolist(), borders.tolist(), evidence.tolist(), strict=True):
+        beside[a][b] = beside[b][a] = (float(border), border * odds)
+    queue = [_entry(a, b, link) for a in range(n) for b, link in beside[a].items() if a < b]
+    heapq.heapify(queue)
+    owner = np.arange(n)
+    while queue and queue[0][0] < 0:
+        entry = heapq.heappop(queue)
+        a, b = entry[1:3]
+        if b not in beside[a] or _entry(a, b, beside[a][b]) != entry:
+            continue  # of a border that has grown since
+        _join(a, b, beside, queue)
+        owner[b] = a
+    while (owner[owner] != owner).any():
+        owner = owner[owner]
+    return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _entry(a: int, b: int, link: tuple[float, float]) -> tuple[float, int, int, float]:
+    border, total = link
+    return -total / border, min(a, b), max(a, b), border
+
+
+def _join(a: int, b: int, beside: list[dict[int, tuple[float, float]]], queue: list) -> None:
+    """Give all borders of region `b` to region `a`."""
+    del beside[a][b]
+    for other, (border, total) in beside[b].items():
+        if other == a:
+            continue
+        del beside[other][b]
+        known_border, known_total = beside[a].get(other, (0.0, 0.0))
+        link = (known_border + border, known_total + total)
+        beside[a][other] = beside[other][a] = link
+        heapq.heappush(queue, _entry(a, other, link))
+    beside[b] = {}
+
+
+def without_fragments(
+    regions: NDArray[np.int64],
+    counts: NDArray[np.int64],
+    pairs: NDArray[np.int64],
+    borders: NDArray[np.int64],
+    least: int,
+) -> NDArray[np.int64]:
+    """(n,) int64: the regions, those of less than `least` voxels merged into the neighbour of the longest border.
+
+    Parameters
+    ----------
+    regions, counts : (n,) int64
+        Region of each patch, and its number of voxels.
+    pairs, borders
+        As of `Supervoxels`.
+    least : int
+        Fragments are merged smallest first; one without neighbours stays.
+    """
+    regions = regions.copy()
+    while True:
+        voxels = np.bincount(regions, counts)
+        ends = regions[pairs].reshape(-1, 2)
+        at_border = ends[:, 0] != ends[:, 1]
+        fragments = np.intersect1d(np.flatnonzero((voxels > 0) & (voxels < least)), ends[at_border])
+        if len(fragments) == 0:
+            return np.unique(regions, return_inverse=True)[1].reshape(-1).astype(np.int64)
+        fragment = fragments[voxels[fragments].argmin()]
+        own = at_border & (ends == fragment).any(axis=1)
+        others = np.where(ends[own, 0] == fragment, ends[own, 1], ends[own, 0])
+        regions[regions == fragment] = np.bincount(others, borders[own]).argmax()

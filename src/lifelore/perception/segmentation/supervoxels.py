@@ -1,0 +1,84 @@
+"""Supervoxels: small patches of surface that grow from a lattice of seeds, and where they meet.
+
+After Papon et al. (2013). A patch takes the voxels that are nearest to its seed along the surface, where a step
+costs its length and the turn of the normal. So patches end at creases rather than cross them.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.perception.segmentation.surface_voxels import SurfaceVoxels
+
+
+@dataclass(frozen=True, eq=False)
+class Supervoxels:
+    """Patches of a surface and their borders.
+
+    Parameters
+    ----------
+    of_voxel : (m,) int64
+        Patch of each voxel, from 0.
+    counts : (k,) int64
+        Number of voxels of each patch.
+    middles, normals : (k, 3) float64
+    pairs : (e, 2) int64
+        Patches that touch, each pair once, the lower number first.
+    borders : (e,) int64
+        Length of the border of each pair: its number of pairs of neighbouring voxels.
+    """
+
+    of_voxel: NDArray[np.int64]
+    counts: NDArray[np.int64]
+    middles: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    pairs: NDArray[np.int64]
+    borders: NDArray[np.int64]
+
+
+def supervoxels(surface: SurfaceVoxels, spacing: float) -> Supervoxels:
+    """Patches that grow from seeds about `spacing` metres apart."""
+    of_voxel = _grown(surface, spacing)
+    counts = np.bincount(of_voxel)
+    middles = _sums(of_voxel, surface.points) / counts[:, None]
+    normals = _sums(of_voxel, surface.normals)
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-12)
+    ends = np.sort(of_voxel[surface.pairs], axis=1)
+    between = ends[:, 0] != ends[:, 1]
+    pairs, borders = np.unique(ends[between], axis=0, return_counts=True)
+    return Supervoxels(of_voxel, counts, middles, normals, pairs.reshape(-1, 2), borders)
+
+
+def _grown(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
+    """(m,) int64: number of each voxel's patch; surfaces without a seed are patches of their own voxels."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components, dijkstra
+
+    a, b = surface.pairs.T
+    length = np.linalg.norm(surface.points[a] - surface.points[b], axis=1)
+    turn = 1.0 - np.einsum("ij,ij->i", surface.normals[a], surface.normals[b])
+    # A cost of exactly zero would be no edge.
+    cost = length / spacing + np.clip(turn, 0.0, 2.0) + 1e-6
+    m = len(surface.points)
+    graph = coo_array((np.r_[cost, cost], (np.r_[a, b], np.r_[b, a])), shape=(m, m)).tocsr()
+    _, _, source = dijkstra(graph, indices=_seeds(surface, spacing), min_only=True, return_predecessors=True)
+    _, part = connected_components(graph, directed=False)
+    owner = np.where(source >= 0, source, m + part)
+    return np.unique(owner, return_inverse=True)[1].reshape(-1).astype(np.int64)
+
+
+def _seeds(surface: SurfaceVoxels, spacing: float) -> NDArray[np.int64]:
+    """Voxels nearest to the mean of each occupied cell of the lattice."""
+    from scipy.spatial import KDTree
+
+    cells = np.floor((surface.points - surface.points.min(axis=0)) / spacing).astype(np.int64)
+    _, cell = np.unique(cells, axis=0, return_inverse=True)
+    cell = cell.reshape(-1)
+    means = _sums(cell, surface.points) / np.bincount(cell)[:, None]
+    return np.unique(np.asarray(KDTree(surface.points).query(means)[1], np.int64))
+
+
+def _sums(group: NDArray[np.int64], values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k, 3): sum of the rows of each group."""
+    return np.stack([np.bincount(group, values[:, axis]) for axis in range(3)], axis=1).astype(np.float64)

@@ -1,0 +1,94 @@
+"""Voxels of a visible surface with normals towards the camera, and the pairs of voxels that are neighbours."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.voxel import voxelised
+
+LINK = 1.9
+"""Voxel sizes: greatest distance of neighbours. A diagonal step of the grid is 1.7 long."""
+_NEIGHBOURS = 24
+"""Greatest number of voxels that a normal is fitted to; more is slower, and no more accurate."""
+_SUPPORT = 3.6
+"""Voxel sizes: radius of the points that a normal is fitted to. Less is noisier, more rounds off creases."""
+_LEVEL = 0.5
+"""Without a camera, a normal steeper than this points up; the others point away from the middle of their
+surface."""
+
+
+@dataclass(frozen=True, eq=False)
+class SurfaceVoxels:
+    """A surface in cells of one size.
+
+    Parameters
+    ----------
+    points, normals : (m, 3) float64
+        Means of the voxels' points; unit vectors towards the camera.
+    pairs : (p, 2) int64
+        Neighbours, each pair once.
+    inverse : (n,) int64
+        Voxel of each point of the cloud.
+    size : float
+        Length of a voxel, metres.
+    """
+
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    pairs: NDArray[np.int64]
+    inverse: NDArray[np.int64]
+    size: float
+
+
+def surface_voxels(
+    points: NDArray[np.float64], camera: NDArray[np.float64] | None, size: float, most: int
+) -> SurfaceVoxels:
+    """The voxels of points (n, 3), n ≥ 1; `size` is doubled until there are at most `most`.
+
+    Without a `camera`, level surfaces face upwards and the others away from the middle of their connected surface.
+    """
+    from scipy.spatial import KDTree
+
+    unlabelled = LabelledCloud(points, np.zeros(len(points), np.int64))
+    thin = voxelised(unlabelled, size)
+    while len(thin.counts) > most:
+        size *= 2
+        thin = voxelised(unlabelled, size)
+    middles = thin.cloud.points
+    tree = KDTree(middles)
+    pairs = tree.query_pairs(LINK * size, output_type="ndarray").astype(np.int64).reshape(-1, 2)
+    # The order that a tree gives depends on its version; sums below must not.
+    pairs = pairs[np.lexsort((pairs[:, 1], pairs[:, 0]))]
+    distance, near = tree.query(middles, k=min(_NEIGHBOURS, len(middles)), distance_upper_bound=_SUPPORT * size)
+    normals = _normals(middles, np.isfinite(distance).reshape(len(middles), -1), near.reshape(len(middles), -1))
+    outward = middles - _inside(middles, pairs) if camera is None else camera - middles
+    away = np.einsum("ij,ij->i", normals, outward) < 0
+    if camera is None:
+        steep = np.abs(normals[:, 2]) > _LEVEL
+        away = np.where(steep, normals[:, 2] < 0, away)
+    return SurfaceVoxels(middles, np.where(away[:, None], -normals, normals), pairs, thin.inverse, size)
+
+
+def _normals(
+    points: NDArray[np.float64], known: NDArray[np.bool_], near: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """(m, 3): direction of least spread of each voxel's neighbours, those of `near` that are `known`."""
+    around = points[np.where(known, near, 0)]
+    weight = known[..., None].astype(float)
+    spread = (around - (around * weight).sum(axis=1, keepdims=True) / weight.sum(axis=1, keepdims=True)) * weight
+    return np.linalg.eigh(np.swapaxes(spread, 1, 2) @ spread)[1][:, :, 0]
+
+
+def _inside(points: NDArray[np.float64], pairs: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(m, 3): middle of the connected surface of each voxel, at the voxel's height."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+
+    m = len(points)
+    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(m, m))
+    _, part = connected_components(graph, directed=False)
+    counts = np.bincount(part)
+    middle = np.stack([np.bincount(part, points[:, axis]) / counts for axis in (0, 1)], axis=1)[part]
+    return np.column_stack([middle, points[:, 2]])

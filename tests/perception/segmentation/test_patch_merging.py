@@ -1,0 +1,99 @@
+"""Merging of patches, worked by hand."""
+
+import numpy as np
+
+from lifelore.perception.segmentation.cut_confidence import cut_confidence
+from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles
+from lifelore.perception.segmentation.patch_merging import merged, without_fragments
+from lifelore.perception.segmentation.supervoxels import Supervoxels
+
+CHAIN = np.array([[0, 1], [1, 2], [2, 3]])
+
+
+def patches(middles, normals, pairs, borders=None, counts=None):
+    middles, normals = np.array(middles, float), np.array(normals, float)
+    return Supervoxels(
+        np.arange(len(middles)),
+        np.ones(len(middles), np.int64) if counts is None else np.array(counts),
+        middles,
+        normals / np.linalg.norm(normals, axis=1, keepdims=True),
+        np.array(pairs),
+        np.ones(len(pairs), np.int64) if borders is None else np.array(borders),
+    )
+
+
+def test_a_ridge_is_positive_and_a_crease_negative():
+    # Two faces that meet at x = 0: as a roof, and as a valley.
+    roof = patches([[-1, 0, 0], [1, 0, 0]], [[-1, 0, 1], [1, 0, 1]], [[0, 1]])
+    valley = patches([[-1, 0, 0], [1, 0, 0]], [[1, 0, 1], [-1, 0, 1]], [[0, 1]])
+    assert np.isclose(signed_angles(roof)[0], 90)
+    assert np.isclose(signed_angles(valley)[0], -90)
+
+
+def test_evidence_is_greatest_on_flat_surfaces_and_least_in_creases():
+    found = evidence(np.array([-90.0, -40.0, -15.0, 0.0, 90.0]))
+    assert found.tolist() == [-5, -5, 0, 5, 1]
+
+
+def test_regions_end_at_negative_evidence():
+    assert merged(4, CHAIN, np.array([1, 1, 1]), np.array([2.0, -1.0, 2.0])).tolist() == [0, 0, 1, 1]
+
+
+def test_a_long_crease_outweighs_a_short_leak():
+    # 0 and 1 join, 2 and 3 join; between them lie a crease of length 9 and a leak of length 1.
+    pairs = np.array([[0, 1], [2, 3], [0, 2], [1, 3]])
+    odds = np.array([5.0, 5.0, -1.0, 3.0])
+    assert merged(4, pairs, np.array([5, 5, 9, 1]), odds).tolist() == [0, 0, 1, 1]
+    # The mean decides: with the lengths exchanged, all are one.
+    assert merged(4, pairs, np.array([5, 5, 1, 9]), odds).tolist() == [0, 0, 0, 0]
+
+
+def test_merging_agrees_with_a_slow_twin():
+    rng = np.random.default_rng(0)
+    for _ in range(30):
+        n = 12
+        pairs = np.array([(a, b) for a in range(n) for b in range(a + 1, n) if rng.random() < 0.3])
+        borders, odds = rng.integers(1, 20, len(pairs)), rng.normal(0, 2, len(pairs))
+        assert merged(n, pairs, borders, odds).tolist() == slowly_merged(n, pairs, borders, odds).tolist()
+
+
+def slowly_merged(n, pairs, borders, odds):
+    """The regions, every mean computed anew after each merge."""
+    region = np.arange(n)
+    while True:
+        best, join = 0.0, None
+        for a in np.unique(region):
+            for b in np.unique(region):
+                between = (region[pairs] == [a, b]).all(axis=1) | (region[pairs] == [b, a]).all(axis=1)
+                if a < b and between.any():
+                    mean = np.average(odds[between], weights=borders[between])
+                    if mean > best:
+                        best, join = mean, (a, b)
+        if join is None:
+            # Regions are numbered by the rank of a member that the fast version chooses: compare as partitions.
+            return canonical(region)
+        region[region == join[1]] = join[0]
+
+
+def canonical(region):
+    return np.unique([np.flatnonzero(region == r)[0] for r in region], return_inverse=True)[1]
+
+
+def test_no_patches_that_touch_stay_apart():
+    none = np.empty((0, 2), np.int64)
+    assert merged(3, none, np.empty(0, np.int64), np.empty(0)).tolist() == [0, 1, 2]
+
+
+def test_fragments_join_the_neighbour_of_the_longest_border():
+    regions, counts = np.array([0, 1, 2, 3]), np.array([100, 5, 90, 3])
+    assert without_fragments(regions, counts, CHAIN, np.array([2, 7, 1]), 10).tolist() == [0, 1, 1, 1]
+    # A fragment without neighbours stays.
+    assert without_fragments(regions, counts, CHAIN[:2], np.array([2, 7]), 10).tolist() == [0, 1, 1, 2]
+
+
+def test_confidence_by_hand():
+    # Two regions of two patches each; evidence -2 between them, and one of the two borders inside is a crease.
+    pair = patches(np.zeros((4, 3)), [[0, 0, 1]] * 4, CHAIN, counts=[100, 200, 300, 400])
+    found = cut_confidence(pair, np.array([5.0, -2.0, -1.0]), np.array([0, 0, 1, 1]))
+    odds = [-20 + 0.75 * 2 + 3.15 * np.log(300), -20 + 0.75 * 2 - 1.7 + 3.15 * np.log(700)]
+    assert np.allclose(found, 1 / (1 + np.exp(-np.array(odds))))
