@@ -37,7 +37,7 @@ def small(monkeypatch, cloud, tmp_path):
     monkeypatch.setattr(perceive, "POINTS", 2000)
     monkeypatch.setattr(perceive, "_shell_sources", lambda folder, scene: {"a cloud": cloud_file})
     monkeypatch.setattr(
-        perceive, "process_cost", lambda arguments, environment, status=0: Cost(5.0 / (1 + status), 1)
+        perceive, "process_cost", lambda arguments, environment, status=0: Cost(9.0, 5.0 / (1 + status))
     )
     parts = dict.fromkeys(PARTS, 0.1) | {AGAIN: 0.3}
     monkeypatch.setattr(perceive, "process_parts", lambda source, environment: parts)
