@@ -39,7 +39,7 @@ def test_one_cube_on_another_as_json(ask, cloud):
     assert answer.status == 0
     found = {(r["relation"], r["a"], r["b"]) for r in answer.document["relations"]}
     assert ("on", 3, 2) in found
-    assert {"objects", "relations", "facts", "holes", "seconds"} <= set(answer.document)
+    assert {"objects", "relations", "facts", "holes", "warnings", "seconds"} <= set(answer.document)
 
 
 def test_a_person_sees_a_table_and_what_was_written(ask, cloud, tmp_path):

@@ -32,6 +32,15 @@ def perceive(
     colours: Annotated[
         int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")
     ] = None,
+    roi: Annotated[
+        str | None,
+        Option(
+            metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX", help="Use only points in this box: metres, cloud's frame."
+        ),
+    ] = None,
+    max_range: Annotated[
+        float | None, Option(metavar="M", help="Use only points within this many metres of the camera.")
+    ] = None,
     model: Annotated[
         str | None,
         Option(metavar="NAME|FILE", help="Relation model of learn-relations; default: the shipped model."),
@@ -69,7 +78,9 @@ def perceive(
     _one_thread_for_matrices()
     from lifelore.agent.perceive.perceive import PerceiveSettings
 
-    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory)
+    settings = PerceiveSettings(
+        direction(up), units, labels, _cut(segment, colours), model, memory, _region(roi, max_range)
+    )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)
@@ -172,6 +183,17 @@ def _cut(segment: str | None, colours: int | None):
 
     default = SegmentationSettings.colours
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]
+
+
+def _region(roi: str | None, max_range: float | None):
+    from lifelore.core.errors import InputError
+    from lifelore.perception.segmentation.region import AXES, Region
+
+    try:
+        box = None if roi is None else tuple(float(part) for part in roi.split(","))
+    except ValueError:
+        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
+    return Region(box, max_range)
 
 
 def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:

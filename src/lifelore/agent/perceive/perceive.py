@@ -3,7 +3,7 @@
 import os
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +20,9 @@ from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
 from lifelore.perception.scene_json import DIGITS, scene_document
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_scene
+from lifelore.perception.segmentation.region import Region
+from lifelore.perception.segmentation.scene_warnings import scene_warnings
+from lifelore.perception.segmentation.table_frame import EVERYWHERE, Up, segmented_scene
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
 """A source for `read_cloud`, or a cloud."""
@@ -44,6 +46,8 @@ class PerceiveSettings:
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
         Memory that holds the named model.
+    region : Region
+        Where objects are looked for.
 
     Raises
     ------
@@ -57,6 +61,7 @@ class PerceiveSettings:
     segmentation: SegmentationSettings | None = None
     model: str | None = None
     memory: str | None = None
+    region: Region = EVERYWHERE
 
     def __post_init__(self) -> None:
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
@@ -103,7 +108,8 @@ def perceive(
     Returns
     -------
     dict
-        The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other.
+        The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other,
+        and ``warnings``.
 
     Raises
     ------
@@ -132,12 +138,13 @@ def perceived(
     _report_stage(progress, 0)
     cloud = _read(source, settings)
     _report_stage(progress, 1)
-    labelled = to_scene(cloud, settings.up, settings.segmentation)
+    segmented = segmented_scene(cloud, settings.up, settings.segmentation, settings.region)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
-    scene = perceived_scene(labelled, model).without_unrelated_contacts
+    scene = perceived_scene(segmented.cloud, model).without_unrelated_contacts
     _report_stage(progress, 3)
     document = scene_document(scene)
+    document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
     write_scene_files(files, scene, document)

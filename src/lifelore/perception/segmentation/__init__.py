@@ -1,4 +1,5 @@
 """Segmentation: the table plane, the frame of a scene, and objects of a cloud without labels.
 
-Read in this order: `plane`, `table_frame`, `distance_segmentation`, `colour_segmentation`.
+Read in this order: `plane`, `range_noise`, `surface_patches`, `table_search`, `region`, `table_frame`,
+`scene_warnings`, `distance_segmentation`, `colour_segmentation`.
 """
