@@ -61,7 +61,7 @@ def test_too_many_objects_stop_with_one_line():
     rng = np.random.default_rng(1)
     table = rng.uniform([0, 0, 0], [1, 1, 0], (20_000, 3))
     block = rng.uniform([0, 0, 0], [0.04, 0.04, 0.06], (500, 3))
-    blocks = [block + [0.05 + 0.1 * i, 0.05 + 0.1 * j, 0] for i in range(4) for j in range(3)]
+    blocks = [block + np.array([0.05 + 0.1 * i, 0.05 + 0.1 * j, 0]) for i in range(4) for j in range(3)]
     cloud = PointCloud(np.concatenate([table, *blocks]))
     assert len(segmented_scene(cloud, up="z").cloud.objects) == 12
     with pytest.raises(InputError, match=r"cut into 12 objects, but at most 11 .*--roi, --max-range"):

@@ -65,8 +65,8 @@ def cast_boards(
         ways = (cosine * x + sine * y, cosine * y - sine * x, z)
         enters, leaves, axis = np.full(m, -np.inf), np.full(m, np.inf), np.zeros(m, np.int64)
         for k, way in enumerate(ways):
-            with np.errstate(divide="ignore", invalid="ignore"):
-                middle, reach = -start[k] / way, board.half[k] / np.abs(way)
+            inverse = 1.0 / np.where(way == 0, 1e-12, way)
+            middle, reach = -start[k] * inverse, board.half[k] * np.abs(inverse)
             axis[middle - reach > enters] = k
             np.fmax(enters, middle - reach, out=enters)
             np.fmin(leaves, middle + reach, out=leaves)

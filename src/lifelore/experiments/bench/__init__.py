@@ -20,6 +20,7 @@ BENCHES = {
     "perceive": "perception",
     "relations": "perception",
     "pictures": "perception",
+    "raw_frames": "perception",
     "factory": "action",
     "deep": "action",
     "reuse": "interaction",
@@ -54,7 +55,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition``: offices; for ``relations``: lots of scenes, judged together; for ``deep``: runs
-        of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
+        of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case; for
+        ``raw_frames``: rooms of each kind.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
