@@ -74,6 +74,8 @@ class Patch:
         Two unit vectors along the plane.
     area : float
         Square metres of occupied voxels.
+    corners : (k, 2) float64
+        The voxels in the directions of `flat`; their convex hull is the outline.
     """
 
     plane: Plane
@@ -189,7 +191,9 @@ def _pieces(voxels: OrientedVoxels, plane: Plane, on_it: NDArray[np.int64]) -> l
     cells = np.floor((spread - spread.min(axis=0)) / cell).astype(np.int64) + 2
     grid = np.zeros(cells.max(axis=0) + 3, bool)
     grid[tuple(cells.T)] = True
-    piece = ndimage.label(ndimage.binary_dilation(grid), np.ones((3, 3)))[0][tuple(cells.T)]
+    numbered = np.empty(grid.shape, np.int32)
+    ndimage.label(ndimage.binary_dilation(grid), np.ones((3, 3)), output=numbered)
+    piece = numbered[tuple(cells.T)]
     parts = [np.flatnonzero(piece == number) for number in range(1, int(piece.max()) + 1)]
     fine = np.floor(spread / voxels.size).astype(np.int64)
     made = []

@@ -160,7 +160,7 @@ def table_plane(cloud: PointCloud) -> Plane:
 
 
 def _has_table_label(labels: NDArray[np.int64] | None, at_least: int = 1) -> bool:
-    return labels is not None and np.count_nonzero(labels == TABLE) >= at_least
+    return labels is not None and int(np.count_nonzero(labels == TABLE)) >= at_least
 
 
 def _search(points: NDArray[np.float64], cloud: PointCloud, up: Up) -> Search:
