@@ -39,7 +39,7 @@ def test_one_cube_on_another_as_json(ask, cloud):
     assert answer.status == 0
     found = {(r["relation"], r["a"], r["b"]) for r in answer.document["relations"]}
     assert ("on", 3, 2) in found
-    assert {"objects", "relations", "facts", "holes", "seconds"} <= set(answer.document)
+    assert {"objects", "relations", "facts", "holes", "warnings", "seconds"} <= set(answer.document)
 
 
 def test_a_person_sees_a_table_and_what_was_written(ask, cloud, tmp_path):
@@ -349,3 +349,40 @@ status = run(sys.argv[1:])
 print(*sys.modules, file=sys.stderr)
 sys.exit(status)
 """
+
+
+@pytest.mark.parametrize(
+    ("option", "objects"),
+    [("--roi=-1,1,-1,1,-1,0.055", [2]), ("--roi=-1,inf,-1,1,-1,1", [2, 3]), ("--max-range=0.1", [2])],
+)
+def test_a_box_and_a_range_crop_the_cloud(ask, cloud, option, objects):
+    answer = ask("perceive", cloud(*two_cubes([0, 0, 0.2])), "--up", "z", option, "--json")
+    assert [entry["id"] for entry in answer.document["objects"]] == objects
+
+
+@pytest.mark.parametrize(
+    ("option", "rule"),
+    [
+        ("--roi=1,2,3", "XMIN"),
+        ("--roi=a", "six numbers"),
+        ("--max-range=0", "positive"),
+        ("--roi=5,6,5,6,5,6", "spans"),
+    ],
+)
+def test_a_region_that_cannot_be_is_one_line(ask, cloud, option, rule):
+    assert rule in ask("perceive", cloud(*two_cubes([0, 0, 0.2])), "--up", "z", option).refusal
+
+
+def test_warnings_are_printed_and_stand_in_the_document(ask, cloud):
+    path = cloud(CUBE)
+    document = ask("perceive", path, "--up", "z", "--json").document
+    codes = [warning["code"] for warning in document["warnings"]]
+    assert codes == ["units", "up_not_level", "no_table", "automatic_objects"]
+    shown = ask("perceive", path, "--up", "z").out
+    assert all(f"warning: {warning['message']}" in shown for warning in document["warnings"])
+
+
+def test_a_cloud_without_a_table_is_one_line(ask, cloud):
+    line = ask("perceive", cloud(CUBE)).refusal
+    assert "no table was found" in line
+    assert "--up X,Y,Z" in line

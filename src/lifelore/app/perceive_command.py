@@ -59,6 +59,15 @@ def perceive(
         str | None,
         Option(metavar="FILE", help="The clouds are views of one scene with these camera-to-world poses."),
     ] = None,
+    roi: Annotated[
+        str | None,
+        Option(
+            metavar="XMIN,XMAX,YMIN,YMAX,ZMIN,ZMAX", help="Use only points in this box: metres, cloud's frame."
+        ),
+    ] = None,
+    max_range: Annotated[
+        float | None, Option(metavar="M", help="Use only points within this many metres of the camera.")
+    ] = None,
     model: Annotated[
         str | None,
         Option(metavar="NAME|FILE", help="Relation model of learn-relations; default: the shipped model."),
@@ -112,7 +121,16 @@ def perceive(
 
     beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
     settings = PerceiveSettings(
-        direction(up), units, labels, _cut(segment, colours), model, memory, min_confidence, goal, beside
+        direction(up),
+        units,
+        labels,
+        _cut(segment, colours),
+        model,
+        memory,
+        min_confidence,
+        goal,
+        beside,
+        _region(roi, max_range),
     )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     if watch is not None and poses is not None:
@@ -242,6 +260,19 @@ def _cut(segment: str | None, colours: int | None):
 
     default = SegmentationSettings.colours
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]
+
+
+def _region(roi: str | None, max_range: float | None):
+    if roi is None and max_range is None:
+        return None
+    from lifelore.core.errors import InputError
+    from lifelore.perception.segmentation.region import AXES, Region
+
+    try:
+        box = None if roi is None else tuple(float(part) for part in roi.split(","))
+    except ValueError:
+        raise InputError(f"roi must be {','.join(AXES)}, six numbers, got '{roi}'") from None
+    return Region(box, max_range)
 
 
 def _check_bag_options(cloud: str, topic: str | None, index: int | None) -> None:

@@ -20,6 +20,8 @@ def print_scene(document: Mapping, written: Sequence[str]) -> None:
         console.print(table)
     n_objects, n_holes = len(document["objects"]), len(document["holes"])
     console.print(f"{_many(n_objects, 'object')}, {_many(n_holes, 'hole')}, {document['seconds']:.2f} s")
+    for warning in document["warnings"]:
+        console.print(f"warning: {warning['message']}", highlight=False, soft_wrap=True, markup=False)
     for path in written:
         console.print(f"written: {path}", highlight=False, soft_wrap=True)
 

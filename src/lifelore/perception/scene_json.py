@@ -4,7 +4,7 @@
 "edges", "grasp_seeds": [{"kind", "xyz", "approach", "closing", "width"}]}], "relations": [{"a", "b", "relation",
 "confidence", "gap", "stated"}], "facts": ["clear(3)", …], "unknown": [{"fact", "probability", "reason"}], "holes":
 [{"objects", "nodes", "xyz", "size", "opening", "centre", "outline"}], "contact_edges": [[[a, i], [b, j]]],
-"seconds"}``.
+"seconds"}``. `agent.perceive` adds ``"warnings": [{"code", "message"}]``, see `segmentation.scene_warnings`.
 
 Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
 ``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a

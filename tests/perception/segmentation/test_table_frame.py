@@ -124,7 +124,7 @@ def test_nothing_measured_is_refused(points):
 
 def test_identical_points_are_refused_or_one_scene():
     same = PointCloud(np.ones((1000, 3)))
-    with pytest.raises(InputError, match="no plane"):
+    with pytest.raises(InputError, match="no table"):
         to_scene(same)
     assert len(to_scene(same, up="z").points) == 1000
 

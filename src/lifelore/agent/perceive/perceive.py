@@ -6,7 +6,7 @@ The cloud is read before the modules that perceive it are imported, so that a ba
 import os
 import time
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from lifelore.perception.reasoning.planning_goal import Statement
     from lifelore.perception.relations.relation_classifier import RelationClassifier
     from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.region import Region
     from lifelore.perception.segmentation.table_frame import Up
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
@@ -54,6 +55,8 @@ class PerceiveSettings:
         Goal of the planning problem, see `planning_goal`.
     beside : SourceFiles
         Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
+    region : Region, optional
+        Where objects are looked for; by default everywhere.
 
     Raises
     ------
@@ -70,6 +73,7 @@ class PerceiveSettings:
     min_confidence: float | None = None
     goal: str | None = None
     beside: SourceFiles = NO_SOURCE_FILES
+    region: "Region | None" = None
 
     def __post_init__(self) -> None:
         if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
@@ -137,7 +141,8 @@ def perceive(
     Returns
     -------
     dict
-        The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other.
+        The document of `scene_json`, with the contact points of pairs that support or are adjacent to each other,
+        and ``warnings``.
 
     Raises
     ------
@@ -171,17 +176,21 @@ def perceived(
     from lifelore.perception.perceived_scene import perceived_scene
     from lifelore.perception.relations.relation_classifier import shipped_model
     from lifelore.perception.scene_json import DIGITS, scene_document
-    from lifelore.perception.segmentation.table_frame import to_cut_scene
+    from lifelore.perception.segmentation.scene_warnings import scene_warnings
+    from lifelore.perception.segmentation.table_frame import EVERYWHERE, segmented_scene
 
     model = model or shipped_model()
     began = time.perf_counter() - reading  # without imports and the model
     _report_stage(progress, 1)
-    labelled, cut_confidence = to_cut_scene(cloud, settings.up, settings.segmentation)
+    segmented = segmented_scene(cloud, settings.up, settings.segmentation, settings.region or EVERYWHERE)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
-    scene = perceived_scene(labelled, model).without_unrelated_contacts
+    scene = perceived_scene(segmented.cloud, model).without_unrelated_contacts
     _report_stage(progress, 3)
-    document = scene_document(scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=cut_confidence)
+    document = scene_document(
+        scene, min_confidence=settings.min_confidence or 0.0, cut_confidence=segmented.confidence
+    )
+    document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
     write_scene_files(files, scene, document, settings.min_confidence, settings.statements)

@@ -23,6 +23,7 @@ BENCHES = {
     "pictures": "perception",
     "views": "perception",
     "segmentation": "perception",
+    "raw_frames": "perception",
     "factory": "action",
     "deep": "action",
     "reuse": "interaction",
@@ -57,8 +58,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition``: offices; for ``relations``, ``segmentation``, ``plans`` and ``views``: lots of
-        scenes, judged together; for ``deep``: runs of learning; for ``evaluation``: 60 simulated studies each;
-        for ``novelty``: libraries of each case.
+        scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``: runs of learning; for
+        ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -1,6 +1,7 @@
 """The frame of a scene: z up, z = 0 at the table, x to the camera's right."""
 
 from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -12,26 +13,54 @@ from lifelore.core.streams import stream
 from lifelore.perception.clouds.cloud_scale import FAR
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
+from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane, over_outline
+from lifelore.perception.segmentation.region import Region, inside, over_table
+from lifelore.perception.segmentation.table_search import REACH, Search, Table, find_table, no_table
 
 Up = Literal["table", "z"] | ArrayLike
-_TABLE_SHARE = 0.10
-_BELOW_SHARE = 0.02
-_REACH = 0.6
+EVERYWHERE = Region()
 _FEW = 20
+
+
+@dataclass(frozen=True, eq=False)
+class SegmentedScene:
+    """A cloud as a scene, with the evidence that its warnings are made of.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+    automatic : bool
+        Whether the objects were cut automatically; False where the cloud had labels.
+    table : Table, optional
+        The table that was searched for; None where labels name it, or where none was found.
+    tilted : (3,) float64, optional
+        In the frame of the cloud; see `table_search.Search`.
+    confidence : mapping of int to float
+        How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
+    """
+
+    cloud: LabelledCloud
+    automatic: bool
+    table: Table | None = None
+    tilted: NDArray[np.float64] | None = None
+    confidence: Mapping[int, float] = field(default_factory=dict)
 
 
 def to_scene(
     cloud: PointCloud, up: Up = "table", segmentation: SegmentationSettings | None = None
 ) -> LabelledCloud:
-    """A cloud as a scene: upright, on its table, labelled; see `to_cut_scene`."""
-    return to_cut_scene(cloud, up, segmentation)[0]
+    """A cloud as a scene: upright, on its table, labelled; see `segmented_scene`."""
+    return segmented_scene(cloud, up, segmentation).cloud
 
 
-def to_cut_scene(
-    cloud: PointCloud, up: Up = "table", segmentation: SegmentationSettings | None = None
-) -> tuple[LabelledCloud, Mapping[int, float]]:
+def segmented_scene(
+    cloud: PointCloud,
+    up: Up = "table",
+    segmentation: SegmentationSettings | None = None,
+    region: Region = EVERYWHERE,
+) -> SegmentedScene:
     """A cloud as a scene: upright, on its table, labelled.
 
     Parameters
@@ -43,38 +72,43 @@ def to_cut_scene(
         length in the frame of the cloud.
     segmentation : SegmentationSettings, optional
         How an unlabelled cloud is segmented; a labelled cloud keeps its labels.
+    region : Region, optional
+        Where objects are looked for, in the frame of the cloud.
 
     Returns
     -------
-    scene : LabelledCloud
-        Measured points only, z = 0 at the table. Under ``up="table"`` and a vector, x is the camera's right
-        seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible table, z = 0
-        is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
-    confidence : mapping of int to float
-        How surely each object was cut, see `CutCloud`; empty for a cloud with labels.
+    SegmentedScene
+        Measured points of the region only, z = 0 at the table. Under ``up="table"`` and a vector, x is the
+        camera's right seen from above and y leads away from it; under ``"z"`` x and y stay. Without a visible
+        table, z = 0 is the lowest point but for 1 % (a vector), or stays as it is (``"z"``).
 
     Raises
     ------
     InputError
-        No point was measured, the camera is beyond `cloud_scale.FAR`, `up` breaks its rule, or no plane can be
-        found.
+        No point was measured in the region, the camera is beyond `cloud_scale.FAR`, `up` breaks its rule, no
+        table can be found and up is unknown, or a cloud without labels has too many objects.
     """
     _check_camera(cloud.camera)
-    cloud = thinned(cloud)
+    check_up(up)
+    cloud = thinned(inside(cloud, region))
     measured = cloud.measured
     if not measured.any():
         raise InputError(f"the cloud holds no finite point among {len(cloud.points)}")
     cloud = cloud.only(measured)
     points = cloud.points.astype(np.float64)
-    rotation, shift = _pose(points, cloud, up)
-    points = points @ rotation.T + shift
+    search = _search(points, cloud, up)
+    rotation, shift = _pose(points, cloud, up, search.table)
+    scene_points = points @ rotation.T + shift
     camera = None if cloud.camera is None else rotation @ cloud.camera + shift
     others = None if cloud.other_cameras is None else cloud.other_cameras @ rotation.T + shift
     labels = cloud.labels if cloud.labels is not None and cloud.is_labelled else None
     if labels is not None:
-        return LabelledCloud(points, labels, cloud.colours, camera, others), {}
-    cut = cut_cloud(points, cloud.colours, segmentation or SegmentationSettings(), camera)
-    return LabelledCloud(points, cut.labels, cloud.colours, camera, others), cut.confidence
+        scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others)
+        return SegmentedScene(scene, False, search.table, search.tilted)
+    cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
+    _check_number(cut.labels, region)
+    scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others)
+    return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence)
 
 
 def _check_camera(camera: NDArray[np.float64] | None) -> None:
@@ -84,46 +118,97 @@ def _check_camera(camera: NDArray[np.float64] | None) -> None:
         )
 
 
+def _check_number(labels: NDArray[np.int64], region: Region) -> None:
+    n = len(np.unique(labels[labels > TABLE]))
+    if n > region.max_objects:
+        raise InputError(
+            f"the cloud was cut into {n} objects, but at most {region.max_objects} are perceived; crop it to the"
+            " table (--roi, --max-range), or give labels"
+        )
+
+
+def _cut(
+    points: NDArray[np.float64],
+    scene_points: NDArray[np.float64],
+    cloud: PointCloud,
+    camera: NDArray[np.float64] | None,
+    table: Table | None,
+    settings: SegmentationSettings,
+) -> CutCloud:
+    """Labels of the points over the table and of the table itself; of all points where there is no table.
+
+    `camera` is in the scene's frame.
+    """
+    labels = np.full(len(points), UNLABELLED, np.int64)
+    upright_points = scene_points.copy()
+    if table is None:
+        chosen = np.ones(len(points), bool)
+        lift = np.array([0.0, 0.0, 2 * settings.table_band - upright_points[:, 2].min()])
+        upright_points += lift
+        camera = None if camera is None else camera + lift
+    else:
+        on_it, over = over_table(points, cloud.camera, table)
+        chosen = on_it | over
+        # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
+        upright_points[on_it, 2] = 0.0
+    colours = None if cloud.colours is None else cloud.colours[chosen]
+    cut = cut_cloud(upright_points[chosen], colours, settings, camera)
+    labels[chosen] = cut.labels
+    return CutCloud(labels, cut.confidence)
+
+
 def table_plane(cloud: PointCloud) -> Plane:
     """The table's plane in the frame of the cloud, its normal on the side of the objects.
 
-    Found among the points labelled as table, if any, else among the unlabelled points. The normal points to the
-    labelled objects; without labels to the side with three quarters of the points over the plane's outline, else
-    to the camera.
+    Fitted to the points labelled as table, if any; else found by `table_search` among the unlabelled points.
 
     Raises
     ------
     InputError
-        No plane can be found.
+        No table can be found.
     """
-    points = cloud.points[cloud.measured].astype(np.float64)
-    labels = None if cloud.labels is None else cloud.labels[cloud.measured]
-    return _table_plane(points, labels, cloud.camera)
+    cloud = cloud.only(cloud.measured)
+    points = cloud.points.astype(np.float64)
+    search = _search(points, cloud, "table")
+    return _labelled_plane(points, cloud) if search.table is None else search.table.plane
 
 
-def _table_plane(
-    points: NDArray[np.float64], labels: NDArray[np.int64] | None, camera: NDArray[np.float64] | None
-) -> Plane:
-    candidates = _table_candidates(points, labels)
-    plane, _ = dominant_plane(candidates, stream(0, "perception", "table plane"))
-    objects = None if labels is None else points[labels > TABLE]
-    if objects is not None and len(objects):
+def _has_table_label(labels: NDArray[np.int64] | None, at_least: int = 1) -> bool:
+    return labels is not None and int(np.count_nonzero(labels == TABLE)) >= at_least
+
+
+def _search(points: NDArray[np.float64], cloud: PointCloud, up: Up) -> Search:
+    """The table of a cloud without a labelled table; without one where labels name it."""
+    if _has_table_label(cloud.labels, 3 if isinstance(up, str) and up == "table" else 1):
+        return Search(None)
+    free = None if cloud.labels is None else cloud.labels == UNLABELLED
+    if isinstance(up, str):
+        direction = np.array([0.0, 0.0, 1.0]) if up == "z" else None
+    else:
+        direction = _unit(up)
+    search = find_table(points, cloud.camera, direction, free)
+    if search.table is None and direction is None:
+        raise no_table(_size_hint(points))
+    return search
+
+
+def _size_hint(points: NDArray[np.float64]) -> str:
+    span = float(np.ptp(points, axis=0).max())
+    return "" if span > 0.25 else f" (it spans {100 * span:.1f} cm: check its units)"
+
+
+def _labelled_plane(points: NDArray[np.float64], cloud: PointCloud) -> Plane:
+    """The plane of the points labelled as table; up is the side of the objects, without objects the camera's."""
+    assert cloud.labels is not None
+    plane, _ = dominant_plane(points[cloud.labels == TABLE], stream(0, "perception", "table plane"))
+    objects = points[cloud.labels > TABLE]
+    if len(objects):
         side = float(np.median(plane.height(objects)))
     else:
         side = _seen_side(points, plane)
-        if side == 0.0 and camera is not None:
-            side = float(plane.height(camera))
+        if side == 0.0 and cloud.camera is not None:
+            side = float(plane.height(cloud.camera))
     return plane if side >= 0 else plane.flipped()
-
-
-def _table_candidates(points: NDArray[np.float64], labels: NDArray[np.int64] | None) -> NDArray[np.float64]:
-    """Candidate points of the table's plane: those labelled as table, else the unlabelled."""
-    if labels is None or not labels.any():
-        return points
-    for mask in (labels == TABLE, labels == UNLABELLED):
-        if np.count_nonzero(mask) >= 3:
-            return points[mask]
-    raise InputError("no point is labelled as table or left over, so up is not known; give up as a vector or 'z'")
 
 
 def _seen_side(points: NDArray[np.float64], plane: Plane) -> float:
@@ -133,7 +218,7 @@ def _seen_side(points: NDArray[np.float64], plane: Plane) -> float:
     """
     flat = points @ upright(plane.normal)[:2].T
     height = plane.height(points)
-    near = (np.abs(height) > NEAR) & (np.abs(height) < _REACH)
+    near = (np.abs(height) > NEAR) & (np.abs(height) < REACH)
     on_it = np.flatnonzero(np.abs(height) <= NEAR)
     near[near] = over_outline(flat[near], flat[on_it[:: max(1, len(on_it) // 5000)]])
     if np.count_nonzero(near) < _FEW:
@@ -143,20 +228,22 @@ def _seen_side(points: NDArray[np.float64], plane: Plane) -> float:
 
 
 def _pose(
-    points: NDArray[np.float64], cloud: PointCloud, up: Up
+    points: NDArray[np.float64], cloud: PointCloud, up: Up, table: Table | None
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Rotation (3, 3) and shift (3,) from the frame of the cloud to the scene's."""
-    check_up(up)
-    if isinstance(up, str):
-        if up == "table":
-            plane = _table_plane(points, cloud.labels, cloud.camera)
-            return upright(plane.normal), np.array([0.0, 0.0, plane.offset])
-        table = _table_height(points[:, 2], points, np.array([0.0, 0.0, 1.0]), cloud.labels)
-        return np.eye(3), np.array([0.0, 0.0, 0.0 if table is None else -table])
-    normal = _unit(up)
-    heights = points @ normal
-    table = _table_height(heights, points, normal, cloud.labels)
-    return upright(normal), np.array([0.0, 0.0, -float(np.percentile(heights, 1)) if table is None else -table])
+    if isinstance(up, str) and up == "table":
+        plane = _labelled_plane(points, cloud) if table is None else table.plane
+        return upright(plane.normal), np.array([0.0, 0.0, plane.offset])
+    is_z = isinstance(up, str)
+    normal = np.array([0.0, 0.0, 1.0]) if is_z else _unit(up)
+    heights = points[:, 2] if is_z else points @ normal
+    if _has_table_label(cloud.labels):
+        height = float(np.median(heights[cloud.labels == TABLE]))
+    elif table is not None:
+        height = float(np.median(heights[over_table(points, cloud.camera, table)[0]]))
+    else:
+        height = 0.0 if is_z else float(np.percentile(heights, 1))
+    return np.eye(3) if is_z else upright(normal), np.array([0.0, 0.0, -height])
 
 
 def check_up(up: Up) -> None:
@@ -176,25 +263,6 @@ def _unit(up: ArrayLike) -> NDArray[np.float64]:
     if not (np.isfinite(length) and length > 0):
         raise InputError(f"up must be three finite numbers, not all zero, got {up!r}")
     return vector / length
-
-
-def _table_height(
-    heights: NDArray[np.float64], points: NDArray[np.float64], normal: NDArray[np.float64], labels: NDArray | None
-) -> float | None:
-    """Height of the table along a known up: of its labels, else of a broad level plane with few points below."""
-    if labels is not None and (labels == TABLE).any():
-        return float(np.median(heights[labels == TABLE]))
-    free = np.ones(len(points), bool) if labels is None else labels < TABLE
-    if np.count_nonzero(free) < 3:
-        return None
-    try:
-        plane, _ = dominant_plane(points[free], stream(0, "perception", "table height"), up=normal)
-    except InputError:
-        return None
-    on_it = np.abs(plane.height(points)) <= NEAR
-    level = float(np.median(heights[on_it])) if on_it.any() else np.inf
-    below = np.mean(heights < level - 3 * NEAR)
-    return level if on_it.mean() >= _TABLE_SHARE and below <= _BELOW_SHARE else None
 
 
 def upright(normal: NDArray[np.float64]) -> NDArray[np.float64]:

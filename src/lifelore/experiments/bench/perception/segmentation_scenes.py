@@ -20,7 +20,7 @@ from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_truth import read_relations
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_cut_scene, to_scene
+from lifelore.perception.segmentation.table_frame import Up, segmented_scene, to_scene
 
 GIVEN = "labels given"
 METHODS = {
@@ -111,9 +111,10 @@ def true_labels(scene: TrueScene) -> NDArray[np.int64]:
 def _scene(
     cloud: PointCloud, up: Up, settings: SegmentationSettings | None
 ) -> tuple[LabelledCloud, Mapping[int, float]]:
-    """As `to_cut_scene`; if a scene shows too few colours to be cut by colour, it has no objects."""
+    """Scene and confidences; if a scene shows too few colours to be cut by colour, it has no objects."""
     try:
-        return to_cut_scene(cloud, up, settings)
+        found = segmented_scene(cloud, up, settings)
+        return found.cloud, found.confidence
     except InputError as error:
         if settings is None or settings.method != "colour" or "colours" not in str(error):
             raise

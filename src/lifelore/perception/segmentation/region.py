@@ -1,0 +1,109 @@
+"""The region of a cloud in which objects are looked for: a box, a range, and the space over the table."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.segmentation.range_noise import band
+from lifelore.perception.segmentation.table_search import REACH, Table
+
+AXES = ("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX")
+MAX_OBJECTS = 60
+"""Most objects of a cloud without labels; more come from a region that is too large."""
+_INSIDE_SHARE = 0.5
+
+
+@dataclass(frozen=True)
+class Region:
+    """Where objects are looked for.
+
+    Parameters
+    ----------
+    roi : six numbers, optional
+        XMIN, XMAX, YMIN, YMAX, ZMIN, ZMAX in metres, in the frame of the cloud; points outside are dropped.
+    max_range : float, optional
+        Metres from the camera, or from the origin where the camera is unknown; points beyond are dropped.
+    max_objects : int
+        Largest number of objects cut from a cloud without labels.
+
+    Raises
+    ------
+    InputError
+        A value breaks its rule.
+    """
+
+    roi: Sequence[float] | None = None
+    max_range: float | None = None
+    max_objects: int = MAX_OBJECTS
+
+    def __post_init__(self) -> None:
+        if self.roi is not None:
+            _check_roi(self.roi)
+        if self.max_range is not None and not (np.isfinite(self.max_range) and self.max_range > 0):
+            raise InputError(f"max_range must be a positive number of metres, got {self.max_range}")
+        if self.max_objects < 1:
+            raise InputError(f"max_objects must be at least 1, got {self.max_objects}")
+
+
+def _check_roi(roi: Sequence[float]) -> None:
+    low, high = np.asarray(roi[::2], float), np.asarray(roi[1::2], float)
+    if len(roi) != 6 or np.isnan([*low, *high]).any():
+        raise InputError(f"roi must be six numbers {','.join(AXES)}, got {','.join(map(str, roi))}")
+    for axis in range(3):
+        if not low[axis] < high[axis]:
+            raise InputError(
+                f"roi must have {AXES[2 * axis]} < {AXES[2 * axis + 1]}, got {low[axis]:g} and {high[axis]:g}"
+            )
+
+
+def inside(cloud: PointCloud, region: Region) -> PointCloud:
+    """The measured points of a cloud that are in the region; the cloud itself where the region has no limit.
+
+    Raises
+    ------
+    InputError
+        No point is in the region.
+    """
+    if region.roi is None and region.max_range is None:
+        return cloud
+    keep = cloud.measured
+    if region.roi is not None:
+        low, high = np.asarray(region.roi, float).reshape(3, 2).T
+        with np.errstate(invalid="ignore"):
+            keep &= ((cloud.points >= low) & (cloud.points <= high)).all(axis=1)
+    if region.max_range is not None:
+        centre = np.zeros(3) if cloud.camera is None else cloud.camera
+        with np.errstate(invalid="ignore"):
+            keep &= np.linalg.norm(cloud.points - centre, axis=1) <= region.max_range
+    if not keep.any():
+        low, high = np.nanmin(cloud.points, axis=0), np.nanmax(cloud.points, axis=0)
+        spans = ", ".join(f"{a} {x:.2f} to {y:.2f}" for a, x, y in zip("xyz", low, high, strict=True))
+        raise InputError(
+            f"the region (roi, max_range) holds no point of the cloud, which spans {spans} m; widen it"
+        )
+    return cloud.only(keep)
+
+
+def over_table(
+    points: NDArray[np.float64], camera: NDArray[np.float64] | None, table: Table
+) -> tuple[NDArray[np.bool_], NDArray[np.bool_]]:
+    """Which points (n, 3) are the table, and which stand over it; both (n,) bool.
+
+    The table's points lie within the band of its plane and within its outline. Points over it are up to `REACH`
+    above the band. Points of walls and furniture are left out: large flat patches that are mostly not over it.
+    """
+    heights, bands = table.plane.height(points), band(points, camera)
+    low = (heights >= -bands) & (heights <= REACH)
+    low[low] = table.patch.covers(points[low])
+    on_it = low & (heights <= bands)
+    over = low & ~on_it
+    for patch in table.background:
+        near = np.abs(patch.plane.height(points)) <= bands
+        near[near] = patch.covers(points[near])
+        if np.count_nonzero(near & over) < _INSIDE_SHARE * np.count_nonzero(near):
+            over &= ~near
+    return on_it, over

@@ -1,0 +1,140 @@
+"""Warnings of a scene: signs that its table, its up direction, its objects or its units may be wrong."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.perception.segmentation.range_noise import band
+from lifelore.perception.segmentation.table_frame import SegmentedScene
+
+TINY = 0.02
+"""Metres; an object smaller in all directions is tiny."""
+_TINY_SHARE = 0.5
+SURE = 0.8
+"""Confidence of a cut below which an object is named as doubtful."""
+_FEW_TABLE_SHARE = 0.05
+GAP = 0.03
+"""Metres beyond the table's band; a larger gap between the table and the lowest object is a warning."""
+NARROW, WIDE = 0.25, 12.0
+"""Metres: widths of a scene below and above which its units are doubted; a Kinect's table is about 1 m wide."""
+NEAREST = 0.15
+"""Metres: median range below which the units are doubted; depth cameras measure from about 0.3 m."""
+
+
+@dataclass(frozen=True)
+class SceneWarning:
+    """A warning: a `code` for programs, a `message` of one line for people."""
+
+    code: str
+    message: str
+
+
+def scene_warnings(scene: SegmentedScene) -> tuple[SceneWarning, ...]:
+    """The warnings of a scene, the most fundamental first; empty for a labelled scene without a doubt.
+
+    Codes: ``units``, ``up_not_level``, ``no_table``, ``table_empty``, ``few_table_points``, ``table_gap``,
+    ``tiny_objects``, ``automatic_objects``.
+    """
+    found = [*_units(scene), *_table(scene), *_objects(scene)]
+    return tuple(SceneWarning(code, message) for code, message in found)
+
+
+def _units(scene: SegmentedScene) -> list[tuple[str, str]]:
+    points, camera = scene.cloud.points, scene.cloud.camera
+    low, high = np.percentile(points[:: max(1, len(points) // 20_000)], (1, 99), axis=0)
+    width = float(np.max(high - low))
+    wrong = [f"is {100 * width:.3g} cm wide"] if width < NARROW else []
+    if width > WIDE:
+        wrong = [f"is {width:.3g} m wide"]
+    if camera is not None and np.abs(camera).max() < WIDE:
+        away = float(np.median(np.linalg.norm(points - camera, axis=1)))
+        if 0 < away < NEAREST:
+            wrong.append(f"is seen from {100 * away:.3g} cm")
+    if not wrong:
+        return []
+    text = (
+        f"the scene {' and '.join(wrong)}: its coordinates may be in cm or inch; convert them to m or mm (--units)"
+    )
+    return [("units", text)]
+
+
+def _table(scene: SegmentedScene) -> list[tuple[str, str]]:
+    labels = scene.cloud.labels
+    if not scene.automatic and not (labels == TABLE).any():
+        return []
+    if scene.automatic and scene.table is None:
+        return _missing_table(scene)
+    found = []
+    if scene.table is not None and scene.table.standing == 0:
+        found.append(
+            ("table_empty", "nothing stands on the plane that was taken for the table; check it, or give up")
+        )
+    share = float(np.mean(labels == TABLE))
+    if share < _FEW_TABLE_SHARE:
+        text = (
+            f"only {100 * share:.1f} % of the points lie on the table; check up (--up), or crop the cloud (--roi)"
+        )
+        found.append(("few_table_points", text))
+    return found + _gap(scene)
+
+
+def _missing_table(scene: SegmentedScene) -> list[tuple[str, str]]:
+    missing = ("no_table", "no table was found: objects are cut without it, and their support is unknown")
+    hint = "check --up, or leave it out so that the table's normal is taken"
+    if scene.tilted is not None:
+        x, y, z = scene.tilted
+        hint = (
+            f"objects stand on a plane with the normal {x:.3f},{y:.3f},{z:.3f}: try --up={x:.3f},{y:.3f},{z:.3f}"
+        )
+    return [("up_not_level", f"no plane with objects on it is level with the given up; {hint}"), missing]
+
+
+def _gap(scene: SegmentedScene) -> list[tuple[str, str]]:
+    """A warning where even the lowest object begins above the table, or most objects lie below it."""
+    bottoms, middles = [], []
+    for label in scene.cloud.objects:
+        heights = scene.cloud.of(label)[:, 2]
+        bottoms.append(float(np.percentile(heights, 1)))
+        middles.append(float(np.median(heights)))
+    if not bottoms:
+        return []
+    if np.median(middles) < 0:
+        text = "most objects lie below the table's plane; up may point downwards: give it (--up X,Y,Z)"
+        return [("table_gap", text)]
+    allowed = GAP + _band(scene)
+    if min(bottoms) > allowed:
+        text = f"the lowest object begins {100 * min(bottoms):.0f} cm above the table; it may not be the table"
+        return [("table_gap", text)]
+    return []
+
+
+def _band(scene: SegmentedScene) -> float:
+    """Median half width of the table's band over the points of objects, metres."""
+    objects = scene.cloud.points[scene.cloud.labels > TABLE]
+    return float(np.median(band(objects[::50], scene.cloud.camera)))
+
+
+def _objects(scene: SegmentedScene) -> list[tuple[str, str]]:
+    found = []
+    sizes: list[NDArray[np.float64]] = [np.ptp(scene.cloud.of(label), axis=0) for label in scene.cloud.objects]
+    tiny = sum(float(size.max()) < TINY for size in sizes)
+    if sizes and tiny > _TINY_SHARE * len(sizes):
+        text = (
+            f"{tiny} of {len(sizes)} objects are smaller than {100 * TINY:.0f} cm; check the units and the labels"
+        )
+        found.append(("tiny_objects", text))
+    if scene.automatic and sizes:
+        found.append(("automatic_objects", _automatic(len(sizes), scene)))
+    return found
+
+
+def _automatic(n: int, scene: SegmentedScene) -> str:
+    doubtful = [label for label, confidence in scene.confidence.items() if confidence < SURE]
+    if not scene.confidence:
+        return f"{n} objects were cut automatically; objects that touch may be merged: labels are surer"
+    if not doubtful:
+        return f"{n} objects were cut automatically, each with a confidence of at least {SURE:g}"
+    named = ", ".join(map(str, doubtful))
+    return f"{n} objects were cut automatically; {len(doubtful)} of them with a confidence below {SURE:g}: {named}"

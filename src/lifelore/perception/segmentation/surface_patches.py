@@ -1,0 +1,204 @@
+"""Flat patches of a cloud: planes found in turn among oriented voxels, each cut into connected pieces."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.segmentation.plane import Plane, over_outline
+from lifelore.perception.segmentation.range_noise import band
+
+COARSEST = 0.02
+"""Metres: side of a voxel; a smaller scene gets smaller voxels, a fiftieth of its width."""
+LEAST_AREA = 0.004
+"""Square metres; a smaller plane is not looked for."""
+_MOST_PLANES = 16
+_HYPOTHESES = 200
+_SAMPLE = 3000
+_NEIGHBOURS = 20
+_ALIKE = np.cos(np.radians(30.0))
+"""A voxel is part of a plane only if its own normal is within 30° of the plane's."""
+_MOST_VOXELS = 25_000
+
+
+@dataclass(frozen=True, eq=False)
+class OrientedVoxels:
+    """A cloud as voxels with normals.
+
+    Parameters
+    ----------
+    points, normals : (m, 3) float64
+        Mean point, and unit normal of its neighbourhood, of either sign.
+    counts : (m,) int64
+        Points of the cloud in each voxel.
+    bands : (m,) float64
+        Half width of a plane's band there, metres.
+    free : (m,) bool
+        Whether a plane may be made of it.
+    inverse : (n,) int64
+        The voxel of each point of the cloud.
+    size : float
+        Side of a voxel, metres.
+    """
+
+    points: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    counts: NDArray[np.int64]
+    bands: NDArray[np.float64]
+    free: NDArray[np.bool_]
+    inverse: NDArray[np.int64]
+    size: float
+
+    @cached_property
+    def links(self) -> NDArray[np.int64]:
+        """(k, 2) pairs of voxels nearer than two and a half sides."""
+        from scipy.spatial import KDTree
+
+        return KDTree(self.points).query_pairs(2.5 * self.size, output_type="ndarray")
+
+
+@dataclass(frozen=True, eq=False)
+class Patch:
+    """A connected piece of a plane.
+
+    Parameters
+    ----------
+    plane : Plane
+        Its normal has either sign.
+    voxels : (k,) int64
+        Voxels on it.
+    flat : (2, 3) float64
+        Two unit vectors along the plane.
+    area : float
+        Square metres of occupied voxels.
+    corners : (k, 2) float64
+        The voxels in the directions of `flat`; their convex hull is the outline.
+    """
+
+    plane: Plane
+    voxels: NDArray[np.int64]
+    flat: NDArray[np.float64]
+    area: float
+    corners: NDArray[np.float64]
+
+    def covers(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
+        """(n,) bool: whether points (n, 3) lie over or under its convex outline."""
+        return over_outline(points @ self.flat.T, self.corners)
+
+
+def oriented_voxels(
+    points: NDArray[np.float64], camera: NDArray[np.float64] | None, free: NDArray[np.bool_]
+) -> OrientedVoxels:
+    """The voxels of a cloud; those with `free` (n,) and other points are separate."""
+    low, high = np.percentile(points[:: max(1, len(points) // 20_000)], (2, 98), axis=0)
+    size = float(np.clip(np.max(high - low) / 50, 1e-4, COARSEST))
+    labelled = LabelledCloud(points, np.where(free, 0, 2).astype(np.int64))
+    thin = voxelised(labelled, size)
+    while len(thin.counts) > _MOST_VOXELS:
+        size *= 1.5
+        thin = voxelised(labelled, size)
+    places = thin.cloud.points
+    return OrientedVoxels(
+        places, _normals(places), thin.counts, band(places, camera), thin.cloud.labels == 0, thin.inverse, size
+    )
+
+
+def _normals(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(m, 3) direction of least spread among the nearest neighbours of each point."""
+    from scipy.spatial import KDTree
+
+    k = min(_NEIGHBOURS, len(points))
+    if k < 3:
+        return np.tile([0.0, 0.0, 1.0], (len(points), 1))
+    near = points[KDTree(points).query(points, k)[1]]
+    near -= near.mean(axis=1, keepdims=True)
+    return np.linalg.eigh(np.einsum("nki,nkj->nij", near, near))[1][:, :, 0]
+
+
+def patches(voxels: OrientedVoxels, rng: np.random.Generator) -> list[Patch]:
+    """The connected flat pieces of a cloud, those of the largest plane first; `rng` draws the hypotheses."""
+    left = voxels.free.copy()
+    found: list[Patch] = []
+    for _ in range(_MOST_PLANES):
+        places = np.flatnonzero(left)
+        if len(places) * voxels.size**2 < LEAST_AREA or len(places) < 12:
+            break
+        plane = _best_plane(voxels, places, rng)
+        near = places[np.abs(plane.height(voxels.points[places])) <= voxels.bands[places]]
+        on_it = near[np.abs(voxels.normals[near] @ plane.normal) >= _ALIKE]
+        if len(on_it) * voxels.size**2 < LEAST_AREA or len(on_it) < 12:
+            break
+        left[near] = False
+        found += _pieces(voxels, plane, on_it)
+    return found
+
+
+def _best_plane(voxels: OrientedVoxels, places: NDArray[np.int64], rng: np.random.Generator) -> Plane:
+    """The plane with most agreeing voxels among `places`, from their own normals, refined."""
+    sample = places if len(places) <= _SAMPLE else places[rng.choice(len(places), _SAMPLE, replace=False)]
+    starts = sample[rng.integers(0, len(sample), _HYPOTHESES)]
+    normals = voxels.normals[starts]
+    offsets = -np.einsum("ij,ij->i", normals, voxels.points[starts])
+    votes = _votes(voxels, sample, normals, offsets)
+    best, best_votes = None, -1
+    for start in np.argsort(-votes, kind="stable")[:8]:
+        plane = Plane(normals[start], float(offsets[start]))
+        for _ in range(4):
+            plane = _fitted(voxels, sample, plane)
+        agreed = int(_votes(voxels, sample, plane.normal[None], np.array([plane.offset]))[0])
+        if agreed > best_votes:
+            best, best_votes = plane, agreed
+    assert best is not None
+    return _fitted(voxels, places, best)
+
+
+def _votes(
+    voxels: OrientedVoxels, sample: NDArray[np.int64], normals: NDArray[np.float64], offsets: NDArray[np.float64]
+) -> NDArray[np.int64]:
+    near = np.abs(voxels.points[sample] @ normals.T + offsets) <= voxels.bands[sample, None]
+    return (near & (np.abs(voxels.normals[sample] @ normals.T) >= _ALIKE)).sum(axis=0)
+
+
+def _fitted(voxels: OrientedVoxels, places: NDArray[np.int64], plane: Plane) -> Plane:
+    """The plane of least squares, each voxel weighed by its noise, of the voxels that agree with `plane`."""
+    agree = (np.abs(plane.height(voxels.points[places])) <= voxels.bands[places]) & (
+        np.abs(voxels.normals[places] @ plane.normal) >= _ALIKE
+    )
+    close = places[agree]
+    return plane if len(close) < 3 else plane_of(voxels.points[close], voxels.bands[close] ** -2, plane)
+
+
+def plane_of(points: NDArray[np.float64], weights: NDArray[np.float64], like: Plane) -> Plane:
+    """The plane of weighted least squares through points (n, 3), its normal on the side of that of `like`."""
+    centre = weights @ points / weights.sum()
+    away = points - centre
+    normal = np.linalg.eigh((away * weights[:, None]).T @ away)[1][:, 0]
+    if normal @ like.normal < 0:
+        normal = -normal
+    return Plane(normal, float(-normal @ centre))
+
+
+def _pieces(voxels: OrientedVoxels, plane: Plane, on_it: NDArray[np.int64]) -> list[Patch]:
+    """Connected pieces, largest first; gaps of two cells, as an object's shadow leaves, do not part them."""
+    from scipy import ndimage
+
+    flat = np.linalg.svd(plane.normal[None])[2][1:]
+    spread = voxels.points[on_it] @ flat.T
+    cell = 2.5 * voxels.size
+    cells = np.floor((spread - spread.min(axis=0)) / cell).astype(np.int64) + 2
+    grid = np.zeros(cells.max(axis=0) + 3, bool)
+    grid[tuple(cells.T)] = True
+    numbered = np.empty(grid.shape, np.int32)
+    ndimage.label(ndimage.binary_dilation(grid), np.ones((3, 3)), output=numbered)
+    piece = numbered[tuple(cells.T)]
+    parts = [np.flatnonzero(piece == number) for number in range(1, int(piece.max()) + 1)]
+    fine = np.floor(spread / voxels.size).astype(np.int64)
+    made = []
+    for part in sorted(parts, key=len, reverse=True):
+        area = len(np.unique(fine[part], axis=0)) * voxels.size**2
+        if area >= LEAST_AREA and len(part) >= 6:
+            made.append(Patch(plane, on_it[part], flat, area, spread[part]))
+    return made

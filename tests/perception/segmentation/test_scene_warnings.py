@@ -1,0 +1,124 @@
+"""Warnings: clouds that would be misunderstood without a word, and good clouds that give none."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.perception.clouds.cloud_scale import in_metres
+from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.segmentation.scene_warnings import scene_warnings
+from lifelore.perception.segmentation.table_frame import segmented_scene
+
+CAMERA = np.array([0.1, -0.9, 0.7])
+FORWARD = -CAMERA / np.linalg.norm(CAMERA)
+RIGHT = np.cross(FORWARD, [0, 0, 1]) / np.linalg.norm(np.cross(FORWARD, [0, 0, 1]))
+AXES = np.stack([RIGHT, np.cross(FORWARD, RIGHT), FORWARD])
+"""A camera that looks 38° down at the origin of a table: x right, y down, z forward."""
+TRUE_UP = AXES @ [0, 0, 1]
+
+
+def faces(x, y, side, height, bottom=0.0, n=2500):
+    """The top and the two visible sides of a box."""
+    rng = np.random.default_rng(int(1000 * (x + y + 3)))
+    points = rng.uniform([x, y, bottom], [x + side, y + side, bottom + height], (n, 3))
+    face = rng.integers(0, 3, n)
+    points[face == 0, 1], points[face == 1, 0], points[face == 2, 2] = y, x + side, bottom + height
+    return points
+
+
+TABLE = np.random.default_rng(1).uniform([-0.5, -0.4, 0], [0.5, 0.4, 0], (12_000, 3))
+BOXES = [faces(-0.2, 0.0, 0.1, 0.15), faces(0.1, -0.1, 0.08, 0.08)]
+
+
+def labels_of(parts):
+    return np.repeat(np.arange(1, len(parts) + 1), [len(part) for part in parts])
+
+
+def seen(points, labels=None):
+    """A cloud in the camera's frame."""
+    return PointCloud((points - CAMERA) @ AXES.T, labels, camera=np.zeros(3))
+
+
+WHOLE = np.concatenate([TABLE, *BOXES])
+
+
+def codes(scene):
+    return [warning.code for warning in scene_warnings(scene)]
+
+
+def test_a_table_with_boxes_gives_only_the_hint_of_automatic_objects():
+    scene = segmented_scene(seen(WHOLE))
+    assert len(scene.cloud.objects) == 2
+    assert codes(scene) == ["automatic_objects"]
+
+
+def test_labels_without_a_doubt_give_no_warning():
+    assert codes(segmented_scene(seen(WHOLE, labels_of([TABLE, *BOXES])))) == []
+
+
+def test_z_in_a_camera_frame_finds_no_level_table():
+    found = codes(segmented_scene(seen(WHOLE), up="z"))
+    assert found[:2] == ["up_not_level", "no_table"]
+
+
+def test_a_tilted_camera_is_told_the_up_direction_that_fits():
+    scene = segmented_scene(seen(WHOLE), up=(0, -1, 0))
+    warning = scene_warnings(scene)[0]
+    assert warning.code == "up_not_level"
+    hint = np.array([float(x) for x in warning.message.rsplit("=", 1)[1].split(",")])
+    assert hint @ TRUE_UP / np.linalg.norm(hint) > np.cos(np.radians(1.5))
+    level = segmented_scene(seen(WHOLE), up=hint)
+    assert codes(level) == ["automatic_objects"]
+
+
+@pytest.mark.parametrize("per_metre", [100.0, 39.37])
+def test_centimetres_and_inches_read_as_millimetres_are_doubted(per_metre):
+    cloud = in_metres(PointCloud(seen(WHOLE).points * per_metre, camera=np.zeros(3)), "mm")
+    assert codes(segmented_scene(cloud, up=TRUE_UP))[0] == "units"
+    with pytest.raises(InputError, match="check its units"):
+        segmented_scene(cloud)
+
+
+def test_without_any_plane_there_is_no_table():
+    fog = PointCloud(np.random.default_rng(3).uniform([-1, -1, 0.5], [1, 1, 2.0], (5000, 3)), camera=np.zeros(3))
+    with pytest.raises(InputError, match="no table was found"):
+        segmented_scene(fog)
+    assert {"up_not_level", "no_table"} <= set(codes(segmented_scene(fog, up=TRUE_UP)))
+
+
+def test_an_object_alone_is_no_table():
+    alone = seen(faces(-0.1, 0.0, 0.2, 0.15, n=6000))
+    with pytest.raises(InputError, match="no table was found"):
+        segmented_scene(alone)
+    scene = segmented_scene(alone, up=TRUE_UP)
+    assert "no_table" in codes(scene)
+    assert len(scene.cloud.objects) == 1
+
+
+def test_a_bare_table_is_empty():
+    assert codes(segmented_scene(seen(TABLE))) == ["table_empty"]
+
+
+def test_objects_over_the_labelled_table_are_far_from_it():
+    parts = [TABLE, faces(-0.2, 0.0, 0.1, 0.1, bottom=0.2)]
+    assert codes(segmented_scene(seen(np.concatenate(parts), labels_of(parts)))) == ["table_gap"]
+
+
+def test_up_that_points_down_puts_objects_below():
+    parts = [TABLE, *BOXES]
+    assert "table_gap" in codes(segmented_scene(seen(WHOLE, labels_of(parts)), up=-TRUE_UP))
+
+
+def test_a_table_of_few_points():
+    parts = [TABLE[:200], *BOXES]
+    assert codes(segmented_scene(seen(np.concatenate(parts), labels_of(parts)))) == ["few_table_points"]
+
+
+def test_tiny_objects():
+    specks = [faces(0.1 * k, 0.0, 0.01, 0.01, n=200) for k in range(-3, 4)]
+    parts = [TABLE, *specks]
+    assert codes(segmented_scene(seen(np.concatenate(parts), labels_of(parts)))) == ["tiny_objects"]
+
+
+def test_a_scene_in_inches_read_as_metres():
+    assert "units" in codes(segmented_scene(PointCloud(WHOLE * 15, labels_of([TABLE, *BOXES]))))
