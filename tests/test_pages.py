@@ -46,7 +46,7 @@ EXPECTED = {
 """Words of the output of each page, in this order."""
 NOT_RUN = {
     "ros2 ": "needs ROS 2 and a robot",
-    "lifelore scenes --n 600": "takes minutes",
+    "lifelore scenes --n 800": "takes minutes",
     "lifelore learn-relations scenes": "reads these scenes",
     "lifelore perceive depth.png": "needs a depth image",
     "lifelore perceive organised.pcd": "needs a cloud and masks",

@@ -174,3 +174,23 @@ def test_what_ten_runs_a_pair_give_is_what_the_claims_measured():
     ratio = bandits["IDS_doubting_over_best_GP_UCB_unseen"]
     low, high = ratio["ci95"]
     assert f"{ratio['value']:.2f} [{low:.2f} {high:.2f}] of that regret" in PAGE.replace("\n", " ")
+
+
+def test_what_ten_runs_a_pair_give_in_other_worlds_is_what_the_claims_measured():
+    golf, pacman = (
+        json.loads((RESULTS / claim / "result.json").read_text(encoding="utf-8"))["measured"]
+        for claim in ("C4.2", "C4.4")
+    )
+    measured = [
+        (golf["error_shot_2_learnt"], golf["error_shot_2_uncertain"], 1, 0.051),
+        (pacman["reached_bpr"], pacman["reached_bpr_doubting"], 100, 0.51),
+        (pacman["median_needed_bpr"], pacman["median_needed_bpr_doubting"], 1, 0.01),
+        (pacman["regret_bpr"], pacman["regret_bpr_doubting"], 1, 0.51),
+    ]
+    told = PAGE.split("| world | plug-in | uncertain | goal |")[1].splitlines()[2:6]
+    for line, (plug_in, uncertain, factor, near) in zip(told, measured, strict=True):
+        numbers = [float(cell.strip(" %").replace(",", "")) for cell in line.strip("|").split("|")[1:3]]
+        found = [factor * measure["value"] for measure in (plug_in, uncertain)]
+        assert numbers == pytest.approx(found, abs=near), line
+    assert f"{100 * pacman['reached_stretch_bpr']['value']:.0f} % too" in PAGE
+    assert f"as with exact ones ({golf['error_shot_2_exact']['value']:.1f})" in PAGE

@@ -10,6 +10,7 @@ import pytest
 
 from lifelore.app.command_line import run
 from lifelore.core.compiled.kernel_cache import kernel_cache_dir
+from lifelore.core.compiled.machine_code import machine_code_folder
 
 JIT_OFF = os.environ.get("NUMBA_DISABLE_JIT", "0") != "0"
 
@@ -21,14 +22,15 @@ def shell(*arguments: object, **environment: str) -> subprocess.CompletedProcess
 
 
 def compiled() -> set[Path]:
-    return set(kernel_cache_dir().rglob("*.nbc"))
+    return set(kernel_cache_dir().rglob("*.nbc")) | set(machine_code_folder().glob("*.o"))
 
 
 @pytest.mark.skipif(JIT_OFF, reason="nothing is compiled")
 def test_after_the_warm_up_verbs_compile_nothing(ask, tmp_path):
     said = ask("doctor", "--warm", "--json")
     assert said.status == 0
-    assert said.document["kernels"] == len(compiled()) > 20
+    # Machine code of older sources may still be there.
+    assert 20 < said.document["kernels"] <= len(compiled())
     before = compiled()
     random = np.random.default_rng(5)
     points = np.vstack(

@@ -68,3 +68,25 @@ def test_mistakes_are_one_line(ask, folder):
         answer = ask("learn-relations", folder, *options, "--memory", folder / "m.db")
         assert answer.status == 2
         assert answer.err.count("\n") == 1
+
+
+def test_words_of_a_user_are_added_to_the_core(ask, folder):
+    """A model of *carries* and *clear of* gives these words beside on(3, 2), and a planning problem with both."""
+    rows = [f"{scene},{label},3" for scene in ("on", "off") for label in ("2,3,carries", "2,1,clear of")]
+    (folder / "words.csv").write_text("scene,a,b,relation,confidence\n" + "\n".join(rows) + "\n")
+    learn = ("learn-relations", folder, "--truth", folder / "words.csv", "--out", folder / "m.npz")
+    assert "(carries, clear of), got nothing" in ask(*learn, "--symmetric", "nothing").refusal
+    told = ask(*learn, "--symmetric", "clear of")
+    assert "words with a direction: carries; symmetric: clear of" in told.out
+    assert "from the shipped model" in told.out
+    look = ("perceive", folder / "on.npz", "--model", folder / "m.npz", "--json", "--pddl", folder / "s.pddl")
+    answer = ask(*look, "--goal", "carries(o3, o2)")
+    stated = {(r["relation"], r["a"], r["b"]) for r in answer.document["relations"]}
+    assert {("on", 3, 2), ("carries", 2, 3), ("clear of", 2, "table")} <= stated
+    assert {"carries(2, 3)", "clear(3)"} <= set(answer.document["facts"])
+    problem, domain = ((folder / name).read_text() for name in ("s.pddl", "s-domain.pddl"))
+    assert "(carries o2 o3)" in problem
+    assert "(carries o3 o2)" not in problem.split("(:goal")[0]
+    assert "(clear_of-table o2)" in problem
+    assert "(on o3 o2)" in problem
+    assert "(carries ?a ?b - thing)" in domain

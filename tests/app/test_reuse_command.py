@@ -83,6 +83,16 @@ def test_in_words(reuse, log):
     assert "no outcome yet" in reuse("report").out
 
 
+def test_the_probability_that_no_known_type_fits_is_there_when_asked_for(reuse, log):
+    reuse("fit", log, "--control", "0")
+    assert reuse("choose", "--user", "new", "--novelty").out.splitlines()[-1] == (
+        "no known type fits: probability 0.05"
+    )
+    assert reuse("choose", "--user", "ann", "--novelty", "--json").document["novelty"] == pytest.approx(0.05, 0.99)
+    assert "no known type fits" not in reuse("choose", "--user", "new").out
+    assert reuse("choose", "--user", "new", "--json").document["novelty"] is None
+
+
 def test_a_log_of_another_program_in_words(reuse, tmp_path):
     rows = [f"h{user};{brand};{int(brand == 'xy'[user % 2])},0" for user in range(8) for brand in "xyxy"]
     text = "Household;brand;took\n" + "\n".join([*rows, "h1;;1,0", "h2;x;NA", "h3;Süß;0,5"]) + "\n"

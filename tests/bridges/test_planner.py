@@ -3,6 +3,7 @@
 import csv
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -11,9 +12,12 @@ from lifelore.bridges.planner import Step, solve
 from lifelore.core.errors import InputError, MissingExtraError
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.reasoning.planning_problem import DOMAIN, planning_problem
+from lifelore.perception.reasoning.planning_domain import DOMAIN, planning_domain
+from lifelore.perception.reasoning.planning_problem import planning_problem, problem_text
+from lifelore.perception.reasoning.planning_state import planning_state
 from lifelore.perception.reasoning.scene_logic import contradictions
 from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.words import Words
 from lifelore.perception.segmentation.table_frame import to_scene
 
 pytestmark = pytest.mark.planning
@@ -143,6 +147,33 @@ def test_from_the_points_of_a_real_scene_to_a_plan(name):
     assert len(above) == 3
     assert plan is not None
     assert len(plan) == 5
+
+
+@pytest.mark.slow
+def test_words_of_a_user_are_planned_with():
+    """A word ends when its object is taken away, and no action makes one hold."""
+    words = Words(("left of", "near"), frozenset({"near"}))
+    rows = [*PILE, Relation(4, 5, "near", 1.0, 0.0), Relation(2, 5, "left of", 1.0, 0.0)]
+    state, called = planning_state(rows), {thing: f"o{thing}" for thing in range(2, 6)}
+
+    def plan(goal):
+        return solve(planning_domain(words), problem_text(state, called, goal, words))
+
+    steps = plan("(and (on-table o4) (not (near o5 o4)) (left_of o2 o5))")
+    assert steps is not None
+    assert [str(step) for step in steps] == ["(pick-up o4)", "(put-on-table o4)"]
+    assert plan("(near o3 o5)") is None
+
+
+@pytest.mark.slow
+def test_nothing_is_planned_on_what_may_be_covered():
+    """2 carries 3, and perhaps something that was not seen: 3 can be fetched, 2 cannot, even after 3."""
+    state = planning_state(PILE[:2])
+    doubted = replace(state, may_be_covered=(2,))
+    called = {2: "o2", 3: "o3"}
+    assert len(solve(DOMAIN, problem_text(state, called, "(holding o2)")) or ()) == 3
+    assert solve(DOMAIN, problem_text(doubted, called, "(holding o2)")) is None
+    assert len(solve(DOMAIN, problem_text(doubted, called, "(holding o3)")) or ()) == 1
 
 
 @pytest.mark.skipif(not TRUTH.exists(), reason="needs LIFELORE_DATA/osd")

@@ -10,6 +10,8 @@ from lifelore.core.errors import LifeloreError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.experiments.bench.perception import perceive
 from lifelore.experiments.bench.perception.perceive import bench_perceive
+from lifelore.experiments.bench.perception.process_parts import AGAIN, PARTS, process_parts
+from lifelore.experiments.bench.startup.process_cost import Cost, installed_environment, process_cost
 from lifelore.experiments.chapter2.scoring import perception_stages
 from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.perceived_scene import perceived_scene
@@ -28,11 +30,17 @@ def cloud() -> LabelledCloud:
 
 
 @pytest.fixture
-def small(monkeypatch, cloud):
+def small(monkeypatch, cloud, tmp_path):
+    cloud_file = tmp_path / "cloud.npz"
+    np.savez(cloud_file, points=cloud.points, labels=cloud.labels)
     monkeypatch.setattr(perceive, "_crowded_scene", lambda: SimpleNamespace(cloud=cloud))
     monkeypatch.setattr(perceive, "POINTS", 2000)
-    monkeypatch.setattr(perceive, "_shell_source", lambda folder, scene: ("nowhere", "a cloud"))
-    monkeypatch.setattr(perceive, "_shell_seconds", lambda source: 5.0)
+    monkeypatch.setattr(perceive, "_shell_sources", lambda folder, scene: {"a cloud": cloud_file})
+    monkeypatch.setattr(
+        perceive, "process_cost", lambda arguments, environment, status=0: Cost(5.0 / (1 + status), 1)
+    )
+    parts = dict.fromkeys(PARTS, 0.1) | {AGAIN: 0.3}
+    monkeypatch.setattr(perceive, "process_parts", lambda source, environment: parts)
 
 
 def test_the_answer_keeps_its_contract(small):
@@ -40,12 +48,18 @@ def test_the_answer_keeps_its_contract(small):
     result = bench_perceive(2, lambda *at: told.append(at))
     assert json.loads(json.dumps(result, allow_nan=False)) == result
     names = [line["name"] for line in result["rows"]]
-    assert len(set(names)) == len(names) == 2 * (1 + len(STAGES)) + 1
+    assert len(set(names)) == len(names) == 2 * (1 + len(STAGES)) + (3 + len(PARTS) + 1) + 2 + 1
     assert all(line["ratio_to"] in [*names, None] for line in result["rows"])
     assert [at[:2] for at in told] == [(1, 2), (2, 2)]
     shares = [line["ratio"] for line in result["rows"][1 : 1 + len(STAGES)]]
     assert all(0 < part < 1 for part in shares)
-    assert [goal["met"] for goal in result["goals"]][-1] is False  # 5 s from the shell is too long
+    goals = {goal["name"]: goal for goal in result["goals"]}
+    assert goals["a cloud, in a program, s"]["met"] is True
+    assert goals["a cloud, from the shell, s"]["met"] is False  # 5 s
+    assert goals["a PCD that is cut off, from the shell, s"]["measured"] == pytest.approx(5 / 3)
+    assert next(line["ratio"] for line in result["rows"] if line["name"].endswith(": imports")) == pytest.approx(
+        1 / 9
+    )
 
 
 def test_stages_together_are_the_whole_way(cloud, monkeypatch):
@@ -72,6 +86,18 @@ def test_points_are_made_up_to_the_number(cloud, monkeypatch, n):
         assert apart.max() < 6 * perceive.JITTER
 
 
+def test_parts_are_those_of_a_real_process(cloud, tmp_path):
+    environment, source = installed_environment(tmp_path), tmp_path / "cloud.npz"
+    np.savez(source, points=cloud.points, labels=cloud.labels)
+    process_parts(source, environment)  # compiled and warm
+    cost, parts = process_cost(["perceive", source, "--json"], environment), process_parts(source, environment)
+    assert set(parts) == {*PARTS, AGAIN}
+    assert all(seconds > 0 for seconds in parts.values())
+    # Besides the parts, a process parses its arguments and ends; other programs disturb both processes.
+    assert 0.3 < sum(parts[part] for part in PARTS) / cost.cpu < 2
+    assert parts[AGAIN] < sum(parts[part] for part in PARTS) / 2
+
+
 def test_a_process_that_fails_is_told_in_a_line(tmp_path):
     with pytest.raises(LifeloreError, match="must end well"):
-        perceive._shell_seconds(tmp_path / "none.pcd")
+        process_parts(tmp_path / "none.pcd", installed_environment(tmp_path))

@@ -8,15 +8,18 @@ import pytest
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.experiments.bench.perception import relation_learners, relation_scenes, relations
+from lifelore.experiments.bench.perception import relation_learners, relation_scenes, relations, shipped_relations
 from lifelore.experiments.bench.perception.relation_learners import LEARNERS, LOGIC, OURS, SHIPPED, THESIS
+from lifelore.experiments.bench.perception.shipped_relations import calibration_error
 from lifelore.experiments.chapter2.scenes.real_scenes import RealScene
 from lifelore.experiments.chapter2.scoring import network_stability
 from lifelore.experiments.chapter2.scoring.network_stability import contact_nodes, stability
+from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair
 from lifelore.perception.contacts.interface import Interface
 from lifelore.perception.peers import PEERS
+from lifelore.perception.relations.relation import Relation
 
-FEW = ("majority", "bounding-box rule", THESIS, OURS)
+FEW = ("majority", "orientation histogram", "bounding-box rule", THESIS, OURS)
 
 
 def box(low, size, step=0.008) -> np.ndarray:
@@ -55,11 +58,14 @@ def small(monkeypatch):
     real = [RealScene(one.name, one.cloud, one.truth) for one in (made(0, 3), made(1, 3))]
     few = {name: LEARNERS[name] for name in FEW}
     monkeypatch.setattr(relations, "tabletop_scenes", drawn)
+    monkeypatch.setattr(shipped_relations, "tabletop_scenes", drawn)
+    for module in (relations, shipped_relations):
+        monkeypatch.setattr(module, "ARRANGED_SCENES", 2)
     monkeypatch.setattr(relations, "LEARNT_SCENES", 4)
     monkeypatch.setattr(relations, "JUDGED_SCENES", 4)
     monkeypatch.setattr(relations, "LEARNERS", few)
     monkeypatch.setattr(relation_learners, "LEARNERS", few)
-    monkeypatch.setattr(relation_learners, "PEERS", {name: PEERS[name] for name in FEW[:2]})
+    monkeypatch.setattr(relation_learners, "PEERS", {name: PEERS[name] for name in FEW[:3]})
     monkeypatch.setattr(relation_scenes, "real_scenes", lambda: real)
     monkeypatch.setattr(relations, "real_scenes_folder", lambda: "somewhere")
 
@@ -80,8 +86,18 @@ def test_the_answer_keeps_its_contract(small):
     for where in ("simulated", "real", "real, learnt from the others too"):
         for who in (*FEW, THESIS + LOGIC, OURS + LOGIC):
             assert 0 <= values[f"{who}, {where}, exact"]["value"] <= 1
+            if who in (OURS + LOGIC,):
+                peer, name = (
+                    "orientation histogram",
+                    f"{who}, {where}, exact less that of the orientation histogram",
+                )
+                apart = values[f"{who}, {where}, exact"]["value"] - values[f"{peer}, {where}, exact"]["value"]
+                assert values[name]["value"] == pytest.approx(apart)
+                assert values[name]["ci95"][0] <= apart <= values[name]["ci95"][1]
     assert values["majority, simulated, exact"]["n"] == 4
     assert values[f"{SHIPPED + LOGIC}, real, exact"]["n"] == 2
+    assert values[f"{SHIPPED + LOGIC}, simulated pile, exact"]["n"] == 2
+    assert 0 <= values[f"{SHIPPED + LOGIC}, simulated, calibration error"]["value"] <= 1
     # Boxes made along the axes are what the rule of boxes is for.
     assert values["bounding-box rule, simulated, exact"]["value"] == 1
     for goal in result["goals"]:
@@ -97,6 +113,18 @@ def test_without_real_scenes_their_goals_are_left_open(small, monkeypatch):
     assert all(goal["measured"] is None and goal["met"] is None for goal in real)
     assert all(goal["met"] is not None for goal in result["goals"] if goal not in real)
     assert not any(", real, exact" in line["name"] for line in result["rows"])
+
+
+def test_calibration_error_by_hand():
+    def judged(confidence, right):
+        said = Relation(2, 3, "on" if right else "none", confidence, 0.0)
+        return JudgedPair("s", PairLabel(2, 3, "on"), said, 0.0)
+
+    # Of three at 0.9 two are right, 0.7 / 3 off in sum; one at 0.4 is right.
+    pairs = [judged(0.9, True), judged(0.9, True), judged(0.9, False), judged(0.4, True)]
+    assert calibration_error(pairs) == pytest.approx((0.7 + 0.6) / 4)
+    assert calibration_error([judged(1.0, True)]) == 0
+    assert calibration_error([JudgedPair("s", PairLabel(2, 3, "on"), None, 0.0)]) is None
 
 
 def test_everybody_takes_part():

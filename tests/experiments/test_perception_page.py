@@ -38,6 +38,22 @@ def test_relations(method, cells):
             assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
 
 
+def test_plans():
+    found = rows("plans")
+    table = re.findall(r"^\| (0[.\d]*)(?: \(default\))? \| (0\.\d{3} \|.+) \|$", PAGE, flags=re.M)
+    assert len(table) == 5
+    for least, cells in table:
+        names = [
+            f"{where}, hidden tops unknown, from {float(least):g}: {measure}"
+            for where in ("simulated", "real")
+            for measure in ("objects with a plan", "valid plans")
+        ]
+        for name, cell in zip(names, cells.split("|"), strict=True):
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(found[name]["value"], abs=6e-4)
+            assert not ends or ends == pytest.approx(found[name]["ci95"], abs=6e-3)
+
+
 def test_everybody_is_in_the_table():
     told = {name.split(",")[0] for name in rows("relations") if name.endswith(", real, exact")}
     # Ours are shown with the logic that goes with them alone.

@@ -37,19 +37,19 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.evaluation.clustered_estimate import clustered_estimate
 from lifelore.interaction.evaluation.importance_weights import weight_summary
 from lifelore.interaction.evaluation.outcome_models import policy_means
-from lifelore.interaction.library import storage_cost
+from lifelore.interaction.library import signal_laws, storage_cost
 from lifelore.interaction.library.offline_runs import run_offline
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_types import TaskTypes
 from lifelore.interaction.library.user_types import UserTypes
 from lifelore.interaction.novelty import calibration as novelty_calibration
-from lifelore.interaction.novelty import known_tasks, signal_laws
+from lifelore.interaction.novelty import known_tasks
 from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.outcomes import batch_likelihood, outcome_families, outcome_model
 from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 from lifelore.interaction.outcomes.frame_columns import FrameColumns
 from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
-from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, TaskEvidence, TaskOutcomes
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.calibration import type_calibration
 from lifelore.interaction.reuse.outcome_laws import Shown
@@ -295,6 +295,7 @@ def watches(signal: Any) -> Callable[[NoveltyDetector], Any]:
 MAKERS: list[Maker] = [
     *((lambda rule=rule: agent(rule), lives) for rule in RULES),
     (lambda: agent("sampling", dynamics=TypeDynamics.hazard(0.1, [0.2, 0.5, 0.3])), lives),
+    (lambda: agent("sampling", novelty=0.05), lives),
     (lambda: BayesianPolicyReuse(library("student-t").take(policies=[0, 1, 2, 3])), lives),
     (lambda: users("f4"), serves),
     (lambda: users("f8", dynamics=TypeDynamics.transitions(np.eye(N_TYPES) * 0.7 + 0.1)), serves),
@@ -373,6 +374,7 @@ NOT_STATE = {
     FrameColumns: "reads the caller's table and is thrown away",
     TaskOutcomes: "a base",
     SpreadWeights: "a base",
+    TaskEvidence: "numbers of a call",
     DerivedArrays: "a cache of the module",
     novelty_calibration.Watched: "tasks that were played within `calibrate`",
     known_tasks.CategoryTasks: "tasks drawn within `calibrate`",

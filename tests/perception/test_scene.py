@@ -75,7 +75,9 @@ def test_perception_says_whether_its_scene_is_proven(monkeypatch, make_scene, bo
     from lifelore.perception import perceived_scene as module
 
     decide = module.most_likely_scene
-    monkeypatch.setattr(module, "most_likely_scene", lambda *given: replace(decide(*given), optimal=optimal))
+    monkeypatch.setattr(
+        module, "most_likely_scene", lambda *given, **options: replace(decide(*given, **options), optimal=optimal)
+    )
     blocks = {2: box([0, 0, 0.002], [0.05, 0.05, 0.05]), 3: box([0.053, 0, 0.002], [0.1, 0.05, 0.05])}
     cloud = make_scene({1: box([-0.1, -0.1, -0.01], [0.2, 0.15, 0]), **blocks}).cloud
     assert module.perceived_scene(cloud).optimal is optimal

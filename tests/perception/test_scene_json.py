@@ -17,7 +17,7 @@ def test_every_key_of_the_contract(make_scene, box, meet):
     parts = [meet(2, 30, [[0.01, 0, 0.02], [0.09, 0, 0.02]]), meet(2, 1, [[0.05, 0, 0]])]
     scene = make_scene(clouds, parts, [(30, 2, "on", 0.75), (2, 1, "on", 0.5)])
     found = document(scene, seconds=0.25)
-    assert list(found) == ["objects", "relations", "facts", "holes", "contact_edges", "seconds"]
+    assert list(found) == ["objects", "relations", "facts", "unknown", "holes", "contact_edges", "seconds"]
     below, above = found["objects"]
     assert [below["id"], above["id"]] == [2, 30]
     assert below["n_points"] == len(clouds[2])
@@ -28,8 +28,8 @@ def test_every_key_of_the_contract(make_scene, box, meet):
     assert above["edges"] == [[0, 1]]
     assert {"kind", "xyz", "approach", "closing", "width"} == set(above["grasp_seeds"][0])
     assert found["relations"] == [
-        {"a": 30, "b": 2, "relation": "on", "confidence": 0.75, "gap": 0},
-        {"a": 2, "b": "table", "relation": "on", "confidence": 0.5, "gap": 0},
+        {"a": 30, "b": 2, "relation": "on", "confidence": 0.75, "gap": 0, "stated": True},
+        {"a": 2, "b": "table", "relation": "on", "confidence": 0.5, "gap": 0, "stated": True},
     ]
     assert {"on(30, 2)", "on(2, table)", "clear(30)", "supports*(2, 30)", "ec(table, 2)"} <= set(found["facts"])
     assert len(found["facts"]) == len(set(found["facts"]))
@@ -64,7 +64,25 @@ def test_an_empty_scene(make_scene):
         "objects": [],
         "relations": [],
         "facts": [],
+        "unknown": [],
         "holes": [],
         "contact_edges": [],
         "seconds": None,
     }
+
+
+def test_below_the_least_confidence_nothing_is_stated_and_nothing_follows(make_scene):
+    points = {label: np.zeros((1, 3)) for label in (2, 3, 4)}
+    rows = [(2, 1, "on", 0.9), (3, 2, "on", 0.6), (4, 1, "on", 0.9), (3, 4, "adjacent", 0.9), (2, 4, "none", 0.4)]
+    scene = make_scene(points, relations=rows)
+    found = document(scene, min_confidence=0.7)
+    assert [one["stated"] for one in found["relations"]] == [True, False, True, True, False]
+    assert "on(3, 2)" not in found["facts"]
+    assert "supports*(2, 3)" not in found["facts"]
+    # The relation of 2 and 4 is doubtful: neither apart nor touching.
+    assert not any("(2, 4)" in fact for fact in found["facts"])
+    assert {"on(2, table)", "adjacent(3, 4)"} <= set(found["facts"])
+    assert {one["fact"]: one["reason"] for one in found["unknown"]}["on(3, 2)"] == "doubtful"
+    everything = document(scene)
+    assert "supports*(2, 3)" in everything["facts"]
+    assert everything["unknown"] == []

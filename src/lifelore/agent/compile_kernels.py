@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.core.compiled.kernel_cache import kernel_cache_dir
+from lifelore.core.compiled.machine_code import SUFFIX, machine_code_folder, used_files
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Progress
 
@@ -32,13 +33,13 @@ def compile_kernels(progress: Progress | None = None) -> dict[str, Any]:
     StoreError
         No kernel was stored: the folder cannot be written, or compiling is switched off.
     """
-    began, before = time.perf_counter(), _compiled()
+    began, before = time.perf_counter(), _compiled() | set(machine_code_folder().glob(f"*{SUFFIX}"))
     with tempfile.TemporaryDirectory() as folder:
         for done, (label, run) in enumerate(VERBS.items(), start=1):
             run(Path(folder))
             if progress:
                 progress(done, len(VERBS), label)
-    after = _compiled()
+    after = _compiled() | used_files()
     if not after:
         raise StoreError(
             f"no kernel could be stored in {kernel_cache_dir()}: make the folder writable or set NUMBA_CACHE_DIR, "
@@ -52,8 +53,8 @@ def compile_kernels(progress: Progress | None = None) -> dict[str, Any]:
     }
 
 
-def _compiled() -> set[str]:
-    return {str(path) for path in kernel_cache_dir().rglob("*.nbc")}
+def _compiled() -> set[Path]:
+    return set(kernel_cache_dir().rglob("*.nbc"))
 
 
 def _live(folder: Path) -> None:

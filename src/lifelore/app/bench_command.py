@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
-            "long_user, log. Benefit: courier, recognition, lidar, worlds, contexts, relations, pictures, "
+            "long_user, log. Benefit: courier, recognition, lidar, worlds, contexts, relations, plans, pictures, "
             "views, deep, deep_layouts, novelty, changing_types, bands. Statistics: evaluation."
         ),
     ],

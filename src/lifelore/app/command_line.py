@@ -98,7 +98,10 @@ def main(arguments: list[str] | None = None) -> None:
     """Run the command line and exit the process."""
     # Imports create some hundred thousand objects that all stay, so the collector would find no garbage.
     gc.set_threshold(NEW_OBJECTS)
-    sys.exit(run(sys.argv[1:] if arguments is None else arguments))
+    status = run(sys.argv[1:] if arguments is None else arguments)
+    # The interpreter's last collection would visit every imported object.
+    gc.freeze()
+    sys.exit(status)
 
 
 def run(arguments: list[str]) -> int:

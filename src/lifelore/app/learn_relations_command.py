@@ -1,5 +1,6 @@
 """`lifelore learn-relations`: train a relation model on labelled scenes."""
 
+from collections.abc import Iterable
 from typing import Annotated
 
 import typer
@@ -28,6 +29,14 @@ def learn_relations(
     method: Annotated[str, Option(help="Method: trees, or displacement (the thesis's).")] = "trees",
     adjacent_gap: Annotated[float, Option(help="Largest gap in metres between adjacent objects.")] = 0.0225,
     several: Annotated[bool, Option("--several", help="A pair may have several relations.")] = False,
+    symmetric: Annotated[
+        list[str] | None,
+        Option(
+            metavar="WORD",
+            help="A relation that holds in both directions; give one for each. Others then never do."
+            " Default: inferred from the labels.",
+        ),
+    ] = None,
     labels: Annotated[str, Option(help="Label field: plain ids, parts (20–29 are one object), or auto.")] = "auto",
     units: Annotated[str, Option(help="Unit of the coordinates: m or mm.")] = "m",
     up: Annotated[
@@ -49,7 +58,10 @@ def learn_relations(
     from lifelore.app.perceive_command import direction, to_stderr
 
     upwards = None if up is None else direction(up)
-    settings = LearnRelationsSettings(folder, truth, name, method, adjacent_gap, several, labels, units, upwards)
+    declared = None if symmetric is None else tuple(symmetric)
+    settings = LearnRelationsSettings(
+        folder, truth, name, method, adjacent_gap, several, declared, labels, units, upwards
+    )
     with progress_bar("learning") as progress:
         report = learn(settings, memory, out, progress, to_stderr)
     if as_json:
@@ -60,4 +72,12 @@ def learn_relations(
     far = sum(report["not_near"].values())
     not_near = f"; {far} labels are of objects too far apart" if far else ""
     print(f"learnt from {report['scenes']} scenes ({pairs}{not_near})")
+    if words := sorted(set(report["relations"]) - {"on", "adjacent", "both", "none"}):
+        both_ways = [word for word in words if word in report["symmetric"]]
+        print(f"words with a direction: {_listed(set(words) - set(both_ways))}; symmetric: {_listed(both_ways)}")
+        print("perceive takes on, adjacent, both and none from the shipped model and adds these words")
     print(f"model '{report['name']}' stored in {locations}")
+
+
+def _listed(words: Iterable[str]) -> str:
+    return ", ".join(sorted(words)) or "none"

@@ -66,6 +66,18 @@ def perceive(
     pddl: Annotated[
         str | None, Option(metavar="FILE", help="File for a planning problem; its domain is written beside it.")
     ] = None,
+    goal: Annotated[
+        str | None,
+        Option(metavar="GOAL", help='Goal of the planning problem, such as "on(o2, o3) and not clear(o4)".'),
+    ] = None,
+    min_confidence: Annotated[
+        float | None,
+        Option(
+            metavar="P",
+            help="Least probability, 0 to 1, of facts in JSON, graph and planning problem"
+            " [0; for the planning problem 0.6].",
+        ),
+    ] = None,
     dot: Annotated[str | None, Option(metavar="FILE", help="File for the relations as a Graphviz graph.")] = None,
     plot: Annotated[
         str | None, Option(metavar="FILE", help="File NAME.png for a picture of the scene from the camera.")
@@ -98,7 +110,9 @@ def perceive(
     from lifelore.agent.perceive.source_files import SourceFiles
 
     beside = SourceFiles(intrinsics, colour, depth_scale, masks, table_mask)
-    settings = PerceiveSettings(direction(up), units, labels, _cut(segment, colours), model, memory, beside)
+    settings = PerceiveSettings(
+        direction(up), units, labels, _cut(segment, colours), model, memory, min_confidence, goal, beside
+    )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
     if watch is not None and poses is not None:
         raise typer.BadParameter("--watch perceives each cloud alone: leave --poses out")

@@ -163,6 +163,9 @@ def choose(
         list[str] | None,
         Option(metavar="POLICY,…", help="Policies that the user can get now; default: all. May be repeated."),
     ] = None,
+    novelty: Annotated[
+        bool, Option("--novelty", help="Compute the probability that no type of the library fits the user.")
+    ] = False,
     name: Name = "default",
     where: Where = None,
     seed: Seed = 0,
@@ -176,13 +179,17 @@ def choose(
     numbers = parse_features(features) if features else None
     with _opened(name, where) as (memory, study):
         among = listed_policies(study, available) if available else None
-        document = chosen(memory, study, user, context=context, features=numbers, available=among, seed=seed)
+        document = chosen(
+            memory, study, user, context=context, features=numbers, available=among, seed=seed, novelty=novelty
+        )
     held = ", control group" if document["control"] else ""
+    unknown = f"\nno known type fits: probability {document['novelty']:.3g}" if novelty else ""
     new = f"\ncontext {context} is not in the logs: the prior of all users is used"
     _say(
         document,
         f"{document['policy']}\ndecision {document['decision']} (probability {document['probability']:.3g}{held})"
-        + (new if context not in (None, document["context"]) and not document["features"] else ""),
+        + (new if context not in (None, document["context"]) and not document["features"] else "")
+        + unknown,
         as_json,
     )
 

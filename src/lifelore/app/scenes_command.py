@@ -20,7 +20,7 @@ def scenes(
     camera: Annotated[str, Option(help="Depth camera: kinect or stereo.")] = "kinect",
     shapes: Annotated[str, Option(help="Shapes: training, held-out (other kinds of shapes) or all.")] = "training",
     arrangement: Annotated[
-        str, Option(help="Arrangement: mixed, pair, apart, hole, no-hole, stack, ball-on-block, …")
+        str, Option(help="Arrangement: mixed, varied, pile, ramp, books, cartons, pair, apart, hole, stack, …")
     ] = "mixed",
     mesh: Annotated[
         list[str] | None, Option(metavar="FILE", help="Your own mesh in metres; may be repeated.")

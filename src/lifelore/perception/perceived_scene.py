@@ -1,9 +1,13 @@
 """`perceived_scene`: from labelled points to a consistent scene with relations (thesis §2.3, Algorithm 1)."""
 
+from collections.abc import Sequence
+
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.core.relations import CORE_RELATIONS
-from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.contacts.interface import Interface, interfaces
+from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
+from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.scene import Scene
 
@@ -18,14 +22,35 @@ def perceived_scene(
     cloud : LabelledCloud
         With any number of objects, also without any.
     model : RelationClassifier, optional
-        Predicts the relations; default: the shipped classifier.
+        Predicts the relations; default: the shipped classifier. A model with other names than *on*, *adjacent*,
+        *both* and *none* adds them: these four then come from the shipped classifier, whatever the model learned
+        of them.
     consistent : bool
-        Whether logic makes the relations consistent (see `scene_logic`). Applies only to models whose names are
-        *on*, *adjacent*, *both* and *none*; no rules are known for other names.
+        Whether logic makes *on*, *adjacent*, *both* and *none* consistent (see `scene_logic`). No rules are known
+        for other names, nor for a model that gives a pair several of the four.
     """
     model = model or shipped_model()
-    found = interfaces(cloud, model.settings)
-    if not consistent or model.multi_label or not set(model.names) <= set(CORE_RELATIONS):
+    core = shipped_model() if model.words.names else model
+    found = interfaces(cloud, core.settings)
+    scene = _core_scene(cloud, core, found, consistent)
+    if model is core:
+        return scene
+    shared = found if model.settings == core.settings else None
+    return scene.with_words(_stated_words(model, cloud, shared), model.words)
+
+
+def _core_scene(
+    cloud: LabelledCloud, model: RelationClassifier, found: tuple[Interface, ...], consistent: bool
+) -> Scene:
+    if not consistent or model.multi_label:
         return Scene(cloud, found, model.predict(cloud, found))
-    decided = most_likely_scene(alternatives(model.beliefs(cloud, found)), cloud.objects)
-    return Scene(cloud, found, decided.relations, decided.optimal)
+    pairs = scene_pairs(cloud, found, model.settings)
+    beliefs = model.beliefs_of(pairs)
+    decided = most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(pairs))
+    return Scene(cloud, found, decided.relations, decided.optimal, beliefs)
+
+
+def _stated_words(
+    model: RelationClassifier, cloud: LabelledCloud, found: Sequence[Interface] | None
+) -> tuple[Relation, ...]:
+    return tuple(r for r in model.predict(cloud, found) if r.relation in model.words.names)

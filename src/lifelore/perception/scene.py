@@ -5,6 +5,7 @@ takes part in (§2.3.6), with the contact edges between them; the relations. Hol
 other results are computed from a `Scene` in their own modules.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -17,7 +18,8 @@ from lifelore.core.relations import NONE
 from lifelore.perception.contacts.contact_network import ContactPointNetwork
 from lifelore.perception.contacts.contact_points import ContactPoint
 from lifelore.perception.contacts.interface import Interface
-from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.relation import PairBelief, Relation
+from lifelore.perception.relations.words import NO_WORDS, Words
 
 TABLE_NAME = "table"
 
@@ -50,6 +52,10 @@ class Scene:
         The predicates; see `scene_logic.most_likely_scene` for making them consistent.
     optimal : bool
         False where the solver could not prove that no consistent scene is likelier.
+    beliefs : tuple of PairBelief
+        Probabilities of all relations of each near pair, where a model gave them.
+    words : Words
+        Relations outside the core vocabulary that were looked for, whether or not a pair has them.
 
     Raises
     ------
@@ -61,6 +67,8 @@ class Scene:
     interfaces: tuple[Interface, ...] = ()
     relations: tuple[Relation, ...] = ()
     optimal: bool = True
+    beliefs: tuple[PairBelief, ...] = ()
+    words: Words = NO_WORDS
 
     def __post_init__(self) -> None:
         known = {*self.objects, TABLE}
@@ -122,6 +130,10 @@ class Scene:
         unrelated = {frozenset((r.a, r.b)) for r in self.relations if r.relation == NONE}
         near = tuple(part for part in self.interfaces if frozenset((part.a, part.b)) not in unrelated)
         return replace(self, interfaces=near)
+
+    def with_words(self, relations: Iterable[Relation], words: Words) -> "Scene":
+        """The same scene with relations of a user's own words added."""
+        return replace(self, relations=(*self.relations, *relations), words=words)
 
     def position(self, label: int, node: int) -> NDArray[np.float64]:
         """Where a node of an object's network is, shape ``(3,)``, metres."""

@@ -2,14 +2,19 @@
 
 ``{"objects": [{"id", "n_points", "centroid", "contact_points": [{"xyz", "normal", "extent", "strength", "other"}],
 "edges", "grasp_seeds": [{"kind", "xyz", "approach", "closing", "width"}]}], "relations": [{"a", "b", "relation",
-"confidence", "gap"}], "facts": ["clear(3)", …], "holes": [{"objects", "nodes", "xyz", "size", "opening",
-"centre", "outline"}], "contact_edges": [[[a, i], [b, j]]], "seconds"}``.
+"confidence", "gap", "stated"}], "facts": ["clear(3)", …], "unknown": [{"fact", "probability", "reason"}], "holes":
+[{"objects", "nodes", "xyz", "size", "opening", "centre", "outline"}], "contact_edges": [[[a, i], [b, j]]],
+"seconds"}``.
 
 Metres, in the scene frame. Objects are named by their numbers, the table ``"table"``; it is no entry of
 ``objects``. ``edges`` are pairs of numbers into ``contact_points``. A contact edge says that contact point i of a
 faces contact point j of b; a hole's ``nodes`` are ends of the same kind in the order of the loop, ``xyz`` their
 positions, ``outline`` the border of its opening. A relation's ``gap`` is the mean of the five smallest distances
 between its two objects' visible points (`near_pairs.visible_gap`). Numbers are finite: an unknown gap is null.
+
+A relation with a confidence below the threshold stays in ``relations`` with ``stated`` false, and no fact follows
+from it. ``unknown`` lists facts of the most likely scene that are not stated: ``doubtful`` ones below the
+threshold, and ``clear`` of an object whose top other objects hide in part (``hidden``, at any threshold).
 """
 
 import math
@@ -17,7 +22,8 @@ from collections.abc import Iterable
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.perception.contacts.contact_points import ContactPoint
-from lifelore.perception.reasoning.scene_facts import scene_facts
+from lifelore.perception.reasoning.planning_state import UnknownFact, scene_state
+from lifelore.perception.reasoning.scene_facts import sure_facts
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import TABLE_NAME, Scene
 from lifelore.perception.topology.grasp_seeds import GraspSeed, grasp_seeds
@@ -27,7 +33,7 @@ DIGITS = 6
 """Decimals of a metre: a micrometre, far below any sensor's noise."""
 
 
-def scene_document(scene: Scene, *, seconds: float | None = None) -> dict:
+def scene_document(scene: Scene, *, seconds: float | None = None, min_confidence: float = 0.0) -> dict:
     """The scene as plain data that ``json.dumps(…, allow_nan=False)`` takes.
 
     Parameters
@@ -35,13 +41,22 @@ def scene_document(scene: Scene, *, seconds: float | None = None) -> dict:
     scene : Scene
     seconds : float, optional
         How long perception took; null where left out.
+    min_confidence : float
+        Least probability of a stated relation or fact, in [0, 1].
+
+    Raises
+    ------
+    InputError
+        The least probability is outside [0, 1].
     """
+    state = scene_state(scene, min_confidence)
     holes = find_holes(scene)
     seeds = grasp_seeds(scene, holes)
     return {
         "objects": [_object(scene, label, seeds) for label in scene.objects],
-        "relations": [_relation(relation) for relation in scene.relations],
-        "facts": [str(fact) for fact in scene_facts(scene)],
+        "relations": [_relation(relation, min_confidence) for relation in scene.relations],
+        "facts": [str(fact) for fact in sure_facts(scene, state, min_confidence)],
+        "unknown": [_unknown(one) for one in state.unknown],
         "holes": [_hole(scene, hole) for hole in holes],
         "contact_edges": [[[_name(e.a), e.node_a], [_name(e.b), e.node_b]] for e in scene.contact_edges],
         "seconds": _number(seconds),
@@ -80,13 +95,18 @@ def _seed(seed: GraspSeed) -> dict:
     }
 
 
-def _relation(relation: Relation) -> dict:
+def _unknown(one: UnknownFact) -> dict:
+    return {"fact": str(one.fact), "probability": _number(one.probability), "reason": one.reason}
+
+
+def _relation(relation: Relation, least: float) -> dict:
     return {
         "a": _name(relation.a),
         "b": _name(relation.b),
         "relation": relation.relation,
         "confidence": _number(relation.confidence),
         "gap": _number(relation.gap),
+        "stated": relation.confidence >= least,
     }
 
 

@@ -62,6 +62,15 @@ def test_two_policies_with_weights_by_hand():
     assert prior.probs([4])[0] == pytest.approx(np.array([1.1, 3.1, 4.1]) / 8.3)
 
 
+def test_a_weight_for_each_row():
+    prior, by_hand = ActionPrior(2), ActionPrior(2)
+    prior.update([4, 4, 9, 9], [[True, False], [False, True], [True, True], [False, True]], [0.25, 0.75, 0.0, 0.0])
+    by_hand.update([4], [[True, False]], 0.25)
+    by_hand.update([4], [[False, True]], 0.75)
+    assert np.array_equal(prior.counts([4]), by_hand.counts([4]))
+    assert prior.contexts.tolist() == [4]  # a row of weight 0 counts nothing
+
+
 def test_states_of_one_percept_pool():
     # Eq. 3.7, 3.8: three states look alike; the counts of all three meet in their percept.
     prior = ActionPrior(2, alpha0=1.0)
@@ -341,6 +350,7 @@ def test_unseen_rate():
         (lambda p: p.update([1], [[True, False, True]]), r"best must have shape \(1, 2\)"),
         (lambda p: p.update([1, 2], [[True, False]]), r"best must have shape \(2, 2\)"),
         (lambda p: p.update([1], [[True, False]], -1.0), "weight must lie in"),
+        (lambda p: p.update([1], [[True, False]], [1.0, 2.0]), "weight must be a number or"),
         (lambda p: p.update([1], [[True, False]], float("nan")), "weight must lie in"),
         (lambda p: p.update([1], [[True, False]], 2 * MOST_WEIGHT), "weight must lie in"),
         (lambda p: p.update_trajectory([1], [2]), r"actions must lie in \[0, 2\), got 2..2"),

@@ -106,13 +106,13 @@ def test_a_model_by_file_and_by_name_in_memory(pile, document, tmp_path):
 
 @pytest.mark.slow
 def test_the_seconds_hold_all_that_was_found(pile, monkeypatch):
-    from lifelore.agent.perceive import perceive as verb
+    from lifelore.perception import scene_json
 
-    def slow(scene):
+    def slow(scene, **options):
         time.sleep(0.4)
         return {"made": "late"}
 
-    monkeypatch.setattr(verb, "scene_document", slow)
+    monkeypatch.setattr(scene_json, "scene_document", slow)
     document = perceive(pile, PerceiveSettings(up="z"))
     assert document.pop("seconds") > 0.4
     assert document == {"made": "late"}

@@ -9,7 +9,8 @@ from scipy import stats
 
 from lifelore.agent.reuse import report as reuse_report
 from lifelore.agent.reuse.fit import FitSettings, fit
-from lifelore.agent.reuse.one_user import choose, update
+from lifelore.agent.reuse.history import histories
+from lifelore.agent.reuse.one_user import choose, forget, update
 from lifelore.agent.reuse.report import COLUMNS, report
 from lifelore.agent.reuse.study import Study, open_study
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -193,6 +194,28 @@ def test_a_control_group_with_an_incumbent_does_not_measure_the_best_single_poli
     document = report(memory, held)
     assert (document["best_single"]["outcome"], document["best_single"]["uplift"]) == (None, None)
     assert document["incumbent"]["uplift"]["value"] == pytest.approx(document["uplift"]["value"])
+
+
+def test_a_user_whose_decisions_a_later_fit_read_is_known_to_it(memory, tmp_path):
+    lines = [f"u{user},{policy},{user + (policy == 'x')}" for user in range(6) for policy in "xy"]
+    (tmp_path / "log.csv").write_text("\n".join(["user,policy,outcome", *lines]) + "\n")
+    fit([tmp_path / "log.csv"], memory, FitSettings(control=0.0, types=1))
+    study = open_study(memory)
+    for user, outcome in (("ann", 2.0), ("bo", 4.0)):
+        update(memory, study, choose(memory, study, user)["decision"], outcome)
+    report(memory, study, log=tmp_path / "decisions.csv")
+    before = choose(memory, study, "ann")["belief"]
+    fit([tmp_path / "log.csv", tmp_path / "decisions.csv"], memory, FitSettings(control=0.0, types=1))
+    study = open_study(memory)
+    update(memory, study, choose(memory, study, "cy")["decision"], 6.0)
+    # Only cy is new to the later fit; the decisions of the others still count once in their beliefs.
+    assert report(memory, study, split="user")["decisions"] == 1
+    assert report(memory, study, split="user")["personal"]["value"] == 6.0
+    made = choose(memory, study, "ann")
+    assert made["number"] == 2
+    assert made["belief"] == before
+    assert forget(memory, study, "bo") > 0
+    assert "bo" not in {history.user for history in histories(memory, study)}
 
 
 def test_splits_leave_out_what_the_fit_has_seen(memory, tmp_path, monkeypatch):

@@ -13,6 +13,7 @@ from lifelore.agent.reuse.user_belief import NAMED_TYPE, open_belief
 from lifelore.agent.reuse.warm import warm
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.reuse.unknown_type import MASS
 from lifelore.memory import open_memory
 
 HEAD = "user,policy,outcome\n"
@@ -73,6 +74,7 @@ def test_a_household_of_the_log_gets_its_own_brand_at_the_first_choice(memory, s
         agent = naive(study, rows_of(text, f"h{user}"))
         assert list(made["belief"].values()) == agent.belief.tolist()
         assert made["surprise"] == agent.surprise
+        assert made["novelty"] is None
     assert choose(memory, study, "stranger")["belief"] == pytest.approx(
         dict(zip(study.library.types, study.library.prior, strict=True))
     )
@@ -85,6 +87,21 @@ def test_decisions_come_after_the_past_bit_for_bit(memory, study, log):
         update(memory, study, made["decision"], outcome)
         rows.append((made["policy"], outcome))
     assert np.array_equal(head_of(memory, study, "h5").log_belief, naive(study, rows).log_belief)
+
+
+def test_the_probability_that_no_known_type_fits_counts_past_and_decisions(memory, study, log):
+    rows = rows_of(log.read_text(), "h5")
+    for outcome in (1.0, 0.0, None, 0.0):
+        made = choose(memory, study, "h5", novelty=True)
+        agent = BayesianPolicyReuse(study.library, dynamics=study.dynamics, novelty=MASS)
+        for policy, seen in rows:
+            agent.skip() if seen is None else agent.update(policy, seen)
+        assert agent.novelty is not None
+        assert made["novelty"] == agent.novelty.probability
+        if outcome is not None:
+            update(memory, study, made["decision"], outcome)
+        rows.append((made["policy"], outcome))
+    assert choose(memory, study, "nobody", novelty=True)["novelty"] == pytest.approx(MASS, rel=1e-12)
 
 
 def test_warm_gives_later_users_a_past_and_leaves_the_library(memory, study, tmp_path):

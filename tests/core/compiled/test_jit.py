@@ -2,6 +2,7 @@
 
 import ast
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -19,6 +20,7 @@ from .fresh_python import run
 
 KERNELS_RUN = Path(__file__).parents[1] / "kernels_run.py"
 PACKAGE = Path(lifelore.__file__).parent
+MARK = re.compile(rb"@(?:stored_)?kernel")
 
 DRAWING = """
 from lifelore.core.compiled.jit import kernel
@@ -119,7 +121,7 @@ def test_imports_are_found_as_python_finds_them(tmp_path):
     """The quick reading of import statements beside the parser, on this package and on unusual layouts."""
 
     def parsed(package: Path) -> set[Path]:
-        found, waiting = set(), [path for path in kernel_sources(package) if b"@kernel" in path.read_bytes()]
+        found, waiting = set(), [path for path in kernel_sources(package) if MARK.search(path.read_bytes())]
         while waiting:
             path = waiting.pop()
             if path in found:

@@ -25,6 +25,8 @@ def task(strategy, bpr=2, prq=1000, scaled=5000, q=None, greedy=400):
         "type": strategy,
         "best": 140.0,
         "needed": needed,
+        "stretch": dict.fromkeys(REUSERS, 4),
+        "regret": dict.fromkeys(REUSERS, 30.0),
         "greedy": dict.fromkeys(LEARNERS, greedy),
         "curves": curves,
     }
@@ -46,6 +48,12 @@ def test_powers_of_ten_by_hand():
     assert found["orders_greedy_q"].value == pytest.approx((2 * np.log10(200) + np.log10(0.04)) / 3)
     # With more samples every task took ten.
     assert found["orders_q_more_samples"].value == pytest.approx(3)
+    # With models in doubt every task took ten too, and by the learners' own stretch four.
+    assert found["orders_q_doubting_needed"].value == pytest.approx(3)
+    assert found["orders_prq_doubting_stretch"].value == pytest.approx(np.log10(250))
+    assert found["reached_stretch_bpr_doubting"].value == 1
+    assert found["regret_bpr_doubting"].value == 30
+    assert found["median_needed_bpr"].value == 2
     assert found["orders_q"].n == 3
     assert found["reached_bpr"].value == pytest.approx(2 / 3)
     assert found["reached_q"].value == 0

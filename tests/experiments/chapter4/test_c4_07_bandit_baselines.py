@@ -5,7 +5,12 @@ import json
 import pytest
 
 from lifelore.experiments.chapter4.c4_07_bandit_baselines.measure import best_gp, measure, rows
-from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import CASES_SHOWN, REUSE, run_cell
+from lifelore.experiments.chapter4.c4_07_bandit_baselines.run import (
+    CASES_SHOWN,
+    DOUBTING,
+    REUSE,
+    run_cell,
+)
 from lifelore.experiments.chapter4.surveillance.peers import PEERS
 from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.experiments.engine.registry import claim_of
@@ -19,14 +24,16 @@ SMALL = {**QUICK, "tasks": 2, "groups": 3, "episodes": 12}
 def made_up(first: float = 10.0):
     """Sums of 100 for expected improvement, 200 for GP-UCB with the true metric, 400 for others, plus the task."""
     found = []
-    for case in CASES_SHOWN:
-        for name in (*REUSE, *PEERS):
+    doubting = {"uncertain, with unseen": DOUBTING}
+    for case, names in (dict.fromkeys(CASES_SHOWN, (*REUSE, *PEERS)) | doubting).items():
+        for name in names:
             base = {"EI": 100.0, "GP-UCB, true metric": 200.0, "UCB1": 500.0}.get(name, 400.0)
             curve = [first, 1.0, 1.0] if name == "EI" else [5.0, 5.0, 5.0]
             found.append(
                 {
                     "method": name, "case": case, **DEFAULT_WORLD, "groups": 3, "tuned": {},
-                    "sums": [base + task for task in range(6)], "ended": [3] * 6, "late": [0.0] * 6,
+                    "sums": [base + task for task in range(6)], "seen": [1, 0] * 3,
+                    "ended": [3] * 6, "late": [0.0] * 6,
                     "curve": {"mean": curve, "error": [0.1] * 3},
                 }
             )  # fmt: skip
@@ -45,6 +52,9 @@ def test_comparisons_by_hand():
     # In the first episode it has more, from the second on less.
     assert found["first_episode_below_for_good_exact"].value == 2
     assert measure(SMALL, made_up(first=1.0))["first_episode_below_for_good_exact"].value == 1
+    # Every second task was never in training: 1, 3 and 5 more.
+    assert found["EI_doubting_over_best_GP_UCB_unseen"].value == pytest.approx(103 / 203)
+    assert found["IDS_doubting_over_best_GP_UCB_unseen"].value == pytest.approx(403 / 203)
     assert found["cumulative_first_4_tasks_EI_exact"].value == pytest.approx(101.5)
 
 

@@ -44,7 +44,7 @@ def test_a_library_of_one_policy_has_no_regret_of_its_own():
 
 def test_counts_by_hand():
     results = []
-    for model in ("learnt", "exact"):
+    for model in ("learnt", "exact", "uncertain"):
         for share, values in ((0.1, [[8.0, 4.0], [6.0, 5.0]]), (1.0, [[6.0, 1.0], [6.0, 3.0]])):
             results.append(
                 {"rule": "EI", "model": model, "share": share, "all": values, "library": values, "met": [1, 0]}

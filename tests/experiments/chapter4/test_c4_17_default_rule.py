@@ -5,16 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.c4_17_default_rule.measure import (
-    CANDIDATES,
-    decided_rule,
-    key_of,
-    measure,
-    rows,
-)
-from lifelore.experiments.chapter4.c4_17_default_rule.run import RULES, cells, run_cell
+from lifelore.experiments.chapter4.c4_17_default_rule.measure import decided_rule, key_of, measure, rows
+from lifelore.experiments.chapter4.c4_17_default_rule.run import CANDIDATES, RULES, cells, run_cell
 from lifelore.experiments.chapter4.c4_17_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.17")
@@ -77,6 +71,28 @@ def test_measures_by_hand():
     assert rows({}, [first])[0]["regret"]["IDS"] == 1.5
 
 
+def test_measures_of_uncertain_models_by_hand():
+    two, some = {name: [2.0, 4.0] for name in RULES}, dict.fromkeys(RULES, 0.1)
+    learnt = made_up(two | {"IDS": [1.0, 3.0]}, some, noise="by pair", model=LEARNT)
+    learnt[UNCERTAIN] = {
+        "EI, pay": {"regret": [2.0, 2.0], "stuck": [0.0, 0.3]},
+        "IDS": {"regret": [1.0, 1.0], "stuck": [0.1, 0.3]},
+    }
+    found = measure({}, [made_up(two, some), learnt])
+    plug_in_alone = {key: value for key, value in learnt.items() if key != UNCERTAIN}
+    before = measure({}, [made_up(two, some), plug_in_alone])
+    # What was measured before stays as it was; the best rule of the learnt world has a mean regret of 2.
+    assert {key: found[key] for key in before} == before
+    assert found["regret_EI_pay_uncertain"].value == pytest.approx(1.0)
+    assert found["regret_IDS_uncertain"].value == pytest.approx(0.5)
+    assert found["regret_IDS_uncertain_minus_plug_in"].value == pytest.approx(-0.5)
+    assert found["regret_IDS_uncertain_minus_EI_pay_uncertain"].value == pytest.approx(-0.5)
+    assert found["stuck_above_least_IDS_uncertain"].value == pytest.approx(0.05)
+    assert found["stuck_above_least_EI_pay_uncertain"].value == 0
+    assert found["stuck_IDS_uncertain_above_plug_in"].value == pytest.approx(0.1)
+    assert rows({}, [learnt])[0][UNCERTAIN]["stuck"]["IDS"] == pytest.approx(0.2)
+
+
 def measured_of(regret, excess):
     return {
         f"{word}_{key_of(name)}": {"value": value}
@@ -98,4 +114,6 @@ def test_all_rules_meet_the_same_tasks_and_a_run_repeats():
     found = run_cell(settings, cell, 1)
     assert json.loads(json.dumps(found)) == run_cell(settings, cell, 1)
     assert set(found["rules"]) == set(RULES)
+    assert set(found[UNCERTAIN]) == set(CANDIDATES)
+    assert UNCERTAIN not in run_cell(settings, {**cell, "model": EXACT}, 1)
     assert run_cell(settings, cell, 2) != found

@@ -116,10 +116,49 @@ def test_a_session_of_an_earlier_lifelore_improves_the_outcome():
     assert played(loaded, 12) == played(agent, 12)
 
 
+@pytest.mark.parametrize("models", ["uncertain", "plug-in"])
+@pytest.mark.parametrize("kind", ["gaussian", "categorical"])
+def test_the_evidence_of_an_unknown_type_goes_on_to_the_bit(models, kind):
+    samples = np.round(np.random.default_rng(0).normal(size=(3, 6, 10)))
+    model = PolicyLibrary.from_samples(samples, model=kind)
+    agent = BayesianPolicyReuse(model, seed=5, models=models, novelty=0.1)
+
+    def lived(agent: BayesianPolicyReuse) -> list[float]:
+        odds = []
+        for number in range(9):
+            agent.update(agent.select(), float(number % 3 - 1))
+            assert agent.novelty is not None
+            odds.append(agent.novelty.log_odds)
+        return odds
+
+    lived(agent)
+    loaded = session_from_bytes(session_bytes(agent))
+    assert session_bytes(loaded) == session_bytes(agent)
+    assert loaded.novelty is not None
+    assert loaded.novelty.mass == 0.1
+    assert lived(loaded) == lived(agent)
+
+
+@pytest.mark.parametrize("version", [1, 2])
+def test_sessions_of_earlier_versions_have_no_evidence_of_an_unknown_type(version):
+    agent = BayesianPolicyReuse(library(), seed=5, models="plug-in")
+    played(agent, 3)
+
+    def earlier(header, _):
+        header.update(version=version)
+        if version == 1:
+            header.pop("models")
+
+    loaded = session_from_bytes(repacked(session_bytes(agent), earlier))
+    assert loaded.novelty is None
+    assert played(loaded, 12) == played(agent, 12)
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 2"),
+        (lambda h, a: h.update(version=9), "has version 9, this Lifelore reads 3"),
+        (lambda h, a: a.update({"novelty.numbers": np.array([0.1, 0.0])}), "no evidence of an unknown type"),
         (lambda h, a: h.update(format="else"), "another kind of file"),
         (lambda h, a: h.update(rule="best"), "rule must be one of"),
         (lambda h, a: h.update(settings={"wish": 1}), "wish"),

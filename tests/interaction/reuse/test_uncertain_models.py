@@ -279,6 +279,19 @@ def test_kernels_and_numpy_give_the_same_bits(monkeypatch, static):
         for policy, value in signals[:20] + signals[-1:] + signals[20:]:
             agent.update(policy, value)
             model = outcomes_of(agent.task)
-            states += [agent.log_belief, model.mean.copy(), model.noise.copy(), model.mean_variance]
+            excess = model.expected_mean_excess(float(model.mean.max()) - 5.0)
+            states += [agent.log_belief, model.mean.copy(), model.noise.copy(), model.mean_variance, excess]
         found[compiled] = states
     assert all(np.array_equal(a, b) for a, b in zip(found[True], found[False], strict=True))
+
+
+def test_the_excess_of_means_is_that_of_normals():
+    agent = BayesianPolicyReuse(learnt(), ExpectedImprovement(), dynamics=TypeDynamics.static())
+    for policy, value in ((0, 3.0), (1, -2.0), (0, 4.0)):
+        agent.update(policy, value)
+    model = outcomes_of(agent.task)
+    deviation = np.sqrt(model.mean_variance)
+    for threshold in (-100.0, 0.0, 3.0, 100.0):
+        z = (model.mean - threshold) / deviation
+        exact = deviation * stats.norm.pdf(z) + (model.mean - threshold) * stats.norm.cdf(z)
+        assert model.expected_mean_excess(threshold) == pytest.approx(exact, rel=1e-9, abs=1e-20)

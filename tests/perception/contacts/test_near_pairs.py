@@ -55,6 +55,17 @@ def test_gap_of_two_blocks_is_their_distance_and_one_stray_point_moves_it_by_a_f
     assert np.isinf(visible_gap(ObjectCloud(2, a), ObjectCloud(3, b), 0.02))
 
 
+@settings(deadline=None, max_examples=40)
+@given(st.integers(1, 40), st.integers(1, 40), st.integers(0, 2**32))
+def test_the_gap_is_the_larger_mean_of_both_directions_in_either_order(n, m, seed):
+    rng = np.random.default_rng(seed)
+    first, second = rng.random((n, 3)) * 0.1, rng.random((m, 3)) * 0.1 + [0.08, 0, 0]
+    means = [naive_closest(a, b, CLOSEST, 0.3).mean() for a, b in ((first, second), (second, first))]
+    a, b = ObjectCloud(2, first), ObjectCloud(3, second)
+    assert np.isclose(visible_gap(a, b, 0.3), max(means), rtol=0, atol=1e-12)
+    assert visible_gap(a, b, 0.3) == visible_gap(b, a, 0.3)
+
+
 def test_box_distance_is_pythagoras_between_corners():
     a = ObjectCloud(2, np.array([[0.0, 0, 0], [1, 1, 1]]))
     b = ObjectCloud(3, np.array([[4.0, 5, 0.5], [6, 6, 2]]))

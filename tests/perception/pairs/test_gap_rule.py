@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, SYMMETRIC, PairLabel
 from lifelore.perception.pairs.directed_label import as_directed, directed_classes, mirror_order, mirrored
-from lifelore.perception.pairs.gap_rule import BESIDE, applies, inner_label, resolve_beside
+from lifelore.perception.pairs.gap_rule import BESIDE, HIDDEN_EDGE, applies, inner_label, resolve_beside
 from lifelore.perception.trees.tree_relations import apply_temperature
 from lifelore.perception.trees.tree_training import best_temperature
 
@@ -28,13 +28,21 @@ def test_a_label_that_the_gap_explains_is_beside(label, gap, inner):
 
 
 def test_beside_is_shared_out_by_the_gap_and_nothing_is_lost():
-    gaps = np.array([0.001, 0.0225, 0.05])
+    gaps = np.array([0.001, 0.0225 + HIDDEN_EDGE, 0.1])
     shares = {BESIDE: np.full(3, 0.6), ON: np.full(3, 0.3), ADJACENT: np.full(3, 0.1)}
     found = resolve_beside(shares, gaps, 0.0225)
     np.testing.assert_allclose(found[ADJACENT], [0.7, 0.4, 0.1], atol=1e-4)
     np.testing.assert_allclose(found[NONE], [0.0, 0.3, 0.6], atol=1e-4)
     np.testing.assert_allclose(sum(found.values()), 1.0)
     assert BESIDE not in found
+
+
+def test_a_gap_beyond_the_limit_may_hide_a_contact_and_a_gap_below_it_hides_none():
+    gaps = 0.0225 + HIDDEN_EDGE + np.array([-0.006, 0.006])
+    below, above = resolve_beside({BESIDE: np.ones(2)}, gaps, 0.0225)[ADJACENT]
+    # Logistic functions of 6 mm over 1.5 mm and over 4 mm.
+    assert below == pytest.approx(1 / (1 + np.exp(-4)))
+    assert above == pytest.approx(1 / (1 + np.exp(1.5)))
 
 
 def test_the_rule_needs_both_words_and_a_limit():

@@ -1,5 +1,7 @@
 """Words learnt from blocks whose relations are known: core relations, views, the user's own."""
 
+from typing import cast
+
 import numpy as np
 import pytest
 
@@ -132,7 +134,7 @@ def test_any_words_do_and_symmetry_is_found(lessons):
         if truth[0].relation == "next to" and stream(number, "order").random() < 0.5:
             truth[0] = PairLabel(truth[0].b, truth[0].a, "next to")
     model = RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:24], truths[:24])
-    assert model.symmetric == {"next to"}
+    assert model.symmetric_ == {"next to"}
     for scene, truth in zip(lessons[0][24:32], truths[24:], strict=True):
         (one,) = model.predict_pairs(scene)
         assert one.relation == truth[0].relation
@@ -159,7 +161,7 @@ def test_several_words_may_hold_of_one_pair(lessons):
     clouds = [blocks(number)[0] for number in range(64)]
     truths = [views(cloud) for cloud in clouds]
     model = RelationClassifier(multi_label=True, trees=SMALL).fit_pairs(lessons[0][:52], truths[:52])
-    assert model.symmetric == {"near"}
+    assert model.symmetric_ == {"near"}
     right, total = 0, 0
     for scene, truth in zip(lessons[0][52:], truths[52:], strict=True):
         found = said(model.predict_pairs(scene))
@@ -204,10 +206,10 @@ def test_a_symmetric_word_may_be_written_both_ways(lessons, method):
     for truth in truths:
         truth += [PairLabel(one.b, one.a, "touches") for one in truth if one.relation == "touches"]
     model = RelationClassifier(method, trees=SMALL).fit_pairs(lessons[0][:12], truths)
-    assert "touches" in model.symmetric
-    assert "rests upon" not in model.symmetric
+    assert "touches" in model.symmetric_
+    assert "rests upon" not in model.symmetric_
     # Each written pair is two labels.
-    assert model.learnt_from == {"apart": 3, "rests upon": 6, "touches": 6}
+    assert model.learnt_from_ == {"apart": 3, "rests upon": 6, "touches": 6}
     assert (2, 3, "touches") in said(model.predict_pairs(lessons[0][2]))
     with pytest.raises(InputError, match=r"touches\(2, 3\) and touches\(3, 2\)"):
         RelationClassifier(method, trees=SMALL, symmetric=[]).fit_pairs(lessons[0][:12], truths)
@@ -228,7 +230,7 @@ def test_a_pair_with_two_relations_is_refused_by_either_method(lessons, method, 
 def test_a_doubted_label_is_no_evidence_of_symmetry(lessons):
     truths = [renamed(truth, {ON: "upon", ADJACENT: "by", NONE: "far"}) for truth in lessons[1][:4]]
     truths[0].append(PairLabel(truths[0][0].b, truths[0][0].a, "upon", 1))
-    assert RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:4], truths).symmetric == frozenset()
+    assert RelationClassifier(trees=SMALL).fit_pairs(lessons[0][:4], truths).symmetric_ == frozenset()
 
 
 def test_words_said_with_the_table_first_are_learnt_in_that_direction(lessons):
@@ -247,10 +249,10 @@ def test_words_said_with_the_table_first_are_learnt_in_that_direction(lessons):
 def test_labels_of_near_pairs_are_counted(lessons):
     truths = [[*lessons[1][0], PairLabel(8, 9, ON), PairLabel(2, 9, NONE)], [*lessons[1][2]], []]
     model = RelationClassifier(trees=SMALL)
-    assert model.learnt_from == {}
+    assert model.learnt_from_ == {}
     model.fit_pairs(lessons[0][:3], truths)
     # Scene 0: on twice, none once; scene 2: adjacent once, on twice.
-    assert model.learnt_from == {ADJACENT: 1, NONE: 1, ON: 4}
+    assert model.learnt_from_ == {ADJACENT: 1, NONE: 1, ON: 4}
 
 
 @pytest.mark.parametrize(
@@ -273,6 +275,80 @@ def test_labels_of_near_pairs_are_counted(lessons):
 def test_wrong_settings_are_refused_at_once(wrong, named):
     with pytest.raises(InputError, match=named):
         wrong()
+
+
+def test_opposite_directions_of_a_word_never_both_hold(lessons, monkeypatch):
+    truths = [views(blocks(number)[0]) for number in range(12)]
+    model = RelationClassifier(multi_label=True, trees=SMALL, symmetric={"near"}).fit_pairs(
+        lessons[0][:12], truths
+    )
+    assert model.symmetric_ == {"near"}
+    shares = {"near": 0.8, "under": 0.6, "~under": 0.9, "left_of": 0.7, "~left_of": 0.7, "in_front_of": 0.4}
+    monkeypatch.setattr(
+        "lifelore.perception.relations.relation_classifier.label_shares", lambda *_: [shares, {}, {}]
+    )
+    assert said(model.predict_pairs(lessons[0][0])) == {(2, 3, "near"), (3, 2, "under"), (2, 3, "left_of")}
+
+
+def test_a_word_declared_to_have_a_direction_is_not_labelled_both_ways(lessons):
+    truths = [[PairLabel(2, 3, "touches"), PairLabel(3, 2, "touches")]]
+    with pytest.raises(InputError, match=r"must not state touches\(2, 3\) and touches\(3, 2\)"):
+        RelationClassifier(multi_label=True, trees=SMALL, symmetric=()).fit_pairs(lessons[0][:1], truths)
+    truths = [[truths[0][0], PairLabel(3, 2, "touches", 1)]]
+    assert (
+        RelationClassifier(multi_label=True, trees=SMALL, symmetric=())
+        .fit_pairs(lessons[0][:1], truths)
+        .symmetric_
+        == frozenset()
+    )
+
+
+def test_adjacent_and_none_stay_symmetric_whatever_is_declared(lessons):
+    model = RelationClassifier(trees=SMALL, symmetric=()).fit_pairs(lessons[0][:4], lessons[1][:4])
+    assert model.symmetric_ == {ADJACENT, NONE}
+
+
+def test_scikit_learn_clones_it_and_searches_over_its_settings(lessons):
+    from sklearn.base import clone, is_classifier
+    from sklearn.model_selection import GridSearchCV, cross_val_score
+
+    model = RelationClassifier(trees=SMALL, symmetric={"near"}, k=3)
+    copied = cast(RelationClassifier, clone(model))
+    assert copied is not model
+    assert copied.get_params() == model.get_params()
+    fitted_copy = clone(model.fit_pairs(lessons[0][:4], lessons[1][:4]))
+    assert cast(RelationClassifier, fitted_copy).names_ == ()
+    assert not is_classifier(model)  # a sample is a scene, so folds are not stratified by labels
+    search = GridSearchCV(RelationClassifier(trees=SMALL), {"method": ["trees", "displacement"]}, cv=2)
+    search.fit(lessons[0][:12], lessons[1][:12])
+    assert search.best_params_ == {"method": "trees"}
+    best = search.best_estimator_
+    assert isinstance(best, RelationClassifier)
+    assert best.names_ == (ADJACENT, NONE, ON)
+    clouds, truths = zip(*(blocks(number) for number in range(4)), strict=True)
+    assert cross_val_score(RelationClassifier(trees=SMALL), clouds, truths, cv=2).shape == (2,)
+
+
+def test_settings_are_changed_together_or_not_at_all():
+    model = RelationClassifier("displacement").set_params(k=2, method="trees", multi_label=True)
+    assert (model.k, model.method, model.multi_label) == (2, "trees", True)
+    assert model.neighbours.k == 2
+    with pytest.raises(InputError, match="multi_label"):
+        model.set_params(k=5, method="displacement")
+    with pytest.raises(InputError, match=r"params must be among method, .*, got depth"):
+        model.set_params(depth=3, k=5)
+    assert (model.k, model.method) == (2, "trees")
+
+
+def test_the_score_counts_pairs_with_all_their_relations_right(lessons, fitted):
+    scenes, truths = lessons[0][24:28], lessons[1][24:28]
+    assert fitted.score(scenes, truths) == 1.0
+    # Scene 24 is a pile of two: of its three labelled pairs one is now wrong, and the others of the four stay.
+    turned = [[PairLabel(one.b, one.a, ON) if TABLE not in (one.a, one.b) else one for one in truths[0]]]
+    n_pairs = sum(map(len, truths))
+    assert fitted.score(scenes, [*turned, *truths[1:]]) == pytest.approx(1 - 1 / n_pairs)
+    with pytest.raises(InputError, match="near pair"):
+        fitted.score(scenes[:1], [[PairLabel(8, 9, ON)]])
 
 
 def test_names_that_mark_something_else_are_refused(lessons):

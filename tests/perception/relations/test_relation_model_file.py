@@ -56,7 +56,7 @@ def test_a_model_comes_back_bit_for_bit(clouds, tmp_path, options):
     model.save(tmp_path / "model.npz", {"from": "blocks"})
     again = RelationClassifier.load(tmp_path / "model.npz")
     assert again.beliefs(clouds[0]) == model.beliefs(clouds[0])
-    assert (again.names, again.symmetric, again.settings) == (model.names, model.symmetric, model.settings)
+    assert (again.names_, again.symmetric_, again.settings) == (model.names_, model.symmetric_, model.settings)
     assert file_bytes(again, {"from": "blocks"}) == (tmp_path / "model.npz").read_bytes()
     assert model_about(tmp_path / "model.npz")["about"] == {"from": "blocks"}
 
@@ -358,7 +358,7 @@ def test_damaged_archives_of_every_kind_are_one_line(learnt, method):
         for entry in plain.namelist():
             new.writestr(entry, plain.read(entry))
     content = stream.getvalue()
-    assert classifier_from(content).names
+    assert classifier_from(content).names_
     for _ in range(100):
         hurt = bytearray(content)
         for at in rng.integers(0, len(hurt), 4):

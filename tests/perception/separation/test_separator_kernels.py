@@ -30,15 +30,15 @@ def test_compiled_and_plain_python_agree_to_the_bit(tmp_path):
         assert np.array_equal(compiled[name], plain[name]), name
 
 
-def test_one_version_of_each_kernel_is_enough():
-    from lifelore.perception.separation import far_field, gaussian, nested_voxels, separator_smo
+def test_the_stored_machine_code_is_enough(monkeypatch):
+    """No cloud needs a kernel for other types, which would import Numba."""
+    from lifelore.core.compiled.stored_kernel import StoredKernel
     from lifelore.perception.separation.separator import separate
 
+    asked = []
+    monkeypatch.setattr(StoredKernel, "dispatcher", property(lambda kernel: asked.append(kernel.__name__)))
     random = np.random.default_rng(0)
     cloud = random.uniform(0, 0.1, (4000, 3))
     separate(cloud, cloud + np.array([0.1, 0, 0])).decision(cloud)
     separate(list(cloud[:5]), np.asfortranarray(cloud[:7]).astype(np.float32))
-    kernels = [gaussian.kernel_sums, far_field._expand, far_field._evaluate]
-    kernels += [nested_voxels._voxel_keys, separator_smo.ascend]
-    if os.environ.get("NUMBA_DISABLE_JIT") != "1":
-        assert [len(function.signatures) for function in kernels] == [1] * len(kernels)
+    assert asked == []

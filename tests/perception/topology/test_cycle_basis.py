@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lifelore.core.errors import InputError
+from lifelore.perception.topology import cycle_basis
 from lifelore.perception.topology.cycle_basis import minimum_cycle_basis
 
 
@@ -81,6 +82,24 @@ def test_the_same_loops_as_networkx_where_only_one_basis_is_shortest():
         drawn = nx.gnp_random_graph(14, 0.3, seed=seed)
         loops, best = check({tuple(sorted(edge)): float(rng.uniform(0.1, 1)) for edge in drawn.edges})
         assert {frozenset(steps(loop)) for loop in loops} == {frozenset(steps(loop)) for loop in best}
+
+
+@given(weighted_graphs(st.floats(1e-3, 1.0) | st.integers(1, 3).map(float)))
+@settings(deadline=None, max_examples=60)
+def test_the_same_loops_with_and_without_scipy(graph):
+    def loops(most_steps):
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr(cycle_basis, "_MOST_STEPS", most_steps)
+            return minimum_cycle_basis(list(graph), list(graph.values()))
+
+    assert loops(10**6) == loops(-1)
+
+
+def test_two_shortest_ways_are_left_to_scipy():
+    square = [[(1, 1.0), (3, 1.0)], [(0, 1.0), (2, 1.0)], [(1, 1.0), (3, 1.0)], [(0, 1.0), (2, 1.0)]]
+    assert cycle_basis._shortest_ways(square, 0) is None
+    path = [[(1, 1.0)], [(0, 1.0), (2, 0.5)], [(1, 0.5)], []]
+    assert cycle_basis._shortest_ways(path, 0) == ([0.0, 1.0, 1.5, np.inf], [-1, 0, 1, -1])
 
 
 def test_chains_rings_and_dead_ends_by_hand():

@@ -53,6 +53,8 @@ class LearnRelationsSettings:
         Largest gap between adjacent objects, in metres.
     several : bool
         Whether a pair may have several relations.
+    symmetric : tuple of str, optional
+        The symmetric relations; all others then have a direction. None infers them from the labels.
     labels : {"auto", "plain", "parts"}
         How a label field becomes objects, see `label_rule`.
     units : {"m", "mm"}
@@ -72,6 +74,7 @@ class LearnRelationsSettings:
     method: str = "trees"
     adjacent_gap: float = ADJACENT_GAP
     several: bool = False
+    symmetric: tuple[str, ...] | None = None
     labels: str = "auto"
     units: str = "m"
     up: Up | None = None
@@ -108,10 +111,16 @@ def learn_relations(
         A file breaks its rule, a scene of the truth has no cloud, or a label names an object that the cloud does
         not have.
     """
-    model = RelationClassifier(settings.method, adjacent_gap=settings.adjacent_gap, multi_label=settings.several)
+    model = RelationClassifier(
+        settings.method,
+        adjacent_gap=settings.adjacent_gap,
+        multi_label=settings.several,
+        symmetric=settings.symmetric,
+    )
     if out is not None:
         _check_out(out)
     truths = read_relations(settings.truth)
+    _check_symmetric(settings.symmetric or (), truths)
     scenes, n_from_parts = read_scenes(settings, truths, progress)
     model.fit_pairs(scenes, list(truths.values()))
     report = _report(settings, model, truths)
@@ -127,6 +136,15 @@ def learn_relations(
     if notice is not None and n_from_parts and settings.labels == "auto":
         notice(f"the labels of {n_from_parts} of {len(scenes)} clouds {PARTS_NOTICE}")
     return {**report, "out": out, "memory": where}
+
+
+def _check_symmetric(symmetric: Sequence[str], truths: dict[str, tuple[PairLabel, ...]]) -> None:
+    """Refuse a declared name that no label has."""
+    known = {label.relation for truth in truths.values() for label in truth}
+    if unknown := sorted(set(symmetric) - known):
+        raise InputError(
+            f"symmetric must name relations of the labels ({', '.join(sorted(known))}), got {', '.join(unknown)}"
+        )
 
 
 def _check_out(out: str) -> None:
@@ -189,14 +207,14 @@ def _report(
     labelled = Counter(
         label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
     )
-    learnt = Counter(model.learnt_from)
+    learnt = Counter(model.learnt_from_)
     return {
         "name": settings.name,
         "scenes": len(truths),
-        "pairs": {name: learnt[name] for name in model.names},
+        "pairs": {name: learnt[name] for name in model.names_},
         "not_near": dict(sorted((labelled - learnt).items())),
-        "relations": list(model.names),
-        "symmetric": sorted(model.symmetric),
+        "relations": list(model.names_),
+        "symmetric": sorted(model.symmetric_),
         "method": model.method,
         "adjacent_gap": model.vocabulary.adjacent_gap,
     }

@@ -1,11 +1,14 @@
-"""Perceives the objects, contacts and spatial relations of a point cloud (`lifelore perceive`)."""
+"""Perceives the objects, contacts and spatial relations of a point cloud (`lifelore perceive`).
+
+The cloud is read before the modules that perceive it are imported, so that a bad file is refused at once.
+"""
 
 import os
 import time
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from numpy.typing import NDArray
 
@@ -15,12 +18,12 @@ from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
-from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
-from lifelore.perception.scene_json import DIGITS, scene_document
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
-from lifelore.perception.segmentation.table_frame import Up, to_scene
+
+if TYPE_CHECKING:
+    from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.relations.relation_classifier import RelationClassifier
+    from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.table_frame import Up
 
 Source = str | os.PathLike[str] | NDArray | PointCloud
 """A source for `read_cloud`, or a cloud."""
@@ -44,34 +47,61 @@ class PerceiveSettings:
         A file of ``learn-relations --out``, or the name of a model in memory; default: the shipped model.
     memory : str, optional
         Memory that holds the named model.
+    min_confidence : float, optional
+        Least probability, in [0, 1], of facts in the document, the graph and the planning problem; default: 0, and
+        `planning_state.PLAN_CONFIDENCE` for the planning problem.
+    goal : str, optional
+        Goal of the planning problem, see `planning_goal`.
     beside : SourceFiles
         Files beside the cloud: intrinsics and colours of a depth image, masks of objects.
 
     Raises
     ------
     InputError
-        `memory` is given without the name of a model.
+        `memory` is given without the name of a model, `min_confidence` is no probability, or `goal` is no goal.
     """
 
-    up: Up = "table"
+    up: "Up" = "table"
     units: str = "m"
     labels: str = "auto"
-    segmentation: SegmentationSettings | None = None
+    segmentation: "SegmentationSettings | None" = None
     model: str | None = None
     memory: str | None = None
+    min_confidence: float | None = None
+    goal: str | None = None
     beside: SourceFiles = NO_SOURCE_FILES
 
     def __post_init__(self) -> None:
+        if self.min_confidence is not None and not 0 <= self.min_confidence <= 1:
+            raise InputError(f"min_confidence must be a probability from 0 to 1, got {self.min_confidence!r}")
+        _ = self.statements
         if self.memory is not None and (self.model is None or is_file_name(self.model)):
             raise InputError(
                 "memory needs the name of a model in it, but"
                 f" {'no model is named' if self.model is None else f'{self.model} is a file'}: leave memory out"
             )
 
+    @property
+    def statements(self) -> "tuple[Statement, ...]":
+        """The statements of the goal; none without a goal."""
+        if self.goal is None:
+            return ()
+        from lifelore.perception.reasoning.planning_goal import read_goal
+
+        return read_goal(self.goal)
+
+
+def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
+    """Raise InputError for a goal without a planning problem to write it to."""
+    if settings.goal is not None and pddl is None:
+        raise InputError("goal is written to the planning problem, but none is asked for: add pddl (--pddl FILE)")
+
 
 def is_file_name(model: str) -> bool:
     """Whether the name of a model means a file, not a model in memory."""
-    return model.endswith(MODEL_SUFFIX)
+    from lifelore.perception.relations.relation_model_file import SUFFIX
+
+    return model.endswith(SUFFIX)
 
 
 DEFAULT = PerceiveSettings()
@@ -119,32 +149,42 @@ def perceive(
         A file cannot be written.
     """
     files = SceneFiles(pddl, dot, plot)
+    check_goal(settings, pddl)
     check_scene_files(files, files_read([source], settings))
-    return perceived(source, model_of(settings), settings, files, progress, notice)
+    model = None if settings.model is None else model_of(settings)
+    return perceived(source, model, settings, files, progress, notice)
 
 
 def perceived(
     source: Source,
-    model: RelationClassifier,
+    model: "RelationClassifier | None",
     settings: PerceiveSettings = DEFAULT,
     files: SceneFiles = NO_FILES,
     progress: Progress | None = None,
     notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
-    """As `perceive`, with a loaded model and checked files."""
+    """As `perceive`, with a loaded model, or None for the shipped model, and checked files."""
     began = time.perf_counter()
     _report_stage(progress, 0)
     cloud = read_scene(source, settings)
+    reading = time.perf_counter() - began
+    from lifelore.perception.perceived_scene import perceived_scene
+    from lifelore.perception.relations.relation_classifier import shipped_model
+    from lifelore.perception.scene_json import DIGITS, scene_document
+    from lifelore.perception.segmentation.table_frame import to_scene
+
+    model = model or shipped_model()
+    began = time.perf_counter() - reading  # without imports and the model
     _report_stage(progress, 1)
     labelled = to_scene(cloud, settings.up, settings.segmentation)
     _report_stage(progress, 2)
     # Near pairs without support or adjacency do not belong to the contact network.
     scene = perceived_scene(labelled, model).without_unrelated_contacts
     _report_stage(progress, 3)
-    document = scene_document(scene)
+    document = scene_document(scene, min_confidence=settings.min_confidence or 0.0)
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
     _report_stage(progress, 4)
-    write_scene_files(files, scene, document)
+    write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
     if notice is not None and cloud.from_parts and settings.labels == "auto":
         notice(f"the labels {PARTS_NOTICE}")
     return document
@@ -173,8 +213,10 @@ def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
     return cloud
 
 
-def model_of(settings: PerceiveSettings) -> RelationClassifier:
+def model_of(settings: PerceiveSettings) -> "RelationClassifier":
     """Load the relation model of the settings; a memory is only read."""
+    from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
+
     if settings.model is None:
         return shipped_model()
     if is_file_name(settings.model):

@@ -12,7 +12,15 @@ from threading import Event
 from typing import Any
 
 from lifelore.agent.perceive.cloud_folder import new_clouds
-from lifelore.agent.perceive.perceive import DEFAULT, PerceiveSettings, Source, files_read, model_of, perceived
+from lifelore.agent.perceive.perceive import (
+    DEFAULT,
+    PerceiveSettings,
+    Source,
+    check_goal,
+    files_read,
+    model_of,
+    perceived,
+)
 from lifelore.agent.perceive.scene_files import (
     NAME,
     SceneFiles,
@@ -76,6 +84,7 @@ def perceive_many(
         ``{name}``, cannot be written, or is the same for two clouds.
     """
     _check_settings(settings)
+    check_goal(settings, pddl)
     if len(sources) > 1:
         settings.beside.check_for_many()
     files = [named_files(source, pddl, dot, plot) for source in sources]
@@ -132,6 +141,7 @@ def perceive_folder(
         disappeared.
     """
     _check_settings(settings)
+    check_goal(settings, pddl)
     if settings.beside != NO_SOURCE_FILES:
         raise InputError(
             "watch perceives clouds alone: leave out intrinsics, colour, depth_scale, masks and table_mask"

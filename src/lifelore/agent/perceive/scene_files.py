@@ -4,9 +4,13 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from lifelore.core.errors import InputError, StoreError
-from lifelore.perception.scene import Scene
+
+if TYPE_CHECKING:
+    from lifelore.perception.reasoning.planning_goal import Statement
+    from lifelore.perception.scene import Scene
 
 NAME = "{name}"
 """Placeholder in the name of a file for the name of the cloud."""
@@ -100,23 +104,46 @@ def _check_writable(path: str) -> None:
         raise InputError(f"'{path}' cannot be written: its folder must exist and be writable")
 
 
-def write_scene_files(files: SceneFiles, scene: Scene, document: Mapping) -> None:
-    """Write the files of a scene; `document` of `scene_json` is used for the picture.
+def write_scene_files(
+    files: SceneFiles,
+    scene: "Scene",
+    document: Mapping,
+    min_confidence: float | None = None,
+    goal: Sequence["Statement"] = (),
+) -> None:
+    """Write the files of a scene.
+
+    Parameters
+    ----------
+    files : SceneFiles
+    scene : Scene
+    document : mapping
+        The document of `scene_json`, for the picture.
+    min_confidence : float, optional
+        Least probability of what the graph and the planning problem state; default: 0 for the graph,
+        `PLAN_CONFIDENCE` for the problem.
+    goal : sequence of Statement
+        The goal of the planning problem.
 
     Raises
     ------
+    InputError
+        The goal names a predicate or an object that does not exist; no file is written.
     StoreError
         A file cannot be written.
     """
     if files.pddl is not None:
-        from lifelore.perception.reasoning.planning_problem import DOMAIN, planning_problem
+        from lifelore.perception.reasoning.planning_domain import planning_domain
+        from lifelore.perception.reasoning.planning_problem import scene_problem
+        from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE
 
-        _write_text(files.pddl, planning_problem(scene.relations, scene.objects))
-        _write_text(domain_path(files.pddl), DOMAIN)
+        least = PLAN_CONFIDENCE if min_confidence is None else min_confidence
+        _write_text(files.pddl, scene_problem(scene, least, goal))
+        _write_text(domain_path(files.pddl), planning_domain(scene.words))
     if files.dot is not None:
         from lifelore.perception.scene_graph import to_dot
 
-        _write_text(files.dot, to_dot(scene))
+        _write_text(files.dot, to_dot(scene, min_confidence or 0.0))
     if files.plot is not None:
         from lifelore.figures.scenes.scene_picture import draw_scene
         from lifelore.figures.style import save_figure

@@ -3,6 +3,7 @@
 import os
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -11,7 +12,9 @@ from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.table_frame import Up, table_plane
+
+if TYPE_CHECKING:
+    from lifelore.perception.segmentation.table_frame import Up
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".npz")
 _LEVEL = 0.97
@@ -96,7 +99,7 @@ class SourceFiles:
 NO_SOURCE_FILES = SourceFiles()
 
 
-def read_source(source: object, units: str, labels: str, up: Up, files: SourceFiles) -> PointCloud:
+def read_source(source: object, units: str, labels: str, up: "Up", files: SourceFiles) -> PointCloud:
     """Read a cloud or a depth image, with its colours and masks.
 
     Parameters
@@ -142,7 +145,7 @@ def _depth_image(source: object, units: str, files: SourceFiles) -> PointCloud:
     return read_depth_image(source, str(files.intrinsics), colour=files.colour, depth_scale=files.depth_scale)
 
 
-def with_table(cloud: PointCloud, up: Up = "table") -> PointCloud:
+def with_table(cloud: PointCloud, up: "Up" = "table") -> PointCloud:
     """The labelled cloud with its points without label on the table's plane labelled as table.
 
     A cloud where the points without label show no plane, or no level plane under a known upward direction, stays
@@ -150,6 +153,8 @@ def with_table(cloud: PointCloud, up: Up = "table") -> PointCloud:
     """
     if cloud.labels is None or (cloud.labels == TABLE).any():
         return cloud
+    from lifelore.perception.segmentation.table_frame import table_plane
+
     try:
         plane = table_plane(cloud)
     except InputError:

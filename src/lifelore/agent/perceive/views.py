@@ -10,6 +10,7 @@ from lifelore.agent.perceive.perceive import (
     DEFAULT,
     PerceiveSettings,
     Source,
+    check_goal,
     files_read,
     model_of,
     perceived,
@@ -73,9 +74,10 @@ def perceive_views(
     if NAME not in (settings.beside.colour or NAME):
         settings.beside.check_for_many()
     files = SceneFiles(pddl, dot, plot)
+    check_goal(settings, pddl)
     check_scene_files(files, [*files_read(sources, settings), poses])
     given = read_poses(poses, len(sources))
-    model = model_of(settings)
+    model = None if settings.model is None else model_of(settings)
     clouds = [_read(source, settings, read) for source in sources]
     whole = fused(clouds, given)
     document = perceived(whole, model, replace(settings, beside=NO_SOURCE_FILES), files, progress, notice)

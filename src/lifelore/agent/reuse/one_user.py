@@ -18,7 +18,7 @@ from lifelore.agent.reuse.history import Decision, open_history, parse_identifie
 from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
-from lifelore.agent.reuse.user_belief import UserBelief, open_belief
+from lifelore.agent.reuse.user_belief import UserBelief, novelty_of, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.belief import expected_utility
@@ -48,6 +48,7 @@ def choose(
     features: Mapping[str, float] | None = None,
     available: Sequence[str] | None = None,
     seed: int = 0,
+    novelty: bool = False,
 ) -> dict[str, Any]:
     """Choose a policy for a user's next time and remember that it was chosen.
 
@@ -65,6 +66,9 @@ def choose(
         the decision.
     seed : int
         The draw depends on the seed, the study, the user and the number of the decision alone.
+    novelty : bool
+        Whether to compute the probability that no type of the library fits the user. The time grows with the
+        number of the user's decisions.
 
     Returns
     -------
@@ -73,7 +77,8 @@ def choose(
         policy at this moment, ``available`` policies (None: all), ``control``, ``features`` whose prior counts,
         else ``context`` whose prior counts (both None: everybody's), ``belief`` by type,
         ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats (the sum of −log
-        evidence; it depends on the noise, and is no sign of a new type).
+        evidence; it depends on the noise, and is no sign of a new type), ``novelty``: the probability that no
+        type of the library fits the user, as far as it was asked for, else None.
 
     Raises
     ------
@@ -92,6 +97,7 @@ def choose(
     for _ in range(ATTEMPTS):
         known = open_belief(memory, study, key, user, context, numbers)
         decision, answer = _decided(study, known, attempt, seed, available)
+        answer["novelty"] = novelty_of(memory, study, known) if novelty else None
         offered = known.history.records_of(decision)
         task = {"study": study.name, "policy": decision.policy}
         after = known.state.after(study, [decision], known.state.head)

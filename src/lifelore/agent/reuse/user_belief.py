@@ -10,17 +10,20 @@ import hashlib
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.history import KIND, VERSION, Decision, History, decisions_in, read_decisions, slots_from
-from lifelore.agent.reuse.past import PastUser, index_name, read_past_user
+from lifelore.agent.reuse.past import PastUser, index_name, read_index, read_past_user
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
 from lifelore.interaction.beliefs.belief import expected_utility
 from lifelore.memory import Memory
+
+if TYPE_CHECKING:
+    from lifelore.interaction.reuse.unknown_type import UnknownType
 
 NAMED_TYPE = 0.99
 """Belief in the type that a log names for a user; at 1, no outcome could correct a wrong name."""
@@ -135,13 +138,44 @@ def replayed(
     features: dict[str, float] | None = None,
 ) -> UserState:
     """The state after the past and all decisions, from the prior on."""
-    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past, features)), 0.0)
-    belief = WorkingBelief(study, prior)
-    for policy, outcome in past.outcomes:
-        belief.learn(policy, outcome)
-    start = belief.checkpoint(0)
+    start = _after_past(study, context, past, features).checkpoint(0)
     state = UserState(basis_of(study, context, past, features), {}, context, 0, (start,), features)
     return state.after(study, decisions, start)
+
+
+def novelty_of(memory: Memory, study: Study, known: UserBelief) -> float:
+    """The probability that no type of the library fits a user, by a replay of the past and all decisions.
+
+    Raises
+    ------
+    InputError
+        The outcomes have a model for which no broad law is known.
+    """
+    from lifelore.interaction.reuse.unknown_type import UnknownType
+
+    key = known.history.key
+    past = read_past_user(memory, study.name, read_index(memory, study.name), key)
+    prior = prior_of(study, known.context, past, known.features)
+    novelty = UnknownType(study.library, prior=prior, dynamics=study.dynamics, models=study.models)
+    belief = _after_past(study, known.context, past, known.features, novelty)
+    for decision in read_decisions(memory, study, key):
+        belief.learn(decision.policy, decision.outcome)
+    return novelty.probability
+
+
+def _after_past(
+    study: Study,
+    context: str | None,
+    past: PastUser,
+    features: dict[str, float] | None,
+    novelty: "UnknownType | None" = None,
+) -> WorkingBelief:
+    """The belief after the past, from the prior on."""
+    prior = Checkpoint(0, study.algorithm.start(prior_of(study, context, past, features)), 0.0)
+    belief = WorkingBelief(study, prior, novelty)
+    for policy, outcome in past.outcomes:
+        belief.learn(policy, outcome)
+    return belief
 
 
 def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
     from lifelore.agent.reuse.study import Study
     from lifelore.interaction.library.policy_library import PolicyLibrary
+    from lifelore.interaction.reuse.unknown_type import UnknownType
 
 FORMAT = 2
 _HEAD = struct.Struct("<II")
@@ -175,12 +176,14 @@ class WorkingBelief:
     study : Study
     start : Checkpoint
         The belief before the first of them.
+    novelty : UnknownType, optional
+        Takes in the same outcomes.
     """
 
-    def __init__(self, study: "Study", start: Checkpoint) -> None:
+    def __init__(self, study: "Study", start: Checkpoint, novelty: "UnknownType | None" = None) -> None:
         self._study, self._log_belief, self._surprise = study, start.log_belief.copy(), start.surprise
         self._task = study.task(start.task)
-        self._algorithm = study.algorithm_for(self._task)
+        self._algorithm, self._novelty = study.algorithm_for(self._task), novelty
 
     def learn(self, policy: str | None, outcome: float | None) -> None:
         """Learn from an outcome of a policy.
@@ -190,9 +193,13 @@ class WorkingBelief:
         """
         if outcome is None or policy not in self._study.library.policies:
             self._algorithm.step_row(self._log_belief)
+            if self._novelty is not None:
+                self._novelty.skip()
             return
         index = self._study.library.index_of_policy(policy)
         self._surprise += surprise_of(self._algorithm.update_row(self._log_belief, index, outcome)[1])
+        if self._novelty is not None:
+            self._novelty.add(index, outcome)
 
     @property
     def belief(self) -> NDArray[np.float64]:

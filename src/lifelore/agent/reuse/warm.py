@@ -57,7 +57,9 @@ def warm(sources: Any, memory: Memory, study: Study, form: LogFormat | None = No
 
 def keep_fitted_past(memory: Memory, study: Study, log: ReuseLog) -> None:
     """Make the past that of the fit's logs, and of those warm logs that are not among them."""
-    rows = np.flatnonzero(~_own_decisions(memory, study, log))
+    own = _own_decisions(memory, study, log)
+    rows, own_rows = np.flatnonzero(~own), np.flatnonzero(own)
+    own_pairs = set(zip(log.user.codes[own_rows].tolist(), log.file[own_rows].tolist(), strict=True))
     for _ in range(ATTEMPTS):
         past = read_past(memory, study.name)
         gone = {number for number, fed in past.files.items()
@@ -65,7 +67,12 @@ def keep_fitted_past(memory: Memory, study: Study, log: ReuseLog) -> None:
         past = past.without_files(gone)
         first = max(past.files, default=-1) + 1
         numbers = list(range(first, first + len(log.files)))
-        if _added(past, study.name, log, rows, numbers, "fit").keep(memory, study.name):
+        past = _added(past, study.name, log, rows, numbers, "fit")
+        # The fit has read these users' decisions too; as outcomes they count once, from memory.
+        for user, file in own_pairs:
+            known = past.users.setdefault(user_key(study.name, log.user.names[user]), PastUser())
+            known.rows.setdefault(numbers[file], [])
+        if past.keep(memory, study.name):
             return
     raise too_busy(memory)
 

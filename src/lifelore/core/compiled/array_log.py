@@ -9,17 +9,17 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-_ONE_BITS, _ROOT_BITS = np.int64(0x3FF0000000000000), np.int64(0x3FE6A09E667F3BCD)
-_FRACTION, _BIAS, _SHIFT = np.int64(0x000FFFFFFFFFFFFF), np.int64(1023), np.int64(52)
-_RAISE = np.int64(_ONE_BITS - _ROOT_BITS)
-_LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
-_L1, _L2, _L3 = 6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01
-_L4, _L5, _L6 = 2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01
-_L7 = 1.479819860511658591e-01
-_LOG2_E, _C12 = 1.4426950408889634, 1 / 479001600
-
-
-_ROOT_HALF = 0.5**0.5
+# Constants of both modules. Bits of 1 and of √½, and the fraction of a float64.
+ONE_BITS, ROOT_BITS = np.int64(0x3FF0000000000000), np.int64(0x3FE6A09E667F3BCD)
+FRACTION, BIAS, SHIFT = np.int64(0x000FFFFFFFFFFFFF), np.int64(1023), np.int64(52)
+RAISE = np.int64(ONE_BITS - ROOT_BITS)
+# ln 2 in two parts, the first with few digits, so that k ln 2 is exact.
+LN2_HIGH, LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
+L1, L2, L3 = 6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01
+L4, L5, L6 = 2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01
+L7 = 1.479819860511658591e-01
+LOG2_E, C12 = 1.4426950408889634, 1 / 479001600
+ROOT_HALF = 0.5**0.5
 # log(erfc(x) / t) + x² by powers of 2 t − 1 with t = 2 / (2 + x), from the Chebyshev series of Numerical Recipes.
 ERFC = (
     -0.6717940840566923,
@@ -58,38 +58,38 @@ def _of_parts(power: Array, f: Array) -> Array:
     s = f / (2.0 + f)
     z = s * s
     w = z * z
-    rest = w * (_L2 + w * (_L4 + w * _L6)) + z * (_L1 + w * (_L3 + w * (_L5 + w * _L7)))
-    return s * (half + rest) + power * _LN2_LOW - half + f + power * _LN2_HIGH
+    rest = w * (L2 + w * (L4 + w * L6)) + z * (L1 + w * (L3 + w * (L5 + w * L7)))
+    return s * (half + rest) + power * LN2_LOW - half + f + power * LN2_HIGH
 
 
 def logs(values: Array) -> Array:
     """log x of positive, finite, normal numbers."""
-    raised = np.ascontiguousarray(values).view(np.int64) + _RAISE
-    f = ((raised & _FRACTION) + _ROOT_BITS).view(np.float64) - 1.0
-    return _of_parts(((raised >> _SHIFT) - _BIAS).astype(np.float64), f)
+    raised = np.ascontiguousarray(values).view(np.int64) + RAISE
+    f = ((raised & FRACTION) + ROOT_BITS).view(np.float64) - 1.0
+    return _of_parts(((raised >> SHIFT) - BIAS).astype(np.float64), f)
 
 
 def log1ps(values: Array) -> Array:
     """log(1 + x) of numbers of at least 0 and at most 1e300."""
-    power = (((1.0 + values).view(np.int64) + _RAISE) >> _SHIFT) - _BIAS
-    scale = ((_BIAS - power) << _SHIFT).view(np.float64)
+    power = (((1.0 + values).view(np.int64) + RAISE) >> SHIFT) - BIAS
+    scale = ((BIAS - power) << SHIFT).view(np.float64)
     return _of_parts(power.astype(np.float64), scale * values + (scale - 1.0))
 
 
 def exps(values: Array) -> Array:
     """e^x of numbers of at most 0; 0 below e^-708."""
     near = np.maximum(values, -708.0)
-    whole = np.rint(near * _LOG2_E)
-    r = near - whole * _LN2_HIGH - whole * _LN2_LOW
-    high = 1 / 5040 + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r * _C12))))
+    whole = np.rint(near * LOG2_E)
+    r = near - whole * LN2_HIGH - whole * LN2_LOW
+    high = 1 / 5040 + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r * C12))))
     low = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * high))))))
-    power = ((whole.astype(np.int64) + _BIAS) << _SHIFT).view(np.float64)
+    power = ((whole.astype(np.int64) + BIAS) << SHIFT).view(np.float64)
     return np.where(values >= -708.0, low * power, 0.0)
 
 
 def ndtrs(z: Array) -> Array:
     """Distribution function of the standard normal."""
-    x = np.minimum(np.abs(z) * _ROOT_HALF, 40.0)
+    x = np.minimum(np.abs(z) * ROOT_HALF, 40.0)
     t = 2.0 / (2.0 + x)
     u = 2.0 * t - 1.0
     square = u * u

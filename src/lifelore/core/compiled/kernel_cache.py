@@ -12,13 +12,10 @@ import os
 import re
 import shutil
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
-
-import numba
-from platformdirs import user_cache_dir
 
 PACKAGE = Path(__file__).parents[2]
 STALE_DAYS = 30
@@ -27,6 +24,7 @@ _DAY = 24 * 3600.0
 _IMPORTS = re.compile(
     rb"^[ \t]*(?:from[ \t]+([\w.]+)[ \t]+import[ \t]+(\([^)]*\)|[^\n]+)|import[ \t]+([\w., \t]+))", re.MULTILINE
 )
+_MARKS = (b"@kernel", b"@inlined", b"@stored_kernel")
 _NAME = re.compile(rb"[\w.]+")
 _COMMENT = re.compile(rb"#[^\n]*")
 
@@ -38,7 +36,7 @@ def kernel_cache_dir() -> Path:
     Once a day a use is noted in the folder's time, and folders of other versions that nobody used for
     `STALE_DAYS` are removed.
     """
-    base = Path(os.environ.get("NUMBA_CACHE_DIR") or user_cache_dir("lifelore"))
+    base = cache_base()
     folder = base / f"kernels-{source_hash()}"
     # A folder that cannot be written, in an image say, is still read.
     with suppress(OSError):
@@ -49,8 +47,20 @@ def kernel_cache_dir() -> Path:
     return folder
 
 
+def cache_base() -> Path:
+    """Folder of all caches: ``NUMBA_CACHE_DIR`` or the user's cache folder."""
+    named = os.environ.get("NUMBA_CACHE_DIR")
+    if named:
+        return Path(named)
+    from platformdirs import user_cache_dir
+
+    return Path(user_cache_dir("lifelore"))
+
+
 def source_hash(package: Path = PACKAGE) -> str:
     """16 hexadecimal digits that change with Numba's version and with every source that kernels read."""
+    import numba
+
     digest = hashlib.sha256(numba.__version__.encode())
     sources = kernel_sources(package)
     for path in sorted(sources):
@@ -62,14 +72,28 @@ def source_hash(package: Path = PACKAGE) -> str:
 def kernel_sources(package: Path) -> dict[Path, bytes]:
     """Content of the files that hold kernels and of all that they import from the package, directly or not."""
     content = {Path(path): Path(path).read_bytes() for path in _python_files(str(package))}
-    found: set[Path] = set()
-    waiting = [path for path, source in content.items() if b"@kernel" in source or b"@inlined" in source]
+    kernels = [path for path, source in content.items() if any(mark in source for mark in _MARKS)]
+    return imported_sources(kernels, package, content.get)
+
+
+def imported_sources(files: list[Path], package: Path, read: Callable[[Path], bytes | None]) -> dict[Path, bytes]:
+    """Content of some files and of all that they import from the package, directly or not.
+
+    Parameters
+    ----------
+    files : list of Path
+    package : Path
+    read : callable
+        Content of a file, None where there is no such file.
+    """
+    found: dict[Path, bytes] = {}
+    waiting = list(files)
     while waiting:
         path = waiting.pop()
-        if path not in found:
-            found.add(path)
-            waiting += [file for file in _imported(content[path], package) if file in content]
-    return {path: content[path] for path in found}
+        if path not in found and (source := read(path)) is not None:
+            found[path] = source
+            waiting += _imported(source, package)
+    return found
 
 
 def _python_files(folder: str) -> Iterator[str]:

@@ -1,9 +1,10 @@
 """Access to Numba's undocumented internals: a kernel cache that loads quickly, or None where they have changed."""
 
+import ctypes
 import hashlib
 import os
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from functools import cache
 from pathlib import Path
@@ -12,10 +13,12 @@ from typing import Any
 import numba
 
 from lifelore.core.compiled.kernel_cache import PACKAGE, kernel_cache_dir
+from lifelore.core.compiled.machine_code import SYMBOL
 
 NO_COUNTING = {"_nrt": False}
 """Options of `numba.njit` for a kernel that counts no references; for use where `quick_cache` is not None."""
 _njit: Any = numba.njit
+_LLVM_TYPES = {ctypes.c_void_p: "ptr", ctypes.c_int64: "i64", ctypes.c_double: "double"}
 
 
 @cache
@@ -33,6 +36,35 @@ def quick_cache() -> Callable[[Callable], Any] | None:
     except (ImportError, AttributeError, TypeError, KeyError, RuntimeError):
         return None
     return found
+
+
+def compiled_object(function: Callable, signature: str, c_types: Sequence[Any]) -> bytes | None:
+    """Object file with the machine code of a function that creates no array, as its only symbol `SYMBOL`.
+
+    None where this release of Numba calls functions otherwise than with arguments of `c_types`.
+    """
+    from llvmlite import binding
+
+    if quick_cache() is None:
+        return None
+    compiled: Any = _njit(nogil=True, no_cfunc_wrapper=True, no_cpython_wrapper=True, **NO_COUNTING)(function)
+    compiled.compile(signature)
+    (result,) = compiled.overloads.values()
+    _, cpu, features = result.library.codegen.magic_tuple()
+    target = binding.Target.from_triple(binding.get_process_triple())
+    machine = target.create_target_machine(cpu=cpu, features=features, opt=3, reloc="pic", codemodel="default")
+    module = binding.parse_assembly(result.library.get_llvm_str())
+    entry = module.get_function(result.fndesc.llvm_func_name)
+    if [str(argument.type) for argument in entry.arguments] != [_LLVM_TYPES[c_type] for c_type in c_types]:
+        return None
+    for value in (*module.functions, *module.global_variables):
+        if not value.is_declaration and value.name != entry.name:
+            value.linkage = "internal"
+    entry.name = SYMBOL
+    passes = binding.create_new_module_pass_manager()
+    passes.add_global_dead_code_eliminate_pass()
+    passes.run(module, binding.create_pass_builder(machine, binding.create_pipeline_tuning_options(0)))
+    return machine.emit_object(module)
 
 
 def _nothing() -> None:

@@ -6,51 +6,33 @@ log(1 + f) by a polynomial in f / (2 + f). The exponential is 2^k times a polyno
 
 import numpy as np
 
-from lifelore.core.compiled.array_log import ERFC
+from lifelore.core.compiled.array_log import (
+    BIAS,
+    C12,
+    ERFC,
+    FRACTION,
+    L1,
+    L2,
+    L3,
+    L4,
+    L5,
+    L6,
+    L7,
+    LN2_HIGH,
+    LN2_LOW,
+    LOG2_E,
+    RAISE,
+    ROOT_BITS,
+    ROOT_HALF,
+    SHIFT,
+)  # fmt: skip
 from lifelore.core.compiled.jit import inlined
 
-# Bits of 1 and of √½, and the fraction of a float64.
-_ONE_BITS, _ROOT_BITS = np.int64(0x3FF0000000000000), np.int64(0x3FE6A09E667F3BCD)
-_FRACTION, _BIAS, _SHIFT = np.int64(0x000FFFFFFFFFFFFF), np.int64(1023), np.int64(52)
-_RAISE = np.int64(_ONE_BITS - _ROOT_BITS)
-# ln 2 in two parts, the first with few digits, so that k ln 2 is exact.
-_LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
-_L1, _L2, _L3 = 6.666666666666735130e-01, 3.999999999940941908e-01, 2.857142874366239149e-01
-_L4, _L5, _L6 = 2.222219843214978396e-01, 1.818357216161805012e-01, 1.531383769920937332e-01
-_L7 = 1.479819860511658591e-01
-_LOG2_E, _C12 = 1.4426950408889634, 1 / 479001600
-
-_ROOT_HALF = 0.5**0.5
+# The coefficients of `plain_ndtr`.
 (
-    _E0,
-    _E1,
-    _E2,
-    _E3,
-    _E4,
-    _E5,
-    _E6,
-    _E7,
-    _E8,
-    _E9,
-    _E10,
-    _E11,
-    _E12,
-    _E13,
-    _E14,
-    _E15,
-    _E16,
-    _E17,
-    _E18,
-    _E19,
-    _E20,
-    _E21,
-    _E22,
-    _E23,
-    _E24,
-    _E25,
-    _E26,
-    _E27,
-) = ERFC
+    _E0, _E1, _E2, _E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13,
+    _E14, _E15, _E16, _E17, _E18, _E19, _E20, _E21, _E22, _E23, _E24, _E25, _E26, _E27,
+) = ERFC  # fmt: skip
 
 
 @inlined
@@ -60,23 +42,23 @@ def _of_parts(power, f):
     s = np.divide(f, 2.0 + f)
     z = s * s
     w = z * z
-    rest = w * (_L2 + w * (_L4 + w * _L6)) + z * (_L1 + w * (_L3 + w * (_L5 + w * _L7)))
-    return s * (half + rest) + power * _LN2_LOW - half + f + power * _LN2_HIGH
+    rest = w * (L2 + w * (L4 + w * L6)) + z * (L1 + w * (L3 + w * (L5 + w * L7)))
+    return s * (half + rest) + power * LN2_LOW - half + f + power * LN2_HIGH
 
 
 @inlined
 def plain_log(x):
     """log x of a positive, finite, normal float64."""
-    raised = np.float64(x).view(np.int64) + _RAISE
-    f = np.int64((raised & _FRACTION) + _ROOT_BITS).view(np.float64) - 1.0
-    return _of_parts(float((raised >> _SHIFT) - _BIAS), f)
+    raised = np.float64(x).view(np.int64) + RAISE
+    f = np.int64((raised & FRACTION) + ROOT_BITS).view(np.float64) - 1.0
+    return _of_parts(float((raised >> SHIFT) - BIAS), f)
 
 
 @inlined
 def plain_log1p(x):
     """log(1 + x) of a float64 of at least 0 and at most 1e300, also where 1 + x rounds to 1."""
-    power = ((np.float64(1.0 + x).view(np.int64) + _RAISE) >> _SHIFT) - _BIAS
-    scale = np.int64((_BIAS - power) << _SHIFT).view(np.float64)
+    power = ((np.float64(1.0 + x).view(np.int64) + RAISE) >> SHIFT) - BIAS
+    scale = np.int64((BIAS - power) << SHIFT).view(np.float64)
     # Both terms are exact, so for a small x, where the power is 0, no digit is lost.
     return _of_parts(float(power), scale * x + (scale - 1.0))
 
@@ -85,18 +67,18 @@ def plain_log1p(x):
 def plain_exp(x):
     """e^x of a float64 of at most 0; 0 below e^-708. The error is below 4e-16 relative."""
     near = max(x, -708.0)
-    whole = np.rint(near * _LOG2_E)
-    r = near - whole * _LN2_HIGH - whole * _LN2_LOW
-    high = 1 / 5040 + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r * _C12))))
+    whole = np.rint(near * LOG2_E)
+    r = near - whole * LN2_HIGH - whole * LN2_LOW
+    high = 1 / 5040 + r * (1 / 40320 + r * (1 / 362880 + r * (1 / 3628800 + r * (1 / 39916800 + r * C12))))
     low = 1.0 + r * (1.0 + r * (0.5 + r * (1 / 6 + r * (1 / 24 + r * (1 / 120 + r * (1 / 720 + r * high))))))
-    power = np.int64((np.int64(whole) + _BIAS) << _SHIFT).view(np.float64)
+    power = np.int64((np.int64(whole) + BIAS) << SHIFT).view(np.float64)
     return low * power if x >= -708.0 else 0.0
 
 
 @inlined
 def plain_ndtr(z):
     """Distribution function of the standard normal, to a few units in the last place."""
-    x = min(abs(z) * _ROOT_HALF, 40.0)
+    x = min(abs(z) * ROOT_HALF, 40.0)
     t = np.divide(2.0, 2.0 + x)
     u = 2.0 * t - 1.0
     square = u * u

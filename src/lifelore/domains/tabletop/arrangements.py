@@ -1,8 +1,9 @@
 """Arrangements: what a scene is to show, as a way to place objects and a test that, settled, they show it.
 
-*mixed*: groups side by side; *pair*: two objects in a wanted relation; the others are of the thesis's figures:
-a ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, stacks (2.7, 2.10), and two
-objects at a given distance. In these the label 2 is the lowest object, 3 the one on it, and so on.
+*mixed*: groups side by side; *pair*: two objects in a wanted relation; the others are of the thesis's figures: a
+ball at an L-block (2.1), a ball on a block (2.2), holes (2.6) and their control, stacks (2.7, 2.10), and two
+objects at a given distance; `piles` has those of books, boxes and cartons. In the figures' the label 2 is the
+lowest object, 3 the one on it, and so on.
 """
 
 from collections.abc import Callable, Mapping
@@ -15,6 +16,7 @@ from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
 from lifelore.domains.tabletop.groups import Template, bridge, heap, lean, nested, single, stacked, step, tower
 from lifelore.domains.tabletop.kits import Kit
 from lifelore.domains.tabletop.layout import Group, put_beside, separation, stand, top
+from lifelore.domains.tabletop.piles import PILES
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop.shapes import animal, arch, ball, box, cloth, hinged_blocks, l_block
@@ -243,6 +245,16 @@ def place_cloth(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, 
     return _facing(rng, [below, sheet.moved(x, y)])
 
 
+VARIED = {"mixed": 0.55, "pile": 0.18, "ramp": 0.09, "books": 0.07, "cartons": 0.11}
+"""How often a scene of `place_varied` is of each arrangement."""
+
+
+def place_varied(rng: np.random.Generator, kit: Kit, settings: TabletopSettings, wanted: str) -> Group:
+    """A scene of a drawn arrangement: *mixed*, or one of books, boxes and cartons."""
+    name = list(VARIED)[int(rng.choice(len(VARIED), p=list(VARIED.values())))]
+    return PILES.get(name, place_mixed)(rng, kit, settings, wanted)
+
+
 ARRANGEMENTS: dict[str, Arrangement] = {
     "mixed": Arrangement(place_mixed, shuffled=True),
     "pair": Arrangement(place_pair, shuffled=True),
@@ -256,6 +268,8 @@ ARRANGEMENTS: dict[str, Arrangement] = {
     "cloth": Arrangement(place_cloth, ((3, 2),)),
     "ball-on-block": Arrangement(place_ball_on_block, ((3, 2),)),
     "ball-at-l-block": Arrangement(place_ball_at_l_block, ((3, 2),)),
+    "varied": Arrangement(place_varied, shuffled=True),
+    **{name: Arrangement(place, shuffled=True) for name, place in PILES.items()},
 }
 
 

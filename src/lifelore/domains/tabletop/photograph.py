@@ -54,7 +54,8 @@ def photograph(
     rng: np.random.Generator,
     fewest: int = FEW_POINTS,
 ) -> Photograph | None:
-    """What the camera sees of the objects and of the table; None where an object has less than `fewest` points."""
+    """The camera's picture of the objects and of the table around them; None where an object has fewer points than
+    `fewest`."""
     rays = _rays_at(outlines, view, camera)
     world = rays.reshape(-1, 3) @ view.rotation.T
     hits, depth, normals = table.cast(view.position, world)

@@ -58,6 +58,8 @@ class Tabletop:
     shapes : sequence of Shape
     poses : sequence of Pose
         Where each shape's frame is at the start.
+    tools : str
+        MJCF sections of bodies that are no objects, e.g. a gripper, and their constraints.
 
     Raises
     ------
@@ -65,10 +67,10 @@ class Tabletop:
         MuJoCo is not installed.
     """
 
-    def __init__(self, shapes: Sequence[Shape], poses: Sequence[Pose]) -> None:
+    def __init__(self, shapes: Sequence[Shape], poses: Sequence[Pose], tools: str = "") -> None:
         self._mujoco = _mujoco()
         self._shapes = tuple(shapes)
-        self._model: Any = self._mujoco.MjModel.from_xml_string(_scene_xml(shapes, poses))
+        self._model: Any = self._mujoco.MjModel.from_xml_string(_scene_xml(shapes, poses, tools))
         self._data: Any = self._mujoco.MjData(self._model)
         self._cloths = [number for number, shape in enumerate(self._shapes) if shape.weave is not None]
         solid = [number for number, shape in enumerate(self._shapes) if shape.weave is None]
@@ -210,7 +212,7 @@ def _mujoco() -> ModuleType:
     return mujoco
 
 
-def _scene_xml(shapes: Sequence[Shape], poses: Sequence[Pose]) -> str:
+def _scene_xml(shapes: Sequence[Shape], poses: Sequence[Pose], tools: str) -> str:
     meshes, bodies = [], []
     for number, (shape, pose) in enumerate(zip(shapes, poses, strict=True)):
         if shape.weave is not None:
@@ -227,7 +229,7 @@ def _scene_xml(shapes: Sequence[Shape], poses: Sequence[Pose]) -> str:
     return (
         f'<mujoco><compiler angle="radian" balanceinertia="true"/>{_SOFT if soft else _SOLID}'
         f"<asset>{''.join(meshes)}</asset><worldbody>"
-        f'<geom type="plane" size="0 0 1" group="1"/>{"".join(bodies)}</worldbody></mujoco>'
+        f'<geom type="plane" size="0 0 1" group="1"/>{"".join(bodies)}</worldbody>{tools}</mujoco>'
     )
 
 

@@ -19,6 +19,7 @@ BENCHES = {
     "separator": "perception",
     "perceive": "perception",
     "relations": "perception",
+    "plans": "perception",
     "pictures": "perception",
     "views": "perception",
     "factory": "action",
@@ -54,8 +55,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``recognition``: offices; for ``relations`` and ``views``: lots of scenes, judged together; for
-        ``deep``: runs of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``:
+        lives; for ``recognition``: offices; for ``relations``, ``plans`` and ``views``: lots of scenes, judged
+        together; for ``deep``: runs of learning; for ``evaluation``: 60 simulated studies each; for ``novelty``:
         libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.

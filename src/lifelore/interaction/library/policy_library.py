@@ -17,6 +17,7 @@ from lifelore.core.protocols import SignalModel
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.library.library_names import checked_prior, distinct_names, index_of, new_name
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.outcomes.moment_outcomes import MomentOutcomes
 from lifelore.interaction.outcomes.outcome_columns import rows_of_columns
 from lifelore.interaction.outcomes.outcome_kinds import outcome_kind
 from lifelore.interaction.outcomes.outcome_model import OutcomeModel, OutcomeRows, rows_of_samples
@@ -94,14 +95,16 @@ class PolicyLibrary:
         weights : (n_types, n_policies, n) float, optional
             Importance of each sample, ≥ 0: reliability weights, see `OutcomeRows.with_weights`.
         **options
-            For the model's ``from_samples``: ``shrinkage``, ``edges``, ``pseudo_count``.
+            For the model's ``from_samples``: ``shrinkage``, ``gaps``, ``edges``, ``pseudo_count``. With
+            ``gaps=True`` pairs without a sample are guessed from the others ("gaussian" and "student-t").
 
         Raises
         ------
         InputError
-            A pair has no sample, a sample is infinite, a weight negative, or there is no such model.
+            A pair has no sample (without ``gaps``), a sample is infinite, a weight negative, or there is no such
+            model.
         """
-        rows = rows_of_samples(samples, weights)
+        rows = rows_of_samples(samples, weights, gaps=options.get("gaps", False))
         return cls.from_rows(rows, types, policies, model, signal=signal, prior=prior, **options)
 
     @classmethod
@@ -240,15 +243,17 @@ class PolicyLibrary:
         self._tables.clear()
         self._task_tables.clear()
 
-    def for_task(self) -> "TaskLibrary | None":
+    def for_task(self, closest: bool = False) -> "TaskLibrary | None":
         """The library as one task sees it, whose models the task's own signals change.
 
-        None where nothing is to be learnt about the models: all are exact, or the caller's own.
+        None where nothing is to be learnt about the models: all are exact, or the caller's own. With `closest` the
+        task is as close to its type as the spread of the tasks of a type allows.
         """
         from lifelore.interaction.library.task_library import TaskLibrary
 
-        outcomes = getattr(self.performance, "for_task", _nothing)()
-        signal = None if isinstance(self.signal, ReturnSignal) else getattr(self.signal, "for_task", _nothing)()
+        outcomes = getattr(self.performance, "for_task", _nothing)(closest)
+        own_signal = not isinstance(self.signal, ReturnSignal)
+        signal = getattr(self.signal, "for_task", _nothing)(closest) if own_signal else None
         return None if outcomes is None and signal is None else TaskLibrary(self, outcomes, signal)
 
     def task_table(self, n_bins: int) -> tuple[SignalTable, list[Any]]:
@@ -269,6 +274,7 @@ class PolicyLibrary:
         *,
         signal: SignalModel | None = None,
         mass: float | None = None,
+        gaps: bool = False,
     ) -> Self:
         """A library with an additional type.
 
@@ -282,20 +288,26 @@ class PolicyLibrary:
         mass : float, optional
             The new type's prior, in [0, 1); 1 / (n_types + 1) by default. The other types share the rest as
             before.
+        gaps : bool
+            Whether policies without an outcome are guessed from the other types ("gaussian" and "student-t").
+            Models in doubt know how little a guess tells; plug-in models take it for the truth.
         """
         mass = 1 / (self.n_types + 1) if mass is None else float(mass)
         if not 0 <= mass < 1:
             raise InputError(f"mass must lie in [0, 1), got {mass}")
-        performance = self.performance.with_type(samples)
+        performance = self.performance.with_type(samples, **self._guessing(gaps))
         names = (*self.types, new_name(name, self.types, "type"))
         prior = np.append(self.prior * (1 - mass), mass)
         return type(self)(performance, self._signal_for(performance, signal), names, self.policies, prior)
 
     def with_policy(
-        self, samples: ArrayLike, name: str | None = None, *, signal: SignalModel | None = None
+        self, samples: ArrayLike, name: str | None = None, *, signal: SignalModel | None = None, gaps: bool = False
     ) -> Self:
-        """A library with an additional policy, from its outcomes on every type, `samples` (n_types, n)."""
-        performance = self.performance.with_policy(samples)
+        """A library with an additional policy, from its outcomes on every type, `samples` (n_types, n).
+
+        `gaps` as in `with_type`, for types that it has not run on.
+        """
+        performance = self.performance.with_policy(samples, **self._guessing(gaps))
         names = (*self.policies, new_name(name, self.policies, "policy"))
         return type(self)(performance, self._signal_for(performance, signal), self.types, names, self.prior)
 
@@ -387,6 +399,13 @@ class PolicyLibrary:
 
         return unpacked_library(content, where, signal, cls)
 
+    def _guessing(self, gaps: bool) -> dict[str, Any]:
+        """Options of the outcome model's `with_type` and `with_policy`."""
+        if gaps and not isinstance(self.performance, MomentOutcomes):
+            name = type(self.performance).__name__
+            raise InputError(f"gaps are guessed by 'gaussian' and 'student-t' models, got {name}; run every pair")
+        return {"gaps": True} if gaps else {}
+
     def _signal_for(self, performance: OutcomeModel, signal: SignalModel | None) -> SignalModel:
         if signal is not None:
             return signal
@@ -395,5 +414,5 @@ class PolicyLibrary:
         raise InputError("signals are not returns here; give the new library's signal model as signal=")
 
 
-def _nothing() -> None:
+def _nothing(closest: bool) -> None:
     """What a model without a `for_task` of its own has to learn in a task."""

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.interaction.library.broad_law import BroadLaw, broad_law
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.broad_law import BroadLaw, broad_law
-from lifelore.interaction.novelty.signal_laws import signal_laws
+from lifelore.interaction.library.signal_laws import signal_laws
 from lifelore.interaction.reuse.explanation import MAX_SURPRISE
 
 Array = NDArray[np.float64]

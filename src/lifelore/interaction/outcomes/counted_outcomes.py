@@ -94,9 +94,12 @@ class CountedOutcomes:
     def spread(self, spread: Spread) -> None:
         self._spread = spread
 
-    def for_task(self) -> TaskCounts | None:
-        """A model of one task, which its own outcomes change; None where all is known exactly."""
-        return None if self.exact else TaskCounts(self, self.spread)
+    def for_task(self, closest: bool = False) -> TaskCounts | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly.
+
+        With `closest` the task is as close to its type as the spread allows.
+        """
+        return None if self.exact else TaskCounts(self, self.spread.least if closest else self.spread)
 
     def replace(self, policy: int, counts: Array) -> None:
         """Put other counts (n_types, n_cells) in the place of a policy's."""

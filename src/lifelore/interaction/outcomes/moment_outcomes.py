@@ -45,25 +45,27 @@ class MomentOutcomes:
         self._prepare()
 
     @classmethod
-    def from_samples(cls, samples: ArrayLike, shrinkage: float = 5.0) -> Self:
+    def from_samples(cls, samples: ArrayLike, shrinkage: float = 5.0, gaps: bool = False) -> Self:
         """The model fitted to `samples` (n_types, n_policies, n), NaN where missing, with shrunk variances.
 
         Parameters
         ----------
         shrinkage : float
             Number of samples that the pooled variance counts as; > 0.
+        gaps : bool
+            Whether pairs without a sample are guessed from the others, see `OutcomeMoments.guess_gaps`.
 
         Raises
         ------
         InputError
-            A pair has no sample, or a sample is infinite.
+            A pair has no sample and `gaps` is false, or a sample is infinite.
         """
-        return cls.from_rows(rows_of_samples(samples), shrinkage)
+        return cls.from_rows(rows_of_samples(samples, gaps=gaps), shrinkage, gaps)
 
     @classmethod
-    def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0) -> Self:
+    def from_rows(cls, rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Self:
         """The model fitted to rows of outcomes; see `from_samples`."""
-        return cls.of(moments(rows, shrinkage))
+        return cls.of(moments(rows, shrinkage, gaps))
 
     @classmethod
     def of(cls, found: OutcomeMoments) -> Self:
@@ -91,11 +93,15 @@ class MomentOutcomes:
     def spread(self, spread: Spread) -> None:
         self.moments.spread = spread
 
-    def for_task(self) -> TaskNormals | None:
-        """A model of one task, which its own outcomes change; None where all is known exactly."""
-        if np.isinf(self.moments.count).all() and not self.spread.values.any():
+    def for_task(self, closest: bool = False) -> TaskNormals | None:
+        """A model of one task, which its own outcomes change; None where all is known exactly.
+
+        With `closest` the task is as close to its type as the spread allows.
+        """
+        spread = self.spread.least if closest else self.spread
+        if np.isinf(self.moments.count).all() and not spread.values.any():
             return None
-        return TaskNormals(self.moments, self.spread)
+        return TaskNormals(self.moments, spread)
 
     def log_densities(self, policies: NDArray[np.int64], values: Array) -> Array:
         """Log densities of many outcomes at once, (n,) and (n,) to (n, n_types)."""
@@ -140,13 +146,13 @@ class MomentOutcomes:
                 self.moments.absorb(type_, policy, count, mean, squares)
                 self._renew(type_, policy)
 
-    def with_type(self, samples: ArrayLike) -> Self:
-        """A new model with an additional type, from `samples` (n_policies, n), NaN where missing."""
-        return self.of(self.moments.more(samples, axis=0))
+    def with_type(self, samples: ArrayLike, gaps: bool = False) -> Self:
+        """A new model with an additional type, from `samples` (n_policies, n); see `from_samples`."""
+        return self.of(self.moments.more(samples, 0, gaps))
 
-    def with_policy(self, samples: ArrayLike) -> Self:
-        """A new model with an additional policy, from `samples` (n_types, n), NaN where missing."""
-        return self.of(self.moments.more(samples, axis=1))
+    def with_policy(self, samples: ArrayLike, gaps: bool = False) -> Self:
+        """A new model with an additional policy, from `samples` (n_types, n); see `from_samples`."""
+        return self.of(self.moments.more(samples, 1, gaps))
 
     def take(self, types: Sequence[int] | None = None, policies: Sequence[int] | None = None) -> Self:
         """A new model of some types and policies, in the order given; None means all."""

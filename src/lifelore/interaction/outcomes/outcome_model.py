@@ -196,8 +196,8 @@ def checked_weights(weights: ArrayLike, shape: tuple[int, ...]) -> Array:
     return weights
 
 
-def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None) -> OutcomeRows:
-    """The outcomes of `samples` (n_types, n_policies, n), NaN where missing, every pair run at least once.
+def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None, gaps: bool = False) -> OutcomeRows:
+    """The outcomes of `samples` (n_types, n_policies, n), NaN where missing, every pair run unless `gaps`.
 
     Parameters
     ----------
@@ -207,7 +207,8 @@ def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None) -> Out
     Raises
     ------
     InputError
-        The shape differs, a value is infinite, a weight negative, or a pair of type and policy has no sample.
+        The shape differs, a value is infinite, a weight negative, or a pair of type and policy has no sample and
+        `gaps` is false.
     """
     try:
         samples = np.asarray(samples, np.float64)
@@ -224,17 +225,17 @@ def rows_of_samples(samples: ArrayLike, weights: ArrayLike | None = None) -> Out
         if given.shape != samples.shape:
             raise InputError(f"weights must be {samples.shape}, the shape of samples, got {given.shape}")
         rows = rows.with_weights(given[types, policies, place])
-    return checked_rows(rows)
+    return checked_rows(rows, gaps)
 
 
-def checked_rows(rows: OutcomeRows) -> OutcomeRows:
-    """The rows, if all are finite and every pair has a row (§4.4.1: all policies run on all types)."""
+def checked_rows(rows: OutcomeRows, gaps: bool = False) -> OutcomeRows:
+    """The rows, if all are finite and, unless `gaps`, every pair has one (§4.4.1: every pair is run)."""
     if not (np.abs(rows.values) <= LARGEST).all():
         raise InputError(
             f"samples must be finite (NaN where one is missing) and of at most {LARGEST:g}; leave out what is not"
         )
     missing = np.argwhere(rows.sums() == 0)
-    if len(missing):
+    if len(missing) and not gaps:
         raise InputError(
             f"every pair of type and policy needs a sample; {len(missing)} have none, the first is type "
             f"{missing[0][0]} with policy {missing[0][1]}: run it, or leave that type or policy out"

@@ -81,10 +81,33 @@ class OutcomeMoments:
         pairs = zip(self._fields(), other._fields(), strict=True)
         return self._with([np.concatenate(pair, axis=axis) for pair in pairs])
 
-    def more(self, samples: ArrayLike, axis: int) -> "OutcomeMoments":
-        """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n)."""
-        rows = rows_of_more(samples, self.mean.shape[1 - axis], axis)
-        return self.joined(moments(rows, self.shrinkage, self.pooled), axis)
+    def more(self, samples: ArrayLike, axis: int, gaps: bool = False) -> "OutcomeMoments":
+        """With an additional type (axis 0) or policy (axis 1), from `samples` (size of the other axis, n).
+
+        With `gaps`, pairs without a sample are guessed (`guess_gaps`).
+        """
+        rows = rows_of_more(samples, self.mean.shape[1 - axis], axis, gaps)
+        found = self.joined(_moments(rows, self.shrinkage, self.pooled), axis)
+        found.guess_gaps()
+        return found
+
+    def guess_gaps(self) -> None:
+        """Give pairs of count 0 what the other pairs say, in place, as less than a single sample.
+
+        The mean is that of the policy's known pairs and of all known pairs, the latter counted as one pair more.
+        The count is the variance of an outcome over the variance between types, so that with models in doubt the
+        unknown mean varies as means vary between types. With plug-in models the guess is taken for the truth.
+        """
+        gaps = self.count == 0
+        if not gaps.any():
+            return
+        known = np.ma.masked_array(self.mean, gaps)
+        overall = float(known.mean())
+        means = (known.sum(axis=0).filled(0.0) + overall) / (known.count(axis=0) + 1)
+        several = known.count(axis=0) > 1
+        between = float(known[:, several].var(axis=0, ddof=1).mean()) if several.any() else float(known.var())
+        self.mean[gaps] = np.broadcast_to(means, self.mean.shape)[gaps]
+        self.count[gaps] = np.minimum(self.variance[gaps] / max(between, np.finfo(float).tiny), 1.0)
 
     def take(self, types: Sequence[int] | None, policies: Sequence[int] | None) -> "OutcomeMoments":
         """The moments of some types and policies."""
@@ -145,35 +168,39 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     return OutcomeMoments(mean, variance, count, count.copy(), float(variance.mean()), 5.0)
 
 
-def moments(rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None) -> OutcomeMoments:
-    """Moments of the outcomes, variances shrunk towards `pooled`, by default the variance within all pairs.
+def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> OutcomeMoments:
+    """Moments of the outcomes, variances shrunk towards the variance within all pairs.
 
     Raises
     ------
     InputError
-        `shrinkage` is not positive and finite, a pair has no sample, or the values overflow.
+        `shrinkage` is not positive and finite, a pair has no sample and `gaps` is false, or the values overflow.
     """
     if not (shrinkage > 0 and np.isfinite(shrinkage)):
         raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
-    if pooled is not None and not (pooled > 0 and np.isfinite(pooled)):
-        raise InputError(f"pooled must be a positive variance, got {pooled}")
-    checked_rows(rows)
+    found = _moments(checked_rows(rows, gaps), shrinkage)
+    found.guess_gaps()
+    return found
+
+
+def _moments(rows: OutcomeRows, shrinkage: float, pooled: float | None = None) -> OutcomeMoments:
+    """As `moments`; a pair without a sample has the count 0."""
     count = rows.sums()
-    mean = rows.sums(rows.values) / count
+    mean = rows.sums(rows.values) / np.where(count > 0, count, 1.0)
     squares = rows.sums((rows.values - mean[rows.types, rows.policies]) ** 2)
     if pooled is None:
         pooled = max(_pooled(squares, count, mean), _least_variance(rows.values))
-    freedom = shrinkage + count - 1
+    freedom = np.where(count > 0, shrinkage + count - 1, shrinkage)
     return OutcomeMoments(mean, (shrinkage * pooled + squares) / freedom, count, freedom, pooled, shrinkage)
 
 
-def rows_of_more(samples: ArrayLike, n_others: int, axis: int) -> OutcomeRows:
-    """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1), as rows."""
+def rows_of_more(samples: ArrayLike, n_others: int, axis: int, gaps: bool = False) -> OutcomeRows:
+    """`samples` (n_others, n) of an additional type (axis 0) or policy (axis 1); see `rows_of_samples`."""
     samples = np.asarray(samples, np.float64)
     if samples.ndim != 2 or len(samples) != n_others:
         others = "policies" if axis == 0 else "types"
         raise InputError(f"samples must be ({n_others}, n), one row for each of the {others}, got {samples.shape}")
-    return rows_of_samples(np.expand_dims(samples, axis))
+    return rows_of_samples(np.expand_dims(samples, axis), gaps=gaps)
 
 
 def chosen_of(chosen: Sequence[int] | None, n: int) -> NDArray[np.int64]:
@@ -195,8 +222,9 @@ def _spread_out(values: ArrayLike | None, mean: Array, name: str) -> Array:
 
 def _pooled(squares: Array, count: Array, mean: Array) -> float:
     """Variance within all pairs; where each pair ran once, the variance of means across types or policies."""
-    if (freedom := (count - 1).sum()) > 0:
+    if (freedom := np.maximum(count - 1, 0).sum()) > 0:
         return float(squares.sum() / freedom)
+    mean = np.ma.masked_array(mean, count == 0)
     # Noise and differences cannot be separated: all variance counts as noise, so that beliefs move with caution.
     return float(mean.var(axis=0).mean()) if len(mean) > 1 else float(mean.var())
 

@@ -52,6 +52,11 @@ class Spread(NamedTuple):
         """Several spreads from 0 to the largest; only 0 where that is 0."""
         return cls(SHARES * largest, WEIGHTS.copy()) if largest > 0 else cls.known(0.0)
 
+    @property
+    def least(self) -> "Spread":
+        """The smallest spread alone: that of a task which is just like its type."""
+        return Spread.known(self.values.min())
+
     @classmethod
     def of_array(cls, rows: ArrayLike) -> "Spread":
         """The spread whose values and weights are the rows of (2, n_spreads); InputError for anything else."""

@@ -14,15 +14,13 @@ from lifelore.interaction.finite_signals.signal_bins import joined_ends_of, join
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.dirichlet import DirichletRow
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
-from lifelore.interaction.outcomes.special_functions import ndtr
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskOutcomes, normal_excess
 
 if TYPE_CHECKING:
     from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
 
 Array = NDArray[np.float64]
-_ROOT_2_PI = np.sqrt(2 * np.pi)
 
 
 class TaskCounts(TaskOutcomes):
@@ -138,9 +136,7 @@ class TaskCounts(TaskOutcomes):
 
     def expected_mean_excess(self, threshold: ArrayLike) -> Array:
         """E[max(m − threshold, 0)] of each pair's mean outcome m, taken as normal, (..., n_types, n_policies)."""
-        above, deviation = self.mean - over_pairs(threshold), np.sqrt(self.mean_variance)
-        z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
-        return np.maximum(deviation * np.exp(-0.5 * z * z) / _ROOT_2_PI + above * ndtr(z), 0.0)
+        return normal_excess(self.mean - over_pairs(threshold), self.mean_variance)
 
     def density(self, value: ArrayLike) -> Array:
         """Density (probability, where outcomes are discrete) of `value` for every pair, (..., T, P)."""

@@ -184,16 +184,37 @@ def renew(policies, shown, location, variance, rarity, doubt, spreads, weights, 
 
 
 @kernel
-def mean_excess(mean, mean_variance, threshold, out):
-    """Write E[max(m − threshold, 0)] of normal m, (n_types, n_policies)."""
-    # One long loop, of which a processor computes several turns at a time.
-    mean, mean_variance, out = mean.ravel(), mean_variance.ravel(), out.ravel()
+def mean_excess(mean, of_runs, of_spread, spread, tried, tried_variance, threshold, out):
+    """Write E[max(m − threshold, 0)] of normal m, (n_types, n_policies); 0 where m is ten deviations below.
+
+    m has the variance `of_runs` + `spread` × `of_spread`, of the policies `tried` (m,) `tried_variance`.
+    """
+    variance = np.empty_like(mean)
+    means, runs, spreads, flat = mean.ravel(), of_runs.ravel(), of_spread.ravel(), variance.ravel()
+    n = means.shape[0]
+    for i in range(n):
+        flat[i] = runs[i] + spreads[i] * spread
     for i in range(mean.shape[0]):
-        above = mean[i] - threshold
-        deviation = np.sqrt(mean_variance[i])
+        for policy in tried:
+            variance[i, policy] = tried_variance[i, policy]
+    # Pairs that count are gathered: the long loop over them has no branch, so several turns run at a time.
+    found, place, count = out.ravel(), np.empty(n, np.int64), 0
+    for i in range(n):
+        above = means[i] - threshold
+        found[i] = 0.0
+        place[count] = i
+        count += 1 if above > 0 or above * above < 100 * flat[i] else 0
+    excess = np.empty(count)
+    for k in range(count):
+        excess[k] = means[place[k]] - threshold
+        flat[k] = flat[place[k]]
+    for k in range(count):
+        above, deviation = excess[k], np.sqrt(flat[k])
         z = min(max(np.divide(above, max(deviation, 1e-300)), -1e3), 1e3)
         density = np.divide(plain_exp(-0.5 * z * z), _ROOT_2_PI)
-        out[i] = max(deviation * density + above * plain_ndtr(z), 0.0)
+        excess[k] = max(deviation * density + above * plain_ndtr(z), 0.0)
+    for k in range(count):
+        found[place[k]] = excess[k]
 
 
 @kernel

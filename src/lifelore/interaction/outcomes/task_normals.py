@@ -21,7 +21,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.array_log import exps, log1ps, logs, ndtrs
+from lifelore.core.compiled.array_log import log1ps, logs, ndtrs
 from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import informative_cuts
@@ -30,7 +30,7 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, ove
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes
+from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes, normal_excess
 
 Array = NDArray[np.float64]
 
@@ -71,7 +71,8 @@ class TaskNormals(TaskOutcomes):
         self._numbers = np.zeros((len(self._location), 3))
         self._tried: list[int] = []
         self._alike = (self._doubt == self._doubt[:, :1]).all(axis=1).tolist()
-        self._new_heights: dict[int, Array] = {}
+        # Rows of a policy that an update reads: location, variance, 1/n, 1/ν, and heights before any outcome.
+        self._policy_rows: dict[int, tuple[Array, ...]] = {}
         self._log_first = np.log(spread.weights)
         # Policies whose law has changed since their columns were computed: of the means, and of all else.
         self._stale_means: set[int] = set()
@@ -98,21 +99,20 @@ class TaskNormals(TaskOutcomes):
             return super().evidence(policy, signal, log_belief, log_anew)
         if not is_outcome(policy, signal, len(self._location)):
             refuse_outcome(policy, signal, self.n_policies)
-        found = TaskEvidence(np.empty_like(log_belief), np.empty_like(log_belief), np.zeros(len(self.log_weights)))
-        fresh = self._new_heights.get(policy)
-        if fresh is None:
-            fresh = self._new_heights[policy] = self._heights(policy, 0.0)
-        shown = self._numbers[policy]
+        rows = self._policy_rows.get(policy)
+        if rows is None:
+            laws = (self._location, self._variance, self._rarity, self._doubt)
+            rows = self._policy_rows[policy] = (*(law[policy] for law in laws), self._heights(policy, 0.0))
+        shown, n = self._numbers[policy], len(log_belief)
+        found = TaskEvidence(np.empty(n), np.empty(n), np.zeros(len(self.log_weights)))
+        count = float(shown[0])
         _kernels().task_evidence(
             float(signal),
             shown,
-            self._location[policy],
-            self._variance[policy],
-            self._rarity[policy],
-            self._doubt[policy],
+            *rows[:4],
             self.spread.values,
-            self._heights(policy, float(shown[0])) if shown[0] else fresh,
-            fresh,
+            self._heights(policy, count) if count else rows[4],
+            rows[4],
             self.log_weights,
             self._log_first,
             log_belief,
@@ -191,7 +191,7 @@ class TaskNormals(TaskOutcomes):
         """Variance of each pair's mean outcome, (n_types, n_policies)."""
         if self._stale:
             self._renew()
-        found = self._of_runs + self._of_spread * (np.exp(self.log_weights) @ self.spread.values)
+        found = self._of_runs + self._of_spread * self._expected_spread()
         found[:, self._tried] = self._tried_variance[:, self._tried]
         return found
 
@@ -212,14 +212,22 @@ class TaskNormals(TaskOutcomes):
 
     def expected_mean_excess(self, threshold: ArrayLike) -> Array:
         """E[max(m − threshold, 0)] of each pair's mean outcome m, taken as normal, (..., n_types, n_policies)."""
-        mean, variance = self.mean, self.mean_variance
-        if np.ndim(threshold) == 0 and kernel_pays(8 * mean.size):
-            excess = np.empty_like(mean)
-            _kernels().mean_excess(mean, variance, float(threshold), excess)  # pyright: ignore
+        if np.ndim(threshold) == 0 and kernel_pays(8 * self._mean.size):
+            if self._stale:
+                self._renew()
+            excess = np.empty_like(self._mean)
+            _kernels().mean_excess(
+                self._mean,
+                self._of_runs,
+                self._of_spread,
+                self._expected_spread(),
+                np.array(self._tried, np.int64),
+                self._tried_variance,
+                float(threshold),  # pyright: ignore[reportArgumentType]
+                excess,
+            )
             return excess
-        above, deviation = mean - over_pairs(threshold), np.sqrt(variance)
-        z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
-        return np.maximum(deviation * (exps(-0.5 * z * z) / _ROOT_2_PI) + above * ndtrs(z), 0.0)
+        return normal_excess(self.mean - over_pairs(threshold), self.mean_variance)
 
     def density(self, value: ArrayLike) -> Array:
         """Density of `value` for every pair, (..., n_types, n_policies)."""
@@ -246,8 +254,7 @@ class TaskNormals(TaskOutcomes):
         if policy in self._tried:
             variance = self._tried_variance[:, policy]
         else:
-            expected = np.exp(self.log_weights) @ self.spread.values
-            variance = self._of_runs[:, policy] + self._of_spread[:, policy] * expected
+            variance = self._of_runs[:, policy] + self._of_spread[:, policy] * self._expected_spread()
         scale = np.sqrt((variance[types] + noise[types]) / variance_factor(freedom))
         z = (values - self.mean[types, policy][:, None]) / scale[:, None]
         return stdtr(freedom[:, None], z)
@@ -326,11 +333,16 @@ class TaskNormals(TaskOutcomes):
     def _heights(self, policy: int, count: float) -> Array:
         """Log densities at the location, scale 1, of a policy with `count` outcomes, (n_types,)."""
         doubt = self._doubt[policy]
+        if self._alike[policy]:
+            first = float(doubt[0])
+            return _equal_heights(1 / first + count if first else np.inf, len(doubt))
         with np.errstate(divide="ignore"):
             freedom = 1 / doubt + count
-        if self._alike[policy]:
-            return np.full(len(doubt), _height(float(freedom[0])))
         return np.array([_height(value) for value in freedom.tolist()])
+
+    def _expected_spread(self) -> float:
+        """Expectation of the spread, given what the task has shown."""
+        return float(np.exp(self.log_weights) @ self.spread.values)
 
     def _changed(self, policies: Iterable[int]) -> None:
         self._stale_means.update(policies)
@@ -414,6 +426,12 @@ def _kernels() -> ModuleType:
     from lifelore.interaction.outcomes import task_kernels
 
     return task_kernels
+
+
+@lru_cache(maxsize=1024)
+def _equal_heights(freedom: float, n: int) -> Array:
+    """`_height` of n types that are equally uncertain, (n,); read only."""
+    return np.full(n, _height(freedom))
 
 
 @lru_cache(maxsize=4096)

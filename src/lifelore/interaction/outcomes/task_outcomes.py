@@ -6,17 +6,20 @@ far, for each type. `TaskNormals` does so for Gaussian and Student's t outcomes,
 categories. Rules score it like any outcome model.
 """
 
+from math import exp, inf, log, pi, sqrt
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lifelore.core.compiled.array_log import exps, logs
+from lifelore.core.compiled.array_log import exps, logs, ndtrs
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.spread import Spread
 
 Array = NDArray[np.float64]
+
+ROOT_2_PI = sqrt(2 * pi)
 
 
 class Predicted(NamedTuple):
@@ -86,16 +89,19 @@ class SpreadWeights:
         """Log probabilities of the spreads after a signal of `gain`, see `TaskEvidence`."""
         if len(self.log_weights) == 1:
             return self.log_weights
-        found = self.log_weights + gain
-        if not (top := found.max()) > -np.inf:
+        # A few numbers: plain Python is faster than NumPy.
+        found = [weight + more for weight, more in zip(self.log_weights.tolist(), gain.tolist(), strict=True)]
+        if not (top := max(found)) > -inf:
             return self.log_weights
-        found -= top
-        return found - np.log(np.exp(found).sum())
+        total = top + log(sum(exp(weight - top) for weight in found))
+        return np.array([weight - total for weight in found])
 
     def fade_weights(self, keep: float) -> None:
         """The probabilities where with probability 1 − `keep` the task is a new one."""
         if len(self.log_weights) > 1:
-            self.log_weights = np.log(keep * np.exp(self.log_weights) + (1 - keep) * self.spread.weights)
+            pairs = zip(self.log_weights.tolist(), self.spread.weights.tolist(), strict=True)
+            found = [keep * exp(weight) + (1 - keep) * first for weight, first in pairs]
+            self.log_weights = np.array([log(weight) if weight > 0 else -inf for weight in found])
 
     def restore_weights(self, log_weights: ArrayLike) -> None:
         """Take over log probabilities; InputError where they are not this spread's."""
@@ -153,6 +159,14 @@ def mixed(by_spread: Array, log_weights: Array) -> Array:
     top = np.where(top > -np.inf, top, 0.0)
     with np.errstate(divide="ignore"):
         return np.log(np.exp(terms - top).sum(axis=0)) + top
+
+
+def normal_excess(above: Array, variance: Array) -> Array:
+    """E[max(X, 0)] of normal X with mean `above` and a variance; 0 where the mean is ten deviations below 0."""
+    deviation = np.sqrt(variance)
+    z = np.clip(above / np.maximum(deviation, 1e-300), -1e3, 1e3)
+    found = np.maximum(deviation * (exps(-0.5 * z * z) / ROOT_2_PI) + above * ndtrs(z), 0.0)
+    return np.where((above > 0) | (above * above < 100 * variance), found, 0.0)
 
 
 def evidence_of(

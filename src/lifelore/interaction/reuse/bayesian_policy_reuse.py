@@ -28,6 +28,7 @@ from lifelore.interaction.reuse.explanation import (
     two_best,
 )
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
+from lifelore.interaction.reuse.unknown_type import UnknownType
 from lifelore.interaction.selection import SelectionRule, default_rule
 from lifelore.interaction.selection.availability import (
     Available,
@@ -77,12 +78,20 @@ class BayesianPolicyReuse:
         Whether a model learnt from a finite number of runs is known to be uncertain: the belief is then over types
         and the parameters of their models, and each signal teaches both. "plug-in" takes estimates for the truth,
         as the thesis does. Exact models are the same under both.
+    novelty : float, optional
+        Prior probability that no known type fits, in (0, 1), such as 0.05. With it the agent computes after each
+        signal how probable that is. Signals must be outcomes or categories.
+
+    Attributes
+    ----------
+    novelty : UnknownType or None
+        Its `probability` is the probability that no known type fits; None without the argument.
 
     Raises
     ------
     InputError
-        The prior is no distribution over the types, the horizon is below 1, or the dynamics are for another number
-        of types.
+        The prior is no distribution over the types, the horizon is below 1, the dynamics are for another number
+        of types, or `novelty` breaks its rule.
 
     Examples
     --------
@@ -102,6 +111,7 @@ class BayesianPolicyReuse:
         horizon: int | None = None,
         seed: int | np.random.Generator = 0,
         models: Models = "uncertain",
+        novelty: float | None = None,
     ) -> None:
         if models not in ("uncertain", "plug-in"):
             raise InputError(f"models must be 'uncertain' or 'plug-in', got {models!r}")
@@ -110,6 +120,7 @@ class BayesianPolicyReuse:
         self.rule: SelectionRule = rule or default_rule(library)
         self.algorithm = ReuseAlgorithm(self.task or library, dynamics)
         self.horizon = horizon
+        self.novelty = None if novelty is None else UnknownType(library, novelty, prior, dynamics, models)
         self.episode, self.surprise, self.unexplained = 0, 0.0, 0
         self._taught = False
         self.generator = stream(seed, "policy reuse") if isinstance(seed, int | np.integer) else seed
@@ -190,12 +201,16 @@ class BayesianPolicyReuse:
         self._evidence.append(Evidence(index, log_likelihood, log_evidence))
         self.surprise += surprise_of(log_evidence)
         self.unexplained += log_evidence == -np.inf
+        if self.novelty is not None:
+            self.novelty.add(index, signal)
         self._belief = None
         self.episode += 1
 
     def skip(self) -> None:
         """End an episode whose signal is missing: the belief changes by the dynamics alone."""
         self.algorithm.step_row(self._log_belief)
+        if self.novelty is not None:
+            self.novelty.skip()
         self._belief = None
         self.episode += 1
 
@@ -286,6 +301,7 @@ class BayesianPolicyReuse:
             log_evidence=[float(signal.log_evidence) for signal in last],
             surprise=float(self.surprise),
             unexplained=int(self.unexplained),
+            novelty=None if self.novelty is None else self.novelty.probability,
         )
 
     @property

@@ -51,6 +51,8 @@ class Explanation:
         `interaction.novelty`.
     unexplained : int
         Number of signals so far that no type explains.
+    novelty : float or None
+        Probability that no known type fits; None where the agent does not compute it.
     """
 
     selected: str | None
@@ -63,6 +65,7 @@ class Explanation:
     log_evidence: list[float]
     surprise: float
     unexplained: int
+    novelty: float | None = None
 
     def to_dict(self) -> dict[str, Any]:
         """Plain data; infinities stay."""

@@ -6,6 +6,7 @@ log_belief       (n_types,) float64
 law              the dynamics' prior or matrix, where they have one
 scores           (n_policies,) float64 of the last selection, if any
 task.*           what the task has shown, where models are uncertain
+novelty.*        the evidence that no known type fits, where the agent computes it
 log_likelihood   (n, n_types) float64 of the last signals; evidence_policy and log_evidence (n,) beside it
 """
 
@@ -23,9 +24,10 @@ from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.explanation import Evidence
+from lifelore.interaction.reuse.unknown_type import UnknownType
 from lifelore.interaction.selection import RULES, restored_rule
 
-FORMAT = PackedFormat("lifelore policy reuse session", 2, "session", "save_session", oldest=1)
+FORMAT = PackedFormat("lifelore policy reuse session", 3, "session", "save_session", oldest=1)
 GENERATORS = ("PCG64", "PCG64DXSM", "Philox", "SFC64", "MT19937")
 """Bit generators of NumPy that a file may name."""
 
@@ -123,6 +125,8 @@ def _arrays(agent: BayesianPolicyReuse) -> Arrays:
         arrays["law"] = agent.dynamics.law
     if agent.task is not None:
         arrays |= {f"task.{name}": array for name, array in agent.task.state().items()}
+    if agent.novelty is not None:
+        arrays |= {f"novelty.{name}": array for name, array in agent.novelty.state().items()}
     if agent._selected is not None:
         arrays["scores"] = agent._selected[1]
     return arrays
@@ -136,13 +140,20 @@ def _restore(agent: BayesianPolicyReuse, header: dict[str, Any], arrays: Arrays)
         raise ValueError("log_belief is no belief")
     agent._log_belief[:] = log_belief
     if agent.task is not None:
-        agent.task.restore({name.partition(".")[2]: a for name, a in arrays.items() if name.startswith("task.")})
+        agent.task.restore(_part(arrays, "task."))
+    # Files of versions 1 and 2 have none.
+    if novelty := _part(arrays, "novelty."):
+        agent.novelty = UnknownType.restored(novelty, agent.library, agent.dynamics, agent.models)
     agent.episode, agent.unexplained = int(header["episode"]), int(header["unexplained"])
     agent.surprise, agent._taught = float(header["surprise"]), bool(header.get("taught", False))
     last = zip(arrays["evidence_policy"], arrays["log_likelihood"], arrays["log_evidence"], strict=True)
     agent._evidence.extend(Evidence(int(policy), row, float(evidence)) for policy, row, evidence in last)
     if header["selected"] is not None:
         agent._selected = int(header["selected"]), arrays["scores"]
+
+
+def _part(arrays: Arrays, prefix: str) -> Arrays:
+    return {name.removeprefix(prefix): array for name, array in arrays.items() if name.startswith(prefix)}
 
 
 def generator_state(generator: np.random.Generator) -> dict[str, Any]:

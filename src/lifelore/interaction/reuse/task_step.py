@@ -8,6 +8,7 @@ signals so far count less afterwards by the probability that the type has just c
 between many signals this is close to exact; it is not exact, since the signals of both types are summed up.
 """
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -66,15 +67,21 @@ def learn(
 def _step(log_belief: Array, log_likelihood: Array, hazard: HazardTerms | None, compiled: bool) -> float:
     """Bayes' rule and the step of a hazard, in place; the log evidence."""
     if compiled:
+        bayes_row, hazard_row = _kernels()
         if hazard is None:
-            from lifelore.interaction.beliefs.belief_kernels import bayes_row
-
             return bayes_row(log_belief, log_likelihood)
-        from lifelore.interaction.beliefs.hazard_kernels import hazard_row
-
         return hazard_row(log_belief, log_likelihood, hazard)
     if hazard is None:
         log_belief[:], log_evidence = bayes_rule(log_belief, log_likelihood)
     else:
         log_belief[:], log_evidence = hazard_rule(log_belief, log_likelihood, hazard)
     return log_evidence
+
+
+@cache
+def _kernels() -> tuple[Any, Any]:
+    """The kernels of a single belief, imported at their first use, because the import starts Numba."""
+    from lifelore.interaction.beliefs.belief_kernels import bayes_row
+    from lifelore.interaction.beliefs.hazard_kernels import hazard_row
+
+    return bayes_row, hazard_row

@@ -135,14 +135,17 @@ class CategorySignal:
             check_policy(policy, self.n_policies)
         return place
 
-    def for_task(self) -> TaskCategories | None:
-        """A model of one task, which its own signals change; None where the probabilities are exact."""
+    def for_task(self, closest: bool = False) -> TaskCategories | None:
+        """A model of one task, which its own signals change; None where the probabilities are exact.
+
+        With `closest` the task is as close to its type as the spread allows.
+        """
         if self.totals is None:
             return None
         if self._spread is None:
             counts = np.ascontiguousarray((self.probs * self.totals[:, :, None]).transpose(1, 0, 2))
             self._spread = spread_of_counts(counts, 0.0)
-        return TaskCategories(self, self._spread)
+        return TaskCategories(self, self._spread.least if closest else self._spread)
 
     def log_likelihoods(self, policies: NDArray[np.int64], signals: NDArray[Any]) -> Array:
         """Log probabilities of many category numbers, (n,) and (n,) to (n, n_types); without checks."""

@@ -100,8 +100,11 @@ class StepModel:
         """A signal as steps (n, 3): state, action, number of the outcome."""
         raise NotImplementedError
 
-    def for_task(self) -> TaskSteps | None:
-        """A model of one task, which its own steps change; None where the probabilities are exact."""
+    def for_task(self, closest: bool = False) -> TaskSteps | None:
+        """A model of one task, which its own steps change; None where the probabilities are exact.
+
+        Steps have no spread, so `closest` makes no difference.
+        """
         return None if self.totals is None else TaskSteps(self)
 
     def taken(

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.jit import kernel
+from lifelore.core.compiled.stored_kernel import kernel_part, stored_kernel
 
 CELL = 0.02
 """Side of a cell, metres: some dozens of points at 3 mm spacing."""
@@ -46,57 +46,59 @@ def closest_distances(first: CellCloud, second: CellCloud, count: int, bound: fl
     Metres; distances above `bound` are left out, so fewer may come back.
     """
     found = np.full(count, np.inf)
-    _search(first, second, box_distances(first, second), bound * bound, found)
+    nearest = np.full(len(first.low), np.inf)
+    _box_distances(first.low, first.high, second.low, second.high, nearest)
+    _search(first.points, first.starts, np.argsort(nearest), nearest, *second, bound * bound, found)
     return np.sqrt(found[np.isfinite(found)])
 
 
-@kernel
-def box_distances(first: CellCloud, second: CellCloud) -> NDArray[np.float64]:
-    """Squared distance from each cell of `first` to the nearest cell of `second`, ``(n_cells,)``."""
-    nearest = np.full(len(first.low), np.inf)
-    for i in range(len(first.low)):
-        for j in range(len(second.low)):
+@stored_kernel("void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1])")
+def _box_distances(low, high, low_second, high_second, nearest) -> None:
+    """Lower `nearest` (n_cells,) to the squared distance from each cell of one cloud to a cell of the other."""
+    for i in range(len(low)):
+        for j in range(len(low_second)):
             square = 0.0
             for axis in range(3):
-                gap = max(first.low[i, axis] - second.high[j, axis], second.low[j, axis] - first.high[i, axis])
+                gap = max(low[i, axis] - high_second[j, axis], low_second[j, axis] - high[i, axis])
                 if gap > 0.0:
                     square += gap * gap
             nearest[i] = min(nearest[i], square)
-    return nearest
 
 
-@kernel
-def _search(first: CellCloud, second: CellCloud, nearest: NDArray[np.float64], bound: float, found) -> None:
-    """Fill `found` with the smallest squared distances, ascending, each at most `bound`."""
-    for i in np.argsort(nearest):
+@stored_kernel(
+    "void(f8[:, ::1], i8[::1], i8[::1], f8[::1], f8[:, ::1], i8[::1], f8[:, ::1], f8[:, ::1], f8, f8[::1])"
+)
+def _search(points, starts, order, nearest, points_second, starts_second, low, high, bound, found) -> None:
+    """Fill `found` with the smallest squared distances, ascending, each at most `bound`; cells in `order`."""
+    for i in order:
         if nearest[i] > min(bound, found[-1]):
             break
-        for p in range(first.starts[i], first.starts[i + 1]):
-            square = _nearest(first.points[p], second, min(bound, found[-1]))
+        for p in range(starts[i], starts[i + 1]):
+            square = _nearest(points[p], points_second, starts_second, low, high, min(bound, found[-1]))
             if square <= bound:
                 _insert(found, square)
 
 
-@kernel
-def _nearest(point: NDArray[np.float64], cells: CellCloud, limit: float) -> float:
-    """Squared distance to the nearest point, infinity where it exceeds `limit`."""
+@kernel_part
+def _nearest(point, points, starts, low, high, limit) -> float:
+    """Squared distance from `point` to the nearest of `points`, infinity where it exceeds `limit`."""
     best = np.inf
-    for j in range(len(cells.low)):
+    for j in range(len(low)):
         square = 0.0
         for axis in range(3):
-            gap = max(cells.low[j, axis] - point[axis], point[axis] - cells.high[j, axis])
+            gap = max(low[j, axis] - point[axis], point[axis] - high[j, axis])
             if gap > 0.0:
                 square += gap * gap
         if square <= min(limit, best):
-            for q in range(cells.starts[j], cells.starts[j + 1]):
-                dx = point[0] - cells.points[q, 0]
-                dy = point[1] - cells.points[q, 1]
-                dz = point[2] - cells.points[q, 2]
+            for q in range(starts[j], starts[j + 1]):
+                dx = point[0] - points[q, 0]
+                dy = point[1] - points[q, 1]
+                dz = point[2] - points[q, 2]
                 best = min(best, dx * dx + dy * dy + dz * dz)
     return best if best <= limit else np.inf
 
 
-@kernel
+@kernel_part
 def _insert(found: NDArray[np.float64], square: float) -> None:
     """Put a number among the ascending ones and drop the greatest."""
     at = len(found) - 1

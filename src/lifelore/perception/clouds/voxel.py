@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.jit import kernel
+from lifelore.core.compiled.stored_kernel import stored_kernel
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.point_cloud import PointCloud
@@ -150,7 +150,8 @@ def _voxels(
     if n == 0:
         none = np.empty(0, np.int64)
         return none, none, none, np.empty((0, 3))
-    lowest, highest, top_label = _bounds(points, labels)
+    lowest, highest = points[0].astype(np.float64), points[0].astype(np.float64)
+    top_label = _widen(points, labels, lowest, highest)
     # Multiples of the size in the frame, so that the cube of a point does not depend on the other points.
     low = np.floor(lowest / size) * size if origin is None else origin
     sides = np.floor((highest - low) / size) + 1.0
@@ -160,32 +161,35 @@ def _voxels(
             span = (highest - lowest).max()
             raise InputError(f"size {size} m is too small for a cloud of {span:.3g} m; take a larger one")
     table = np.full(1 << int(2 * n - 1).bit_length(), -1, np.int32)
-    return _occupied(points, labels, low, 1.0 / size, sides.astype(np.int64), table)
+    inverse, keys, first = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    m = _number_voxels(points, labels, low, 1.0 / size, sides.astype(np.int64), table, inverse, keys, first)
+    counts, means = np.zeros(m, np.int64), np.zeros((m, 3))
+    _average(points, inverse, counts, means)
+    return inverse, first[:m].copy(), counts, means
 
 
-@kernel
-def _bounds(points, labels):
-    """Lowest and highest coordinate of each axis, and the largest label; one pass instead of three."""
-    lowest, highest = points[0].copy(), points[0].copy()
+@stored_kernel("i8(f8[:, ::1], i8[::1], f8[::1], f8[::1])")
+def _widen(points, labels, lowest, highest):
+    """Widen the box from `lowest` to `highest` until it holds all points, and return the largest label."""
     top = labels[0]
     for i in range(len(points)):
         top = max(top, labels[i])
         for axis in range(3):
             lowest[axis] = min(lowest[axis], points[i, axis])
             highest[axis] = max(highest[axis], points[i, axis])
-    return lowest, highest, top
+    return top
 
 
-@kernel
-def _occupied(points, labels, low, per_metre, sides, table):
-    """Hash the cell of each point by open addressing; voxels are numbered as they first occur."""
-    n = len(points)
-    inverse = np.empty(n, np.int64)
-    keys = np.empty(n, np.int64)
-    first = np.empty(n, np.int64)
+@stored_kernel("i8(f8[:, ::1], i8[::1], f8[::1], f8, i8[::1], i4[::1], i8[::1], i8[::1], i8[::1])")
+def _number_voxels(points, labels, low, per_metre, sides, table, inverse, keys, first):
+    """Hash the cell of each point by open addressing, and return the number of voxels.
+
+    Voxels are numbered as they first occur: `inverse` is the voxel of each point, `first` the first point of each
+    voxel.
+    """
     mask = len(table) - 1
     m = 0
-    for i in range(n):
+    for i in range(len(points)):
         key = labels[i]
         for axis in range(3):
             cell = int(np.floor((points[i, axis] - low[axis]) * per_metre))
@@ -201,13 +205,16 @@ def _occupied(points, labels, low, per_metre, sides, table):
             first[m] = i
             m += 1
         inverse[i] = table[slot]
-    counts = np.zeros(m, np.int64)
-    means = np.zeros((m, 3))
-    for i in range(n):
+    return m
+
+
+@stored_kernel("void(f8[:, ::1], i8[::1], i8[::1], f8[:, ::1])")
+def _average(points, inverse, counts, means) -> None:
+    """Add the number of points of each voxel to `counts` and write the mean of its points into `means`."""
+    for i in range(len(points)):
         counts[inverse[i]] += 1
         for axis in range(3):
             means[inverse[i], axis] += points[i, axis]
-    for voxel in range(m):
+    for voxel in range(len(counts)):
         for axis in range(3):
             means[voxel, axis] /= counts[voxel]
-    return inverse, first[:m].copy(), counts, means

@@ -2,7 +2,7 @@
 
 | fact | holds when |
 |---|---|
-| ``clear(a)`` | no object rests on a; stated only where every word is of the core vocabulary |
+| ``clear(a)`` | no object rests on a; with other words only where *on* or *both* supports every object |
 | ``supports*(a, b)`` | b rests on a, directly or through others; a is an object |
 | ``stacked(a, b, c)`` | a rests on b, b on c, three objects (Fig. 2.7) |
 | ``between(b, a, c)`` | b is adjacent to a and to c, a before c (§5.2: "two different adjacent relationships") |
@@ -18,7 +18,7 @@ from collections.abc import Iterable
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.perception.reasoning.fact import Fact, words_outside_core
+from lifelore.perception.reasoning.fact import Fact, objects_without_support, words_outside_core
 from lifelore.perception.relations.relation import Relation
 
 COMPOUND_RULES = """
@@ -37,8 +37,8 @@ fact("between", (B, A, C)) :- adjacent(A, B), adjacent(B, C), object(A), object(
 fact("in", (A, B)) :- on(A, B), adjacent(A, B), object(B).
 #show fact/2.
 """
-"""The program: ``relation(Name, A, B)``, ``object(A)`` and, where a name is not of the core vocabulary,
-``words_outside_core`` are given; ``fact(Name, (A, …))`` are read off."""
+"""The program: ``relation(Name, A, B)``, ``object(A)`` and, where another word may say what an object rests on,
+``other_words`` are given; ``fact(Name, (A, …))`` are read off."""
 
 
 def compound_relations(
@@ -49,8 +49,8 @@ def compound_relations(
     Parameters
     ----------
     relations : iterable of Relation
-        Of any vocabulary; a rule of yours can use names of yours. With a word outside the core vocabulary no
-        object is said to be clear: what that word says of resting is not known.
+        Of any vocabulary; a rule of yours can use names of yours. With a word outside the core vocabulary, and an
+        object that no *on* or *both* supports, no object is said to be clear: that word may mean resting.
     objects : iterable of int
         Objects beside those the relations name.
     more_rules : str
@@ -73,7 +73,8 @@ def compound_relations(
     things = sorted({*objects, *(label for r in relations for label in (r.a, r.b))} - {TABLE})
     given = [f"object({thing})." for thing in things]
     given += [f"relation({clingo.String(r.relation)},{r.a},{r.b})." for r in relations]
-    given += ["other_words."] if words_outside_core(relations) else []
+    unsure = words_outside_core(relations) and objects_without_support(relations, things)
+    given += ["other_words."] if unsure else []
     complaints: list[str] = []
     control = clingo.Control(["--warn=no-atom-undefined"], logger=lambda _, text: complaints.append(text))
     try:

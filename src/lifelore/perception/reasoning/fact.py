@@ -1,8 +1,8 @@
 """`Fact`: a statement about a scene's objects, such as ``between(3, 2, 4)``, and conditions for deriving facts.
 
 That no object rests on another, or that two objects do not touch, follows from relations that are absent. So it
-follows only where all names are *on*, *adjacent*, *both* and *none*, and every object has a relation that supports
-it. Nothing is derived from a user's own names: *rests upon* may mean *on*, or not.
+follows only where every object has an *on* or *both* that supports it. Nothing is derived from a user's own names:
+*rests upon* may mean *on*, or not.
 """
 
 from collections.abc import Iterable

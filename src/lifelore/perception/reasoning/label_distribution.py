@@ -73,6 +73,12 @@ class LabelDistribution:
         steps = ((carries(label), p) for label, p in zip(self.labels, self.probabilities, strict=True))
         return min(sum(p for step, p in steps if step is not None and step[0] == thing), 1.0)
 
+    @property
+    def beside(self) -> float:
+        """Probability that the two stand side by side, whether or not one carries the other, in [0, 1]."""
+        pairs = zip(self.labels, self.probabilities, strict=True)
+        return min(sum(p for label, p in pairs if label[0] in (ADJACENT, BOTH)), 1.0)
+
     def relation(self, number: int) -> Relation:
         """A label of the pair as a `Relation`, its probability the confidence."""
         name, a, b = self.labels[number]

@@ -1,84 +1,64 @@
-"""A scene as a planning problem: PDDL with the perceived relations as ``:init``, and a domain to plan in.
+"""A scene as a planning problem: PDDL with the perceived relations as ``:init``.
 
-The domain is the blocks world opened to what scenes show: an object may rest on several others, and several on
-one; neighbours are ``adjacent``, and stop being so when one of them is taken away. *both* gives ``on`` and
-``adjacent``. Picking up needs a clear object and an empty hand. What one cannot see is not modelled: whether a top
-is flat enough to put something on, whether a pile stays up, or whether the hand can get there.
+*both* gives ``on`` and ``adjacent``. PDDL has no word for unknown: what is not stated is false. So an unknown fact
+(see `planning_state`) is left out and listed in a comment at the top, and an object on which something may rest
+unseen gets ``clear-unknown``, which keeps plans away from it.
 
 Thesis: §2.2 and §2.5: the relations are the language of planning problems.
 """
 
-import re
 from collections.abc import Iterable, Mapping, Sequence
 
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
-from lifelore.perception.reasoning.fact import objects_without_support, words_outside_core
+from lifelore.core.relations import ADJACENT
+from lifelore.perception.reasoning.fact import Fact, objects_without_support
+from lifelore.perception.reasoning.planning_domain import (
+    DOMAIN_NAME,
+    RESERVED,
+    predicate_names,
+    predicates,
+    unique_names,
+)
+from lifelore.perception.reasoning.planning_goal import Statement, pddl_goal
+from lifelore.perception.reasoning.planning_state import PlanningState, planning_state, scene_state
 from lifelore.perception.relations.relation import Relation
+from lifelore.perception.relations.words import NO_WORDS, Words
+from lifelore.perception.scene import Scene
 
-DOMAIN_NAME = "tabletop"
+NOTHING = "(and )"
+"""The goal that always holds."""
 
-DOMAIN = """(define (domain tabletop)
-  (:requirements :strips :typing :equality :negative-preconditions :disjunctive-preconditions
-                 :universal-preconditions :conditional-effects)
-  (:types thing)
-  (:predicates
-    (on ?a ?b - thing)
-    (on-table ?a - thing)
-    (clear ?a - thing)
-    (holding ?a - thing)
-    (adjacent ?a ?b - thing)
-    (hand-empty))
-  (:action pick-up
-    :parameters (?a - thing)
-    :precondition (and (clear ?a) (hand-empty))
-    :effect (and
-      (holding ?a) (not (hand-empty)) (not (clear ?a)) (not (on-table ?a))
-      (forall (?b - thing) (and
-        (when (on ?a ?b) (not (on ?a ?b)))
-        (when (and (on ?a ?b) (forall (?c - thing) (or (= ?c ?a) (not (on ?c ?b))))) (clear ?b))
-        (when (adjacent ?a ?b) (not (adjacent ?a ?b)))
-        (when (adjacent ?b ?a) (not (adjacent ?b ?a)))))))
-  (:action put-on
-    :parameters (?a ?b - thing)
-    :precondition (and (holding ?a) (clear ?b) (not (= ?a ?b)))
-    :effect (and (on ?a ?b) (not (clear ?b)) (clear ?a) (not (holding ?a)) (hand-empty)))
-  (:action put-on-table
-    :parameters (?a - thing)
-    :precondition (holding ?a)
-    :effect (and (on-table ?a) (clear ?a) (not (holding ?a)) (hand-empty)))
-  (:action put-beside
-    :parameters (?a ?b - thing)
-    :precondition (and (holding ?a) (on-table ?b) (not (= ?a ?b)))
-    :effect (and (on-table ?a) (adjacent ?a ?b) (adjacent ?b ?a)
-                 (clear ?a) (not (holding ?a)) (hand-empty))))
-"""
 
-RESERVED = frozenset(re.findall(r"[a-z][a-z-]*", DOMAIN)) | {
-    "exists",
-    "imply",
-    "either",
-    "object",
-    "problem",
-    "goal",
-}
-"""Words of the language and of `DOMAIN`, which no object may be called."""
+def scene_problem(scene: Scene, least: float, goal: Sequence[Statement] = ()) -> str:
+    """The problem of a perceived scene: facts with a probability of at least `least`, hidden tops unknown.
+
+    Raises
+    ------
+    InputError
+        No relation says what an object rests on; the goal names a predicate or an object that does not exist; the
+        threshold is outside [0, 1].
+    """
+    _check_support(scene.relations, scene.objects)
+    called = pddl_names(scene.objects, words=scene.words)
+    wanted = pddl_goal(goal, called, predicates(scene.words)) if goal else NOTHING
+    return problem_text(scene_state(scene, least), called, wanted, scene.words)
 
 
 def planning_problem(
     relations: Iterable[Relation],
     objects: Iterable[int] = (),
     *,
-    goal: str = "(and )",
+    goal: str = NOTHING,
     names: Mapping[int, str] | None = None,
 ) -> str:
-    """A PDDL problem whose ``:init`` is the scene.
+    """A PDDL problem whose ``:init`` is the scene that relations describe.
 
     Parameters
     ----------
     relations : iterable of Relation
-        Consistent ones (see `scene_logic`), in the core vocabulary; *none* is left out.
+        Consistent ones (see `scene_logic`); *none* is left out. Words outside the core vocabulary count as not
+        symmetric, and need the domain of `planning_domain` with these words.
     objects : iterable of int
         Objects beside those the relations name.
     goal : str
@@ -89,8 +69,7 @@ def planning_problem(
     Raises
     ------
     InputError
-        A relation is not of the core vocabulary, nothing says what an object rests on, or `names` names an object
-        that is not there: what an unknown word says of resting cannot be planned with.
+        No relation says what an object rests on, or `names` names an object that does not exist.
 
     Examples
     --------
@@ -106,47 +85,59 @@ def planning_problem(
     <BLANKLINE>
     """
     relations = tuple(relations)
-    things = sorted({*objects, *(label for r in relations for label in (r.a, r.b))} - {TABLE})
-    _check(relations, things)
-    called = pddl_names(things, names)
-    declared = f" {' '.join(called[thing] for thing in things)} - thing" if things else ""
-    lines = ["(define (problem scene)", f"  (:domain {DOMAIN_NAME})", f"  (:objects{declared})", "  (:init"]
-    lines += [f"    {atom}" for atom in _initial(relations, things, called)]
-    return "\n".join([*lines[:-1], lines[-1] + ")", f"  (:goal {goal}))", ""])
+    state = planning_state(relations, objects)
+    _check_support(relations, state.objects)
+    words = Words.outside_core((r.relation for r in relations), ())
+    return problem_text(state, pddl_names(state.objects, names, words), goal, words)
 
 
-def pddl_names(things: Sequence[int], names: Mapping[int, str] | None = None) -> dict[int, str]:
+def problem_text(state: PlanningState, called: Mapping[int, str], goal: str, words: Words = NO_WORDS) -> str:
+    """The problem of a state; `called` names the objects, `goal` is PDDL."""
+    of_word = predicate_names(words)
+    unknown = [
+        f";   {_atoms(one.fact, called, of_word, words)[0]} {one.reason}, probability {one.probability:.2f}"
+        for one in state.unknown
+    ]
+    declared = f" {' '.join(called[thing] for thing in state.objects)} - thing" if state.objects else ""
+    atoms = {atom for fact in state.stated for atom in _atoms(fact, called, of_word, words)}
+    atoms |= {f"(clear-unknown {called[thing]})" for thing in state.may_be_covered}
+    initial = [f"    {atom}" for atom in ("(hand-empty)", *sorted(atoms))]
+    return "\n".join(
+        [
+            *(["; unknown, so not stated:", *unknown] if unknown else []),
+            "(define (problem scene)",
+            f"  (:domain {DOMAIN_NAME})",
+            f"  (:objects{declared})",
+            "  (:init",
+            *initial[:-1],
+            initial[-1] + ")",
+            f"  (:goal {goal}))",
+            "",
+        ]
+    )
+
+
+def pddl_names(
+    things: Sequence[int], names: Mapping[int, str] | None = None, words: Words = NO_WORDS
+) -> dict[int, str]:
     """A valid PDDL name for each object, no two alike whatever the case.
 
-    Letters, digits, ``-`` and ``_`` are kept, others become ``_``; a name must begin with a letter, and words of
-    the language and of `DOMAIN` are given the object's number.
+    Letters, digits, ``-`` and ``_`` stay, others become ``_``; a name must begin with a letter, and words of the
+    language and of the domain are given the object's number.
 
     Raises
     ------
     InputError
-        `names` names an object that is not there.
+        `names` names an object that does not exist.
     """
     wanted = dict(names or {})
     if strangers := sorted(set(wanted) - set(things)):
         raise InputError(f"names must be of the scene's objects {list(things)}, got {strangers}")
-    taken: set[str] = set()
-    called = {}
-    for thing in things:
-        name = re.sub(r"[^a-z0-9_-]", "_", wanted.get(thing, f"o{thing}").lower())
-        name = name if name[:1].isalpha() else f"o{name}"
-        while name in taken or name in RESERVED:
-            name = f"{name}_{thing}"
-        taken.add(name)
-        called[thing] = name
-    return called
+    reserved = RESERVED | set(predicates(words))
+    return unique_names({thing: (wanted.get(thing, f"o{thing}"), str(thing)) for thing in things}, reserved, "o")
 
 
-def _check(relations: Sequence[Relation], things: Sequence[int]) -> None:
-    if strange := words_outside_core(relations):
-        raise InputError(
-            f"relations of a planning problem must be {', '.join(CORE_RELATIONS)}, got {', '.join(strange)};"
-            " perceive with a model of those words, such as the one shipped"
-        )
+def _check_support(relations: Sequence[Relation], things: Iterable[int]) -> None:
     if hanging := objects_without_support(relations, things):
         raise InputError(
             "relations of a planning problem must say on what every object rests, by on or both; of"
@@ -154,14 +145,13 @@ def _check(relations: Sequence[Relation], things: Sequence[int]) -> None:
         )
 
 
-def _initial(relations: Sequence[Relation], things: Sequence[int], called: Mapping[int, str]) -> list[str]:
-    """The atoms of ``:init``, sorted; symmetric relations in both directions."""
-    carried, atoms = set(), set()
-    for r in relations:
-        if r.relation in (ON, BOTH):
-            carried.add(r.b)
-            atoms.add(f"(on-table {called[r.a]})" if r.b == TABLE else f"(on {called[r.a]} {called[r.b]})")
-        if r.relation in (ADJACENT, BOTH) and TABLE not in (r.a, r.b):
-            atoms |= {f"(adjacent {called[a]} {called[b]})" for a, b in ((r.a, r.b), (r.b, r.a))}
-    atoms |= {f"(clear {called[thing]})" for thing in things if thing not in carried}
-    return ["(hand-empty)", *sorted(atoms)]
+def _atoms(fact: Fact, called: Mapping[int, str], of_word: Mapping[str, str], words: Words) -> list[str]:
+    """The atoms of a fact; symmetric relations in both directions."""
+    name = of_word.get(fact.name, fact.name)
+    if len(fact.arguments) == 1:
+        return [f"({name} {called[fact.arguments[0]]})"]
+    a, b = fact.arguments
+    if TABLE in (a, b):
+        return [f"({name}-table {called[a]})" if b == TABLE else f"(table-{name} {called[b]})"]
+    both_ways = fact.name == ADJACENT or fact.name in words.symmetric
+    return [f"({name} {called[x]} {called[y]})" for x, y in ((a, b), (b, a))[: 1 + both_ways]]

@@ -12,7 +12,7 @@ from itertools import combinations
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, BOTH, ON
-from lifelore.perception.reasoning.fact import Fact, words_outside_core
+from lifelore.perception.reasoning.fact import Fact, objects_without_support, words_outside_core
 from lifelore.perception.relations.relation import Relation
 
 DISCONNECTED, EXTERNALLY_CONNECTED = "dc", "ec"
@@ -29,7 +29,8 @@ def region_relations(
     Parameters
     ----------
     relations : iterable of Relation
-        With a word outside the core vocabulary, which may mean touching, no DC is stated.
+        With a word outside the core vocabulary, which may mean touching, and an object that no *on* or *both*
+        supports, no DC is stated.
     objects : iterable of int
         Objects beside those the relations name. Pairs without a relation are far apart: DC.
     touching : float
@@ -42,7 +43,7 @@ def region_relations(
         for r in relations
         if r.relation in (ON, BOTH) or (r.relation == ADJACENT and r.gap <= touching)
     }
-    apart_too = not words_outside_core(relations)
+    apart_too = not (words_outside_core(relations) and objects_without_support(relations, objects))
     return tuple(
         Fact(EXTERNALLY_CONNECTED if pair in touch else DISCONNECTED, pair)
         for pair in combinations(everything, 2)

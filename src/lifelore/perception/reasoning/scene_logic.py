@@ -8,16 +8,17 @@ that rests on nothing. The rules:
 3. everything rests on something, an object or the table;
 4. nothing rests on itself, directly or through others.
 
-Among all labellings that obey the rules we take the most probable, pairs being taken as independent: weak
-constraints ``-ln p``, as whole numbers (`SCALE` to the nat), so that choosing between two labels weighs the
-log-odds of their probabilities. Of equally probable scenes, the pair with the lowest numbers keeps its likelier
-label, and of equally likely labels the one that claims least. Where perception says nothing of an object and the
-table, it stands on the table if, and only if, no object carries it.
+Among all labellings that obey the rules we take the most probable, pairs being taken as independent but for the
+soft rule of `second_support`: what leans needs a second support. Weak constraints ``-ln p``, as whole numbers
+(`SCALE` to the nat), so that choosing between two labels weighs the log-odds of their probabilities. Of equally
+probable scenes, the pair with the lowest numbers keeps its likelier label, and of equally likely labels the one
+that claims least. Where perception says nothing of an object and the table, it stands on the table if, and only
+if, no object carries it.
 
 Thesis: §2.5 leaves reasoning over the relations to other work; §5.2 proposes a logic engine.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, prod
 
@@ -31,6 +32,7 @@ from lifelore.perception.reasoning.label_distribution import (
     label_distributions,
     relation_label,
 )
+from lifelore.perception.reasoning.second_support import LONE_LEAN, is_lone, leans, supports
 from lifelore.perception.relations.relation import PairBelief, Relation
 
 SCALE = 1000
@@ -44,7 +46,9 @@ RULES = """
 rests(X, Y) :- pick(P, L), carry(P, L, X, Y).
 :- must_rest(X), not rests(X, _).
 #edge (X, Y) : rests(X, Y).
-#minimize { W@(N + 1), P : pick(P, L), option(P, L, W, _), pairs(N) }.
+second(X, Y) :- rests(X, Y), rests(X, Z), Y != Z.
+#minimize { W@(N + 1), P : pick(P, L), option(P, L, W, _), pairs(N);
+            W@(N + 1), P, lone : pick(P, L), leans(P, L, X, Y), lone_lean(W), not second(X, Y), pairs(N) }.
 #minimize { R@(N - P), P : pick(P, L), option(P, L, _, R), pairs(N) }.
 #show pick/2.
 """
@@ -64,7 +68,7 @@ class ConsistentScene:
     contradictions : tuple of str
         What was wrong with perception's likeliest labels, in words; empty when they were consistent.
     loss : float
-        Nats of log-likelihood given up for consistency, ≥ 0.
+        Nats of log-likelihood given up for consistency and second supports, ≥ 0.
     optimal : bool
         Whether it is proven that no consistent scene is likelier; False when the solver's bound ran out.
     """
@@ -77,7 +81,11 @@ class ConsistentScene:
 
 
 def most_likely_scene(
-    candidates: Iterable[Relation], objects: Iterable[int] = (), *, most_conflicts: int = MOST_CONFLICTS
+    candidates: Iterable[Relation],
+    objects: Iterable[int] = (),
+    *,
+    beside: Collection[frozenset[int]] = (),
+    most_conflicts: int = MOST_CONFLICTS,
 ) -> ConsistentScene:
     """The most likely scene that obeys the rules of this module.
 
@@ -89,6 +97,9 @@ def most_likely_scene(
         no part and come back unchanged, after the others.
     objects : iterable of int
         Objects that must rest on something, beside those the candidates name.
+    beside : collection of frozenset of int
+        Pairs whose side faces are beside each other (`side_faces.pairs_beside`), where leaning needs no second
+        support.
     most_conflicts : int
         Bound on the solver's work, ≥ 1.
 
@@ -109,8 +120,11 @@ def most_likely_scene(
     beliefs = label_distributions(candidates)
     things = sorted({*objects, *(label for belief in beliefs for label in belief.pair)} - {TABLE})
     best = [belief.likeliest for belief in beliefs]
-    wrong = _contradictions([b.labels[k] for b, k in zip(beliefs, best, strict=True)], _judged(beliefs))
-    picked, optimal = _solve(beliefs, most_conflicts) if wrong else (best, True)
+    judged = _judged(beliefs)
+    labels = [b.labels[k] for b, k in zip(beliefs, best, strict=True)]
+    wrong, rests = _contradictions(labels, judged), supports(labels)
+    lone = any(leans(label, beside, judged) and is_lone(label, rests) for label in labels)
+    picked, optimal = _solve(beliefs, beside, most_conflicts) if wrong or lone else (best, True)
     changed = [(b, was, now) for b, was, now in zip(beliefs, best, picked, strict=True) if was != now]
     decided = [belief.relation(k) for belief, k in zip(beliefs, picked, strict=True)]
     return ConsistentScene(
@@ -147,10 +161,7 @@ def contradictions(relations: Iterable[Relation], objects: Iterable[int] = ()) -
 
 
 def _contradictions(labels: Iterable[Label], must_rest: Iterable[int]) -> tuple[str, ...]:
-    rests: dict[int, set[int]] = {}
-    for label in labels:
-        if (step := carries(label)) is not None:
-            rests.setdefault(step[0], set()).add(step[1])
+    rests = supports(list(labels))
     hanging = sorted(thing for thing in must_rest if thing not in rests)
     return (
         *(["something carries the table"] if TABLE in rests else []),
@@ -198,13 +209,15 @@ def _others(candidates: Iterable[Relation]) -> list[Relation]:
     return [relation for relation in candidates if relation.relation not in CORE_RELATIONS]
 
 
-def _solve(beliefs: Sequence[LabelDistribution], most_conflicts: int) -> tuple[list[int], bool]:
+def _solve(
+    beliefs: Sequence[LabelDistribution], beside: Collection[frozenset[int]], most_conflicts: int
+) -> tuple[list[int], bool]:
     """The number of each belief's label in the most likely consistent scene, and whether that is proven."""
     import clingo
 
     # Core-guided search: a proof in tens of conflicts where descending from a first model needs tens of thousands.
     control = clingo.Control(["--warn=none", "--opt-strategy=usc", f"--solve-limit={most_conflicts}"])
-    control.add("base", [], RULES + "\n".join(_facts(beliefs)))
+    control.add("base", [], RULES + "\n".join(_facts(beliefs, beside)))
     control.ground([("base", [])])
     picked = _bearing_nothing(beliefs)
     with control.solve(yield_=True) as handle:
@@ -225,10 +238,11 @@ def _bearing_nothing(beliefs: Iterable[LabelDistribution]) -> list[int]:
     return picked
 
 
-def _facts(beliefs: Sequence[LabelDistribution]) -> Iterable[str]:
+def _facts(beliefs: Sequence[LabelDistribution], beside: Collection[frozenset[int]]) -> Iterable[str]:
     """The beliefs as facts of the logic program."""
-    yield f"pairs({len(beliefs)})."
-    yield from (f"must_rest({thing})." for thing in sorted(_judged(beliefs)))
+    judged = _judged(beliefs)
+    yield f"pairs({len(beliefs)}). lone_lean({round(SCALE * LONE_LEAN)})."
+    yield from (f"must_rest({thing})." for thing in sorted(judged))
     for number, belief in enumerate(beliefs):
         yield f"pair({number})."
         least = belief.cost(belief.likeliest)
@@ -239,3 +253,5 @@ def _facts(beliefs: Sequence[LabelDistribution]) -> Iterable[str]:
             step = carries(belief.labels[k])
             if step is not None:
                 yield f"carry({number},{k},{step[0]},{step[1]})."
+            if leans(belief.labels[k], beside, judged):
+                yield f"leans({number},{k},{belief.labels[k][1]},{belief.labels[k][2]})."

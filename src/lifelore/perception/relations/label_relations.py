@@ -4,14 +4,14 @@
 camera in the clouds.
 """
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.relations import NONE, PairLabel
-from lifelore.perception.pairs.directed_label import REVERSED, as_directed
+from lifelore.perception.pairs.directed_label import REVERSED, as_directed, mirrored
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.trees.tree_relations import TreeRelations, Vocabulary
 from lifelore.perception.trees.tree_training import TrainingRows, TreeSettings, grow_trees
@@ -93,3 +93,23 @@ def label_shares(
             else:
                 found[pair][name], found[pair][REVERSED + name] = forward, backward
     return found
+
+
+def stated_names(shares: Mapping[str, float], symmetric: Collection[str]) -> tuple[str, ...]:
+    """The names that hold of a pair: a share of at least 0.5, and of two opposite directions the likelier.
+
+    A name that is not symmetric holds in one direction at most; with equal shares it is the written order.
+
+    Examples
+    --------
+    >>> stated_names({"under": 0.6, "~under": 0.7, "near": 0.9, "left_of": 0.2}, {"near"})
+    ('~under', 'near')
+    """
+    stated = []
+    for name, share in shares.items():
+        turned = mirrored(name, symmetric)
+        other = shares.get(turned, 0.0) if turned != name else 0.0
+        loses = share < other or (share == other and name.startswith(REVERSED))
+        if share >= 0.5 and not loses:
+            stated.append(name)
+    return tuple(stated)

@@ -1,7 +1,8 @@
 """`RelationClassifier`: learns a user's relations from labelled scenes and predicts them for other scenes.
 
 Thesis: §2.3.5. Any set of labels is allowed. The order of a labelled pair carries no information; the direction is
-inferred. ``method="displacement"`` is the thesis's own classifier.
+inferred. ``method="displacement"`` is the thesis's own classifier. To scikit-learn (see `Estimator`) a sample is a
+scene.
 """
 
 from collections import Counter
@@ -13,15 +14,16 @@ from typing import Any, Self
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.protocols import Progress
-from lifelore.core.relations import ADJACENT_GAP, PairLabel
+from lifelore.core.relations import ADJACENT_GAP, NONE, SYMMETRIC, PairLabel
 from lifelore.perception.contacts.contact_settings import ContactSettings
 from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface
 from lifelore.perception.pairs.directed_label import LEAST_CONFIDENCE as LEAST_CONFIDENCE
-from lifelore.perception.pairs.directed_label import REVERSED, pair_class
+from lifelore.perception.pairs.directed_label import REVERSED, as_directed, pair_class
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.relations.displacement_relations import NeighbourSettings, fit_displacements
-from lifelore.perception.relations.label_relations import fit_labels, label_shares
+from lifelore.perception.relations.estimator import Estimator
+from lifelore.perception.relations.label_relations import fit_labels, label_shares, stated_names
 from lifelore.perception.relations.relation import PairBelief, Relation
 from lifelore.perception.relations.relation_model import (
     OBJECTS,
@@ -31,14 +33,15 @@ from lifelore.perception.relations.relation_model import (
     learned_vocabulary,
 )
 from lifelore.perception.relations.relation_model_file import SHIPPED, read_model, write_model
-from lifelore.perception.relations.symmetric_names import symmetric_names
+from lifelore.perception.relations.symmetric_names import check_directions, symmetric_names
+from lifelore.perception.relations.words import Words
 from lifelore.perception.trees.tree_relations import Vocabulary, tree_shares
 from lifelore.perception.trees.tree_training import TreeSettings, fit_trees
 
 DEFAULT_TREES = TreeSettings()
 
 
-class RelationClassifier:
+class RelationClassifier(Estimator):
     """Learns relations from labelled scenes and predicts them for others.
 
     Parameters
@@ -52,7 +55,8 @@ class RelationClassifier:
         Every relation is learned separately, and several may hold for a pair (``under`` and ``left_of``). A
         labelled pair is a counterexample for all relations that its labels do not name.
     symmetric : collection of str, optional
-        Relations that hold for (b, a) when they hold for (a, b); None infers them from the examples.
+        Relations that hold for (b, a) when they hold for (a, b); all others then have a direction, and never
+        hold in both. *adjacent* and *none* are always symmetric. None infers them from the examples.
     omega, weights, k
         Settings of the thesis's method, see `NeighbourSettings`.
     settings : ContactSettings
@@ -61,10 +65,13 @@ class RelationClassifier:
 
     Attributes
     ----------
-    names : tuple of str
+    names_ : tuple of str
         The learned relations, sorted.
-    symmetric : frozenset of str
-    learnt_from : dict of str to int
+    symmetric_ : frozenset of str
+        The symmetric ones of them, declared or inferred.
+    models_ : dict
+        The learned parts; empty before `fit`.
+    learnt_from_ : dict of str to int
         Number of training labels by relation: labels of near pairs with enough confidence. Empty for a loaded
         model.
 
@@ -87,45 +94,63 @@ class RelationClassifier:
         settings: ContactSettings = DEFAULT_CONTACT_SETTINGS,
         trees: TreeSettings = DEFAULT_TREES,
     ) -> None:
-        check_options(method, adjacent_gap, multi_label)
         self.method = method
         self.adjacent_gap = adjacent_gap
         self.multi_label = multi_label
+        self.symmetric = symmetric
+        self.omega = omega
+        self.weights = weights
+        self.k = k
         self.settings = settings
         self.trees = trees
-        self.neighbours = NeighbourSettings(k, omega, weights)
-        self.declared = None if symmetric is None else frozenset(symmetric)
-        self.names: tuple[str, ...] = ()
-        self.symmetric: frozenset[str] = frozenset()
-        self.models: dict[str, Any] = {}
-        self.learnt_from: dict[str, int] = {}
+        self._check_settings()
+        self.names_: tuple[str, ...] = ()
+        self.symmetric_: frozenset[str] = frozenset()
+        self.models_: dict[str, Any] = {}
+        self.learnt_from_: dict[str, int] = {}
+
+    def _check_settings(self) -> None:
+        check_options(self.method, self.adjacent_gap, self.multi_label)
+        _ = self.neighbours
+
+    @property
+    def neighbours(self) -> NeighbourSettings:
+        """The settings of the thesis's method."""
+        return NeighbourSettings(self.k, self.omega, self.weights)
 
     def fit(
         self,
-        clouds: Sequence[LabelledCloud],
+        clouds: Sequence[LabelledCloud | ScenePairs],
         truths: Sequence[Sequence[PairLabel]],
         progress: Progress | None = None,
     ) -> Self:
         """Learn from scenes and the labels of their pairs with confidence 2 or more.
 
+        A scene is a cloud, or the result of `scene_pairs` for it, which spares a search over settings the search
+        for contacts.
+
         Raises
         ------
         InputError
             `clouds` and `truths` differ in number; no label is of a near pair; without `multi_label`, one pair has
-            two relations, or one in both directions that is not symmetric; a name starts with ``~`` or ends with
-            ``=``.
+            two relations; a pair has a relation in both directions that is not symmetric; a name starts with ``~``
+            or ends with ``=``; a setting breaks its rule.
         """
         scenes = []
         for number, cloud in enumerate(clouds):
-            scenes.append(scene_pairs(cloud, settings=self.settings))
+            scenes.append(self._pairs(cloud))
             if progress is not None:
                 progress(number + 1, len(clouds), "scenes")
         return self.fit_pairs(scenes, truths)
+
+    def _pairs(self, scene: LabelledCloud | ScenePairs) -> ScenePairs:
+        return scene if isinstance(scene, ScenePairs) else scene_pairs(scene, settings=self.settings)
 
     def fit_pairs(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> Self:
         """As `fit`, from the result of `scene_pairs` for each scene."""
         if len(scenes) != len(truths):
             raise InputError(f"truths must be one for each cloud, got {len(truths)} for {len(scenes)} clouds")
+        self._check_settings()
         near = [
             label
             for scene, truth in zip(scenes, truths, strict=True)
@@ -135,17 +160,19 @@ class RelationClassifier:
         if not near:
             raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
         learnt_from = Counter(label.relation for label in near)
-        self.names = tuple(sorted(learnt_from))
-        if odd := [name for name in self.names if name.startswith(REVERSED) or name.endswith("=")]:
+        self.names_ = tuple(sorted(learnt_from))
+        if odd := [name for name in self.names_ if name.startswith(REVERSED) or name.endswith("=")]:
             raise InputError(f"a relation's name must neither start with ~ nor end with =, got {odd[0]!r}")
-        if self.declared is None:
-            self.symmetric = symmetric_names(scenes, truths, self.names, LEAST_CONFIDENCE)
+        if self.symmetric is None:
+            self.symmetric_ = symmetric_names(scenes, truths, self.names_, LEAST_CONFIDENCE)
         else:
-            self.symmetric = self.declared
-        if not self.multi_label:
+            self.symmetric_ = frozenset(self.symmetric) | (SYMMETRIC & frozenset(self.names_))
+        if self.multi_label:
+            check_directions(truths, self.symmetric_, LEAST_CONFIDENCE)
+        else:
             self._check_one_class(scenes, truths)
-        self.models = self._fitted(scenes, truths)
-        self.learnt_from = dict(sorted(learnt_from.items()))
+        self.models_ = self._fitted(scenes, truths)
+        self.learnt_from_ = dict(sorted(learnt_from.items()))
         return self
 
     def _check_one_class(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> None:
@@ -155,7 +182,7 @@ class RelationClassifier:
                 scene.features.pairs[::2, 0], scene.labels(truth, LEAST_CONFIDENCE), strict=True
             ):
                 if pair_labels:
-                    pair_class(pair_labels, int(first), self.symmetric)
+                    pair_class(pair_labels, int(first), self.symmetric_)
 
     def _fitted(self, scenes: Sequence[ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> dict[str, Any]:
         words = self.vocabulary
@@ -164,7 +191,7 @@ class RelationClassifier:
             return dict(fit_labels(scenes, truths, words, columns, self.trees, LEAST_CONFIDENCE))
         if self.method == "displacement":
             objects, table = (
-                fit_displacements(scenes, truths, self.symmetric, LEAST_CONFIDENCE, table, self.neighbours)
+                fit_displacements(scenes, truths, self.symmetric_, LEAST_CONFIDENCE, table, self.neighbours)
                 for table in (False, True)
             )
         else:
@@ -174,12 +201,18 @@ class RelationClassifier:
     @property
     def vocabulary(self) -> Vocabulary:
         """The learned names, which are symmetric, and the limit of *adjacent* where it applies."""
-        return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names, self.symmetric)
+        return learned_vocabulary(self.method, self.adjacent_gap, self.multi_label, self.names_, self.symmetric_)
+
+    @property
+    def words(self) -> Words:
+        """The learned relations outside the core vocabulary."""
+        return Words.outside_core(self.names_, self.symmetric_)
 
     def predict(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[Relation, ...]:
         """The relation of every near pair, *none* included; then of every object with the table.
 
-        With `multi_label` every relation with a probability of at least 0.5. Pairs that are not near are left out.
+        With `multi_label` every relation with a probability of at least 0.5; of the two directions of a relation
+        that is not symmetric only the likelier. Pairs that are not near are left out.
 
         Parameters
         ----------
@@ -195,8 +228,34 @@ class RelationClassifier:
         if not self.multi_label:
             return tuple(belief.best() for belief in beliefs)
         return tuple(
-            belief.relation(name) for belief in beliefs for name, share in belief.shares.items() if share >= 0.5
+            belief.relation(name) for belief in beliefs for name in stated_names(belief.shares, self.symmetric_)
         )
+
+    def score(self, clouds: Sequence[LabelledCloud | ScenePairs], truths: Sequence[Sequence[PairLabel]]) -> float:
+        """Share of the labelled near pairs (confidence 2 or more) of which all relations and directions are right.
+
+        Raises
+        ------
+        InputError
+            `clouds` and `truths` differ in number, or no label is of a near pair.
+        """
+        right = []
+        for cloud, truth in zip(clouds, truths, strict=True):
+            scene = self._pairs(cloud)
+            predicted: dict[frozenset[int], list[PairLabel]] = {}
+            for r in self.predict_pairs(scene):
+                predicted.setdefault(frozenset((r.a, r.b)), []).append(PairLabel(r.a, r.b, r.relation))
+            for labels in filter(None, scene.labels(truth, LEAST_CONFIDENCE)):
+                answers = predicted.get(frozenset((labels[0].a, labels[0].b)), [])
+                right.append(self._directed(labels, labels[0].a) == self._directed(answers, labels[0].a))
+        if not right:
+            raise InputError("truths must label a near pair of clouds with confidence 2 or 3; check their numbers")
+        return sum(right) / len(right)
+
+    def _directed(self, labels: Sequence[PairLabel], first: int) -> set[str]:
+        """Directed classes of a pair's labels; with `multi_label` without *none*, which is never predicted."""
+        names = {as_directed(label, first, self.symmetric_) for label in labels}
+        return names - {NONE} if self.multi_label else names
 
     def beliefs(self, cloud: LabelledCloud, found: Sequence[Interface] | None = None) -> tuple[PairBelief, ...]:
         """Probability of each relation for every near pair, in the order of `predict`."""
@@ -204,7 +263,7 @@ class RelationClassifier:
 
     def beliefs_of(self, scene: ScenePairs) -> tuple[PairBelief, ...]:
         """As `beliefs`, from the result of `scene_pairs`."""
-        if not self.models:
+        if not self.models_:
             raise InputError("a classifier must be fitted before it predicts; call fit or load a model")
         shares = self._shares(scene)
         return tuple(
@@ -216,14 +275,14 @@ class RelationClassifier:
     def _shares(self, scene: ScenePairs) -> list[dict[str, float]]:
         """Shares of each pair; empty for pairs of a kind without training labels."""
         if self.multi_label:
-            return label_shares(self.models, scene, self.symmetric)
+            return label_shares(self.models_, scene, self.symmetric_)
         if self.method == "displacement":
             kinds = [WITH_TABLE if table else OBJECTS for table in scene.with_table]
             return [
-                self.models[kind].shares(moved) if kind in self.models else {}
+                self.models_[kind].shares(moved) if kind in self.models_ else {}
                 for kind, moved in zip(kinds, scene.displacements, strict=True)
             ]
-        return tree_shares(self.models.get(OBJECTS), self.models.get(WITH_TABLE), scene, self.vocabulary)
+        return tree_shares(self.models_.get(OBJECTS), self.models_.get(WITH_TABLE), scene, self.vocabulary)
 
     def to_model(self) -> RelationModel:
         """Everything learned, as plain data.
@@ -233,7 +292,7 @@ class RelationClassifier:
         InputError
             The classifier is not fitted.
         """
-        if not self.models:
+        if not self.models_:
             raise InputError("a classifier must be fitted before it is saved; call fit first")
         return RelationModel(
             self.method,
@@ -241,9 +300,9 @@ class RelationClassifier:
             self.multi_label,
             self.settings,
             self.neighbours,
-            self.names,
-            self.symmetric,
-            self.models,
+            self.names_,
+            self.symmetric_,
+            self.models_,
         )
 
     @classmethod
@@ -257,8 +316,8 @@ class RelationClassifier:
             settings=model.settings,
             **asdict(model.neighbours),
         )
-        classifier.names, classifier.symmetric = model.names, model.symmetric
-        classifier.models = dict(model.models)
+        classifier.names_, classifier.symmetric_ = model.names, model.symmetric
+        classifier.models_ = dict(model.models)
         return classifier
 
     def save(self, path: str | Path, about: Mapping[str, Any] | None = None) -> None:

@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from lifelore.core.errors import InputError
 from lifelore.core.relations import CORE_RELATIONS, SYMMETRIC, PairLabel
 from lifelore.perception.pairs.pair_features import TURNING_COLUMNS, VIEW_COLUMNS
 from lifelore.perception.pairs.scene_pairs import ScenePairs
@@ -31,6 +32,26 @@ def symmetric_names(
     return frozenset(
         name for name in names if _is_symmetric(name, _examples(scenes, truths, name, least_confidence), sure)
     )
+
+
+def check_directions(
+    truths: Sequence[Sequence[PairLabel]], symmetric: frozenset[str], least_confidence: int
+) -> None:
+    """Refuse a pair that is labelled in both directions with a name that is not symmetric.
+
+    Raises
+    ------
+    InputError
+        The message names the pair.
+    """
+    for truth in truths:
+        written = {(label.relation, label.a, label.b) for label in truth if label.confidence >= least_confidence}
+        for name, a, b in sorted(written):
+            if name not in symmetric and (name, b, a) in written:
+                raise InputError(
+                    f"truths must not state {name}({a}, {b}) and {name}({b}, {a}), as {name} is not symmetric:"
+                    " declare it symmetric, or leave one of the two out"
+                )
 
 
 def _examples(

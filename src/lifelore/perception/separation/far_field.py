@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.compiled.jit import kernel
+from lifelore.core.compiled.stored_kernel import kernel_part, stored_kernel
 from lifelore.perception.separation.gaussian import Array, exp_of_negative
 
 WIDEST = 0.5
@@ -68,28 +68,35 @@ def far_field(points: Array, cells: Cells, sources: Array, weights: Array, order
     inverse = 1 / np.cumprod(np.maximum(np.arange(order + 2.0), 1))
     coefficients = np.zeros((len(cells.radius), (order + 1) * (order + 2) * (order + 3) // 6))
     left = np.full(len(cells.radius), _FAR_LEFT * np.abs(weights).sum())
-    _expand(cells, sources, weights, order, inverse, coefficients, left)
+    working = [np.zeros(_BLOCK) for _ in range(7)]
+    _expand(cells.centre, cells.radius, sources, weights, order, inverse, coefficients, left, *working)
     sums, error = np.empty(points.shape[1]), np.empty(points.shape[1])
-    _evaluate(points, cells, coefficients, order, left, sums, error)
+    _evaluate(points, *cells, coefficients, order, left, sums, error, *working)
     return sums, error
 
 
-@kernel
-def _expand(cells, sources, weights, order, inverse, coefficients, left):
-    """Write each cell's `coefficients` (c, K), and add to `left` (c,) the error bound at the cell's radius."""
-    x, y, z, reach = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
-    by_x, by_y, by_z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
-    for cell in range(cells.radius.shape[0]):
+@stored_kernel(
+    "void(f8[:, ::1], f8[::1], f8[:, ::1], f8[::1], i8, f8[::1], f8[:, ::1], f8[::1],"
+    " f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])"
+)
+def _expand(
+    centre, radius, sources, weights, order, inverse, coefficients, left, x, y, z, reach, by_x, by_y, by_z
+):
+    """Write each cell's `coefficients` (c, K), and add to `left` (c,) the error bound at the cell's radius.
+
+    `x` to `by_z` are working memory of `_BLOCK` numbers.
+    """
+    for cell in range(radius.shape[0]):
         for at in range(0, weights.shape[0], _BLOCK):
             m = min(_BLOCK, weights.shape[0] - at)
             for i in range(m):
-                x[i] = sources[0, at + i] - cells.centre[0, cell]
-                y[i] = sources[1, at + i] - cells.centre[1, cell]
-                z[i] = sources[2, at + i] - cells.centre[2, cell]
+                x[i] = sources[0, at + i] - centre[0, cell]
+                y[i] = sources[1, at + i] - centre[1, cell]
+                z[i] = sources[2, at + i] - centre[2, cell]
                 squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
                 near = weights[at + i] * exp_of_negative(-0.5 * squared)
                 by_x[i] = near if squared <= _FAR_SQUARED else 0.0
-                reach[i] = np.sqrt(squared) * cells.radius[cell]
+                reach[i] = np.sqrt(squared) * radius[cell]
                 portion = reach[i] / (order + 2)
                 by_z[i] = abs(by_x[i]) * inverse[order + 1] / (1.0 - (portion if portion < 0.9 else 0.9))
             for _ in range(order + 1):
@@ -117,7 +124,7 @@ def _expand(cells, sources, weights, order, inverse, coefficients, left):
                     by_x[i] *= x[i]
 
 
-@kernel
+@kernel_part
 def _total(terms, m):
     """The sum of the first `m` terms, m a multiple of 4, in four independent sums."""
     s0 = s1 = s2 = s3 = 0.0
@@ -129,19 +136,25 @@ def _total(terms, m):
     return (s0 + s1) + (s2 + s3)
 
 
-@kernel
-def _evaluate(points, cells, coefficients, order, left, sums, error):
-    """Write the sums and bounds of all points, by Horner's rule in three nested variables."""
-    x, y, z, share = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
-    in_x, in_y, in_z = np.zeros(_BLOCK), np.zeros(_BLOCK), np.zeros(_BLOCK)
-    for cell in range(cells.radius.shape[0]):
-        outwards = 1.0 / max(cells.radius[cell], 1e-300)
-        for at in range(cells.starts[cell], cells.starts[cell + 1], _BLOCK):
-            m = min(_BLOCK, cells.starts[cell + 1] - at)
+@stored_kernel(
+    "void(f8[:, ::1], i8[::1], f8[:, ::1], f8[::1], f8[:, ::1], i8, f8[::1], f8[::1], f8[::1],"
+    " f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1], f8[::1])"
+)
+def _evaluate(
+    points, starts, centre, radius, coefficients, order, left, sums, error, x, y, z, share, in_x, in_y, in_z
+):
+    """Write the sums and bounds of all points, by Horner's rule in three nested variables.
+
+    `x` to `in_z` are working memory of `_BLOCK` numbers.
+    """
+    for cell in range(radius.shape[0]):
+        outwards = 1.0 / max(radius[cell], 1e-300)
+        for at in range(starts[cell], starts[cell + 1], _BLOCK):
+            m = min(_BLOCK, starts[cell + 1] - at)
             for i in range(m):
-                x[i] = points[0, at + i] - cells.centre[0, cell]
-                y[i] = points[1, at + i] - cells.centre[1, cell]
-                z[i] = points[2, at + i] - cells.centre[2, cell]
+                x[i] = points[0, at + i] - centre[0, cell]
+                y[i] = points[1, at + i] - centre[1, cell]
+                z[i] = points[2, at + i] - centre[2, cell]
                 squared = x[i] * x[i] + y[i] * y[i] + z[i] * z[i]
                 sums[at + i] = exp_of_negative(-0.5 * squared)
                 share[i] = np.sqrt(squared) * outwards

@@ -8,6 +8,9 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 
+_WIDER = 1.001
+"""Width of the band of directions that is searched, in reaches; more costs time, not accuracy."""
+
 
 @dataclass(frozen=True, eq=False)
 class Sight:
@@ -38,11 +41,14 @@ class Sight:
         distance = float(np.linalg.norm(away))
         if distance == 0:
             return True
-        reach = self.radius / distance
-        all_depths, directions = self._lines[number]
-        beside = directions - (away / distance)[:, None]
-        near = beside[0] ** 2 + beside[1] ** 2 + beside[2] ** 2 <= reach * reach
-        depths = all_depths[near]
+        directions, all_depths = self._sorted[number]
+        reach, towards = self.radius / distance, away / distance
+        # Slightly wider than the reach, so that rounding loses no point.
+        edges = towards[0] - _WIDER * reach, towards[0] + _WIDER * reach
+        beside = slice(*np.searchsorted(directions[0], edges))
+        apart = directions[:, beside] - towards[:, None]
+        near = apart[0] ** 2 + apart[1] ** 2 + apart[2] ** 2 <= reach * reach
+        depths = all_depths[beside][near]
         return bool((depths > distance + self.radius).any() and not (depths < distance - self.radius).any())
 
     @cached_property
@@ -51,11 +57,13 @@ class Sight:
         return () if self.cloud.camera is None else (self.cloud.camera, *others)
 
     @cached_property
-    def _lines(self) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
-        """For each camera, the distance of every point, and unit vectors to the points as columns."""
-        lines = []
+    def _sorted(self) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], ...]:
+        """For each camera unit vectors to the points as columns, ascending in x, and the points' distances."""
+        found = []
         for camera in self._cameras:
             rays = self.cloud.points - camera
             depths = np.linalg.norm(rays, axis=1)
-            lines.append((depths, np.ascontiguousarray((rays / np.maximum(depths, 1e-9)[:, None]).T)))
-        return tuple(lines)
+            directions = (rays / np.maximum(depths, 1e-9)[:, None]).T
+            order = np.argsort(directions[0])
+            found.append((np.ascontiguousarray(directions[:, order]), depths[order]))
+        return tuple(found)

@@ -8,6 +8,7 @@ from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, judged_scene
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.peers import PEERS
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation import Relation
@@ -94,4 +95,5 @@ def asked(learner: str, model: Any, scenes: Sequence[SeenScene]) -> dict[str, li
 
 def reconciled(model: RelationClassifier, contacts: ScenePairs, objects: Sequence[int]) -> tuple[Relation, ...]:
     """The most likely consistent scene of what a model believes."""
-    return most_likely_scene(alternatives(model.beliefs_of(contacts)), objects).relations
+    beliefs = alternatives(model.beliefs_of(contacts))
+    return most_likely_scene(beliefs, objects, beside=pairs_beside(contacts)).relations

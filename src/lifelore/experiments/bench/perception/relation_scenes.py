@@ -48,12 +48,12 @@ class SpoiltScene:
 
 def seen_simulated(scene: TabletopScene) -> SeenScene:
     """A simulated scene as everybody sees it."""
-    return seen_scene(scene.name, scene.cloud, scene.truth, _gaps(scene))
+    return seen_scene(scene.name, scene.cloud, scene.truth, true_gaps(scene))
 
 
 def spoilt_simulated(scene: TabletopScene) -> SpoiltScene:
     """A simulated scene, and the same spoilt in every way."""
-    return _spoilt(scene.name, scene.cloud, scene.truth, _gaps(scene), tuple(SPOILT))
+    return _spoilt(scene.name, scene.cloud, scene.truth, true_gaps(scene), tuple(SPOILT))
 
 
 def spoilt_real() -> list[SpoiltScene]:
@@ -61,7 +61,8 @@ def spoilt_real() -> list[SpoiltScene]:
     return [_spoilt(scene.name, scene.cloud, scene.truth, None, THINNED) for scene in real_scenes()]
 
 
-def _gaps(scene: TabletopScene) -> dict[frozenset[int], float]:
+def true_gaps(scene: TabletopScene) -> dict[frozenset[int], float]:
+    """Visible gaps without noise of ``{a, b}``, metres."""
     return {frozenset((gap.a, gap.b)): gap.visible for gap in scene.gaps}
 
 

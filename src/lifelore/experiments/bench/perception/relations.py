@@ -2,7 +2,7 @@
 
 Everybody learns from the same simulated scenes and is judged on others of other shapes; on real scenes, untrained
 on any; and on each real scene after learning from all the others as well. The model that ships with the package is
-judged as it is, and is what the goals of simulation are about.
+judged as it is, and is what the goals of simulation are about; also on arrangements of books, boxes and cartons.
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -12,6 +12,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
+from lifelore.experiments.bench.perception.relation_differences import difference_rows
 from lifelore.experiments.bench.perception.relation_learners import (
     LEARNERS,
     LOGIC,
@@ -34,6 +35,12 @@ from lifelore.experiments.bench.perception.relation_scenes import (
     seen_simulated,
     spoilt_real,
     spoilt_simulated,
+)
+from lifelore.experiments.bench.perception.shipped_relations import (
+    ARRANGED_SCENES,
+    ARRANGEMENTS,
+    calibration_error,
+    judged_arrangement,
 )
 from lifelore.experiments.bench.rounds import at_least, at_most, row
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
@@ -60,7 +67,13 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
         REAL: _from_lessons(lessons, [test.scene for test in real], after),
         WITH_OTHERS: _leaving_one_out(lessons, [test.scene for test in real], after),
     }
-    rows = [line for where, said in answers.items() for line in _score_rows(where, said)]
+    shipped = shipped_model()
+    arranged = {f"{SIMULATED} {name}": judged_arrangement(name, repeats, shipped, after) for name in ARRANGEMENTS}
+    everywhere = answers | arranged
+    rows = [line for where, said in everywhere.items() for line in _score_rows(where, said)]
+    rows += [line for where, said in everywhere.items() for line in _calibration_rows(where, said)]
+    for where, said in answers.items():
+        rows += difference_rows(where, {who: _things(judged, where) for who, judged in said.items()})
     lost = _lost(tests)
     networks = {SIMULATED: tests, REAL: real}
     rows += [
@@ -73,7 +86,8 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
 
 def _counter(progress: Progress, repeats: int, real: int) -> Callable[[str], None]:
     learners = len(LEARNERS)
-    total = (LEARNT_SCENES + JUDGED_SCENES) * repeats + learners + (learners * (1 + real) if real else 0)
+    drawn = LEARNT_SCENES + JUDGED_SCENES + len(ARRANGEMENTS) * ARRANGED_SCENES
+    total = drawn * repeats + learners + (learners * (1 + real) if real else 0)
     done = 0
 
     def after(label: str) -> None:
@@ -117,7 +131,7 @@ def _leaving_one_out(lessons: Sequence[SeenScene], real: Sequence[SeenScene], af
 
 def _things(judged: Iterable[JudgedPair], where: str) -> list[JudgedPair]:
     """Pairs of things; in simulation, where the gap alone makes the label, without those near the limit."""
-    return [pair for pair in judged if not pair.with_table and not (where == SIMULATED and pair.border)]
+    return [pair for pair in judged if not pair.with_table and not (where.startswith(SIMULATED) and pair.border)]
 
 
 def _with_table(judged: Iterable[JudgedPair]) -> list[JudgedPair]:
@@ -139,7 +153,7 @@ def _score_rows(where: str, answers: Answers) -> list[dict]:
         }
         apart = {
             "pairs with the table": _with_table(judged),
-            "pairs near the gap's limit": [p for p in judged if where == SIMULATED and p.border],
+            "pairs near the gap's limit": [p for p in judged if where.startswith(SIMULATED) and p.border],
             "pairs that look over 3 cm apart": [p for p in judged if p.hidden and not p.with_table],
         }
         measures |= {
@@ -147,6 +161,17 @@ def _score_rows(where: str, answers: Answers) -> list[dict]:
         }
         rows += [_estimate_row(f"{who}, {where}, {name}", estimate) for name, estimate in measures.items()]
     return rows
+
+
+def _calibration_rows(where: str, answers: Answers) -> list[dict]:
+    """Calibration errors of the shipped model, of pairs of objects and of pairs with the table."""
+    judged = answers.get(SHIPPED + LOGIC, [])
+    parts = {"calibration error": _things(judged, where), "calibration error, table": _with_table(judged)}
+    return [
+        row(f"{SHIPPED + LOGIC}, {where}, {name}", calibration_error(part), "probability") | {"n": len(part)}
+        for name, part in parts.items()
+        if part
+    ]
 
 
 def _estimate_row(name: str, estimate: Estimate) -> dict:

@@ -19,19 +19,19 @@ class Cost(NamedTuple):
     cpu: float
 
 
-def process_cost(arguments: Sequence[object], environment: dict[str, str]) -> Cost:
-    """What one process of ``lifelore ARGUMENTS`` costs, from its start to its end.
+def process_cost(arguments: Sequence[object], environment: dict[str, str], status: int = 0) -> Cost:
+    """What one process of ``lifelore ARGUMENTS`` costs, from its start to its end with exit status `status`.
 
     Raises
     ------
     LifeloreError
-        The process does not end well.
+        The process ends with another exit status.
     """
     command = [sys.executable, "-m", "lifelore.app.command_line", *map(str, arguments)]
     before, began = _children_seconds(), time.perf_counter()
     done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     cost = Cost(time.perf_counter() - began, _children_seconds() - before)
-    if done.returncode:
+    if done.returncode != status:
         reason = (done.stderr.strip().splitlines() or ["no reason given"])[-1]
         raise LifeloreError(f"a timed process must end well, got '{reason}'")
     return cost

@@ -9,6 +9,7 @@ from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.interface import interface
 from lifelore.perception.contacts.near_pairs import near_pairs, split_objects
 from lifelore.perception.pairs.scene_pairs import scene_pairs
+from lifelore.perception.pairs.side_faces import pairs_beside
 from lifelore.perception.reasoning.scene_logic import alternatives, most_likely_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.scene import Scene
@@ -41,7 +42,9 @@ def timed_stages(cloud: LabelledCloud, model: RelationClassifier) -> dict[str, f
     found = timed(STAGES[2], lambda: tuple(interface(pair, settings) for pair in pairs))
     seen = timed(STAGES[3], lambda: scene_pairs(cloud, found, settings))
     beliefs = timed(STAGES[4], lambda: model.beliefs_of(seen))
-    logic = timed(STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects))
+    logic = timed(
+        STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(seen))
+    )
     timed(
         STAGES[6],
         lambda: scene_document(Scene(cloud, found, logic.relations).without_unrelated_contacts, seconds=0.0),

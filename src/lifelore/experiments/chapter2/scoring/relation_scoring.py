@@ -181,12 +181,16 @@ def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:
     return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
 
 
-def difference(first: Sequence[JudgedPair], second: Sequence[JudgedPair]) -> Estimate:
-    """Exact share of `first` less that of `second`, on the same pairs; scenes resampled (percentiles).
+def difference(
+    first: Sequence[JudgedPair],
+    second: Sequence[JudgedPair],
+    right: Callable[[JudgedPair], bool] = lambda pair: pair.exact,
+) -> Estimate:
+    """Share of right answers of `first` less that of `second`, on the same pairs; scenes resampled (percentiles).
 
     Both hold the same labelled pairs in the same order.
     """
-    differences = [(float(a.exact) - float(b.exact), 1.0) for a, b in zip(first, second, strict=True)]
+    differences = [(float(right(a)) - float(right(b)), 1.0) for a, b in zip(first, second, strict=True)]
     sums = _sums_by_scene(first, differences)
     drawn = _draws(len(sums)) @ sums
     value = float(sums[:, 0].sum() / sums[:, 1].sum())

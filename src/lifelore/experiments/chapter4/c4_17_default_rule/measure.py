@@ -7,17 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter4.c4_17_default_rule.run import RULES
+from lifelore.experiments.chapter4.c4_17_default_rule.run import CANDIDATES, RULES
 from lifelore.experiments.chapter4.c4_17_default_rule.worlds import EQUAL
-from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
 from lifelore.experiments.engine.estimates import exact_value
 
 MOST_STUCK = 0.05
 """A default may leave this share of tasks stuck above the share of the rule that leaves the fewest in a world."""
-
-
-CANDIDATES = ("EI, pay", "IDS")
-"""Rules among which the library's default is decided: they need no horizon and cost little for many users."""
 
 
 def decided_rule(measured: Mapping[str, Mapping[str, Any]], among: Sequence[str] = tuple(RULES)) -> str:
@@ -61,27 +57,59 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     found["regret_IDS_minus_best_other"] = difference_estimate(means["IDS"], means[best])
     worse = (relative[name][unequal].mean(axis=0) for name in ("EI, outcome", "greedy"))
     found["regret_EI_outcome_over_greedy_unequal"] = ratio_estimate(*worse)
-    return found
+    return found | _uncertain(results)
+
+
+def _uncertain(results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The candidates with learnt models known to be uncertain.
+
+    Regret is in units of that of the best of the six rules with plug-in models; stuck tasks are counted above the
+    less stuck of the two candidates, and above the same rule with plug-in models. None of these decides the
+    verdict, which was filed for plug-in models.
+    """
+    learnt = [result for result in results if UNCERTAIN in result]
+    if not learnt:
+        return {}
+    means = {name: _relative(learnt, name, UNCERTAIN).mean(axis=0) for name in CANDIDATES}
+    stuck = {name: _shares(learnt, name, UNCERTAIN) for name in CANDIDATES}
+    least = np.min(list(stuck.values()), axis=0)
+    found: dict[str, Estimate] = {}
+    for name, key in ((name, key_of(name)) for name in CANDIDATES):
+        plug_in, n = _relative(learnt, name).mean(axis=0), len(learnt)
+        found[f"regret_{key}_uncertain"] = mean_estimate(means[name])
+        found[f"regret_{key}_uncertain_minus_plug_in"] = difference_estimate(means[name], plug_in)
+        found[f"stuck_above_least_{key}_uncertain"] = exact_value((stuck[name] - least).max(), n)
+        above = (stuck[name] - _shares(learnt, name)).max()
+        found[f"stuck_{key}_uncertain_above_plug_in"] = exact_value(above, n)
+    apart = difference_estimate(means["IDS"], means["EI, pay"])
+    return found | {"regret_IDS_uncertain_minus_EI_pay_uncertain": apart}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """A row a world, noise and model: regret and share of stuck tasks by rule, means over groups."""
+    """A row a world, noise and model: regret and share of stuck tasks by rule, means over groups.
+
+    Rows of learnt models have both once more under ``uncertain``, of rules that know the models to be uncertain.
+    """
     return [
         {key: result[key] for key in ("world", "noise", "model")}
-        | {
-            "regret": {name: float(np.mean(found["regret"])) for name, found in result["rules"].items()},
-            "stuck": {name: float(np.mean(found["stuck"])) for name, found in result["rules"].items()},
-        }
+        | _by_rule(result["rules"])
+        | ({UNCERTAIN: _by_rule(result[UNCERTAIN])} if UNCERTAIN in result else {})
         for result in results
     ]
 
 
-def _relative(results: Sequence[Mapping], rule: str) -> NDArray[np.float64]:
+def _by_rule(rules: Mapping[str, Mapping]) -> dict[str, dict[str, float]]:
+    return {
+        key: {name: float(np.mean(found[key])) for name, found in rules.items()} for key in ("regret", "stuck")
+    }
+
+
+def _relative(results: Sequence[Mapping], rule: str, kind: str = "rules") -> NDArray[np.float64]:
     """Regret of a rule by world and group, in units of the mean regret of the best rule of the world."""
     best = [min(np.mean(found["regret"]) for found in result["rules"].values()) for result in results]
-    return np.array([result["rules"][rule]["regret"] for result in results]) / np.array(best)[:, None]
+    return np.array([result[kind][rule]["regret"] for result in results]) / np.array(best)[:, None]
 
 
-def _shares(results: Sequence[Mapping], rule: str) -> NDArray[np.float64]:
+def _shares(results: Sequence[Mapping], rule: str, kind: str = "rules") -> NDArray[np.float64]:
     """Share of stuck tasks of a rule by world."""
-    return np.array([np.mean(result["rules"][rule]["stuck"]) for result in results])
+    return np.array([np.mean(result[kind][rule]["stuck"]) for result in results])

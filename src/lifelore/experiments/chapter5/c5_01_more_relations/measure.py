@@ -64,7 +64,7 @@ def scene_of(row: Mapping) -> ScenePairs:
 def predicted(model: RelationClassifier, row: Mapping) -> PairsByWord:
     """The words that the model predicts for a scene; symmetric words in both orders."""
     relations = model.predict_pairs(scene_of(row)) if row["pairs"] else ()
-    turned = [[r.b, r.a, r.relation] for r in relations if r.relation in model.symmetric]
+    turned = [[r.b, r.a, r.relation] for r in relations if r.relation in model.symmetric_]
     return pairs_by_word([*([r.a, r.b, r.relation] for r in relations), *turned])
 
 

@@ -3,7 +3,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.signal_laws import signal_laws
+from lifelore.interaction.library.signal_laws import signal_laws
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.student_t_outcomes import StudentTOutcomes

@@ -3,7 +3,7 @@ import pytest
 from scipy.integrate import quad
 from scipy.stats import t
 
-from lifelore.interaction.novelty.broad_law import FREEDOM, BroadCategories, BroadNormals
+from lifelore.interaction.library.broad_law import FREEDOM, BroadCategories, BroadNormals
 
 MEAN, DEVIATION = np.array([[10.0, 0.0], [0.0, 0.0]]), np.array([[2.0, 1.0], [2.0, 1.0]])
 PRIOR = np.array([0.5, 0.5])

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.interaction.library.policy_library import PolicyLibrary
-from lifelore.interaction.novelty.signal_laws import CategoryLaws, SignalLaws
+from lifelore.interaction.library.signal_laws import CategoryLaws, SignalLaws
 
 Array = NDArray[np.float64]
 Numbers = NDArray[np.int64]

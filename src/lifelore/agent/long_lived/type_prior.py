@@ -1,0 +1,224 @@
+"""Prior over types in a context, learnt from past posteriors: an action prior whose actions are the types.
+
+    n_d(c, τ) = Σ of β_end(τ) over the tasks of date d in context c        counts: an `ActionPrior` for each date
+    N_h(c, τ) = Σ_d 2^(−age of d / h) n_d(c, τ)                            decay on read, half-life h
+    P_h(τ)    = (N_h(·, τ) + k₀ G₀(τ)) / (ΣN_h + k₀)                       in any context
+    P_hk(τ|c) = (N_h(c, τ) + k P_h(τ)) / (ΣN_h(c) + k)                     in context c
+    P(τ|c)    = Σ_hk w_hk P_hk(τ|c),   w_hk ∝ Π_d Π_c,τ P_hk(τ | c, before d)^n_d(c, τ)
+
+Nobody has to say how fast types drift or whether contexts tell anything: half-lives h and weights k of all
+contexts compete by how well they predicted the dates that followed, and k = ∞ ignores the context. Counts are
+dated and never decay in memory, so those of several robots merge by addition. Thesis: §5.2, with §3.2's class.
+"""
+
+from collections.abc import Iterable, Sequence
+from typing import Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Record
+
+Array = NDArray[np.float64]
+
+HALF_LIVES = (np.inf, 64.0, 16.0, 4.0)
+"""Half-lives that compete, in dates; more cost time in proportion."""
+SHARED = (2.0, 8.0, 32.0, np.inf)
+"""Weights k of all contexts that compete, in tasks; at infinity the context is ignored."""
+LIBRARY_TASKS = 4.0
+"""Weight k₀ of the library's prior, in tasks; more trust it longer."""
+LEAST_BELIEF = 1e-6
+"""Beliefs below this are not counted."""
+
+
+class TypePrior:
+    """Which types to expect, in a context and at a date.
+
+    Parameters
+    ----------
+    library_prior : (n_types,) float
+        G₀; sums to 1.
+    key : str
+        Meaning of the types and the contexts; priors of different keys do not merge.
+    half_lives : sequence of float
+        Half-lives h that compete, in dates, above 0; infinity never forgets.
+
+    Raises
+    ------
+    InputError
+        The library's prior is no distribution, or a half-life is not above 0.
+
+    Examples
+    --------
+    >>> prior = TypePrior([0.5, 0.5])
+    >>> for date in range(20):
+    ...     prior.learn(context=7, belief=[0.9, 0.1], date=date)
+    ...     prior.learn(context=8, belief=[0.0, 1.0], date=date)
+    >>> prior.prior(7, date=20).round(1).tolist(), prior.prior(8, date=20).round(1).tolist()
+    ([0.8, 0.2], [0.1, 0.9])
+    """
+
+    def __init__(self, library_prior: ArrayLike, key: str = "", half_lives: Sequence[float] = HALF_LIVES) -> None:
+        self.library_prior: Array = np.asarray(library_prior, np.float64)
+        given = self.library_prior
+        if given.ndim != 1 or not (len(given) and (given >= 0).all() and abs(given.sum() - 1) <= 1e-9):
+            raise InputError(f"library_prior must be at least 0 and sum to 1, got shape {given.shape}")
+        if not len(half_lives) or not all(half_life > 0 for half_life in half_lives):
+            raise InputError(f"half_lives must be above 0, at least one, got {half_lives}")
+        self.key, self.half_lives = key, tuple(half_lives)
+        self.dates: dict[int, ActionPrior] = {}
+        self._forget_past()
+
+    @property
+    def n_types(self) -> int:
+        """Number of types."""
+        return len(self.library_prior)
+
+    # ---- learning --------------------------------------------------------------------------------
+
+    def learn(self, context: int, belief: ArrayLike, date: int) -> None:
+        """Count the belief over types (n_types,) at the end of a task.
+
+        Parameters
+        ----------
+        context : int
+            Code of the task's context.
+        belief : (n_types,) float
+            Sums to 1.
+        date : int
+            Number of the day, or of any other span in which types hardly drift; tasks may come in any order.
+
+        Raises
+        ------
+        InputError
+            The belief is no distribution over the types.
+        """
+        belief = np.asarray(belief, np.float64)
+        if belief.shape != (self.n_types,) or not ((belief >= 0).all() and abs(belief.sum() - 1) <= 1e-6):
+            raise InputError(f"belief must be ({self.n_types},), at least 0, and sum to 1, got {belief!r:.80}")
+        held = np.flatnonzero(belief >= LEAST_BELIEF)
+        if date not in self.dates:
+            self.dates[date] = ActionPrior(self.n_types, key=self.key)
+        self.dates[date].update(np.full(len(held), context), np.eye(self.n_types, dtype=bool)[held], belief[held])
+        if date < self._next_date:
+            self._forget_past()
+
+    def merge(self, other: "TypePrior") -> None:
+        """Add another robot's counts; exact in any order and grouping.
+
+        Raises
+        ------
+        InputError
+            The priors differ in key or number of types.
+        """
+        if (other.n_types, other.key) != (self.n_types, self.key):
+            raise InputError(
+                f"priors must agree in types and key, got {self.n_types} '{self.key}' "
+                f"and {other.n_types} '{other.key}'"
+            )
+        for date, counts in other.dates.items():
+            self.dates[date] = ActionPrior.merged([self.dates[date], counts] if date in self.dates else [counts])
+        self._forget_past()
+
+    # ---- reading ---------------------------------------------------------------------------------
+
+    def prior(self, context: int, date: int) -> Array:
+        """Prior over types in a context, (n_types,), sums to 1; from the counts of this date and those before."""
+        self._read_until(date)
+        experts = self._predictions([context], date, self.dates.get(date))[0]
+        return np.einsum("hk,hkt->t", self._weights(), experts)
+
+    def weights(self, date: int) -> dict[tuple[float, float], float]:
+        """Half-life in dates and weight of all contexts in tasks, to the probability that they predict best."""
+        self._read_until(date)
+        return {
+            (half_life, shared): float(self._weights()[i, j])
+            for i, half_life in enumerate(self.half_lives)
+            for j, shared in enumerate(SHARED)
+        }
+
+    def _weights(self) -> Array:
+        weights = np.exp(self._log_weights - self._log_weights.max())
+        return weights / weights.sum()
+
+    def _predictions(self, contexts: Iterable[int], date: int, today: ActionPrior | None = None) -> Array:
+        """P_hk(τ | c), (n_contexts, n_half_lives, n_shared, n_types), with the counts of `today` if given."""
+        contexts = list(contexts)
+        in_context = np.stack([self._decayed(context, date) for context in contexts])
+        everywhere = self._decayed(None, date)
+        if today is not None:
+            in_context += today.counts(contexts)[:, None]
+            everywhere = everywhere + today.counts(today.contexts).sum(axis=0)
+        total = everywhere.sum(axis=-1, keepdims=True)
+        anywhere = (everywhere + LIBRARY_TASKS * self.library_prior) / (total + LIBRARY_TASKS)
+        total = in_context.sum(axis=-1, keepdims=True)
+        found = np.empty((len(contexts), len(self.half_lives), len(SHARED), self.n_types))
+        for place, shared in enumerate(SHARED):
+            told = 0.0 if np.isinf(shared) else 1 / (total + shared)
+            found[:, :, place] = told * in_context + (1 - told * total) * anywhere
+        return found
+
+    # ---- the past, decayed -----------------------------------------------------------------------
+
+    def _forget_past(self) -> None:
+        """Read all dates again at the next question."""
+        self._past: dict[int | None, tuple[int, Array]] = {}
+        self._log_weights = np.zeros((len(self.half_lives), len(SHARED)))
+        self._next_date = min(self.dates, default=0)
+
+    def _read_until(self, date: int) -> None:
+        """Take the dates before `date` into the past, and weigh the experts by how they predicted each."""
+        if date < self._next_date:
+            self._forget_past()
+        for past in sorted(one for one in self.dates if self._next_date <= one < date):
+            counts = self.dates[past]
+            contexts = counts.contexts.tolist()
+            rows = counts.counts(contexts)
+            logs = np.log(np.maximum(self._predictions(contexts, past), np.finfo(float).tiny))
+            self._log_weights += np.einsum("ct,chkt->hk", rows, logs)
+            for context, row in zip(contexts, rows, strict=True):
+                self._past[context] = past, self._decayed(context, past) + row
+            self._past[None] = past, self._decayed(None, past) + rows.sum(axis=0)
+        self._next_date = max(self._next_date, date)
+
+    def _decayed(self, context: int | None, date: int) -> Array:
+        """N_h(c, ·) of the dates before, (n_half_lives, n_types); None is any context."""
+        if context not in self._past:
+            return np.zeros((len(self.half_lives), self.n_types))
+        last, rows = self._past[context]
+        return rows * 0.5 ** ((date - last) / np.array(self.half_lives))[:, None]
+
+    # ---- records ---------------------------------------------------------------------------------
+
+    def to_records(self) -> list[Record]:
+        """A record a date, which memory adds; without G₀, which the reader has from its library."""
+        return [self.record(date) for date in sorted(self.dates)]
+
+    def record(self, date: int) -> Record:
+        """The counts of one date."""
+        found = self.dates[date].to_record({"date": date})
+        return Record(
+            found.kind, f"{self.key}@{date}", found.version, found.merge, found.slots, found.values, found.about
+        )
+
+    @classmethod
+    def from_records(cls, records: Iterable[Record], library_prior: ArrayLike, key: str = "") -> Self:
+        """The prior in the records whose key is `key`; others are left out.
+
+        Raises
+        ------
+        InputError
+            The library's prior is no distribution, or a record is none of this class.
+        """
+        made = cls(library_prior, key)
+        for record in records:
+            own, _, date = record.key.rpartition("@")
+            if own == key:
+                made.dates[int(date)] = ActionPrior.from_record(
+                    Record(record.kind, key, record.version, record.merge, record.slots, record.values),
+                    made.n_types,
+                )
+        made._forget_past()
+        return made

@@ -1,0 +1,227 @@
+"""Days in a building: corridors that are blocked and crowds, by a hidden type of day; the map does not show them.
+
+A type of day blocks the same passages and crowds the same places of a building whenever it comes. Every task is a
+way from a start to a destination: a move costs `MOVE`, into a crowd `CROWD`, and a refused move `REFUSED`.
+"""
+
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+from scipy.sparse import csgraph
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.domains.task_stream import DrawnTask, TaskStream
+
+MOVE, CROWD, REFUSED = -1.0, -6.0, -2.0
+"""Points of a move, of a move into a crowd, and of a move that is refused."""
+DAYS = MappingProxyType(
+    {"quiet": (0, 0), "cleaning": (3, 0), "visitors": (0, 3), "meeting": (1, 2), "works": (6, 1)}
+)
+"""Types of day: number of blocked passages and of crowds."""
+BLOCK_RADIUS, CROWD_RADIUS = 1, 3
+"""Cells around the middle of a blocked passage, and of a crowd (larger coordinate difference)."""
+LONGEST = 5000
+"""Actions after which a way is cut."""
+
+
+@dataclass(frozen=True, eq=False)
+class Day:
+    """What a type of day makes of a building: the moves that are open, and the crowded cells.
+
+    Parameters
+    ----------
+    neighbour : (n_states, 4) int32
+        As in `GridWorld`, with blocked moves -1. Cells that are blocked cannot be entered or left.
+    crowded : (n_states,) bool
+    open : (n_states,) bool
+        Cells of the connected part that is left; at least nine in ten of all.
+    """
+
+    neighbour: NDArray[np.int32]
+    crowded: NDArray[np.bool_]
+    open: NDArray[np.bool_]
+
+
+def day_in(world: GridWorld, day_type: str, seed: int = 0) -> Day:
+    """The day of a type in a building; the same for the same arguments.
+
+    Raises
+    ------
+    NotFoundError
+        No day has this type.
+    """
+    if day_type not in DAYS:
+        raise NotFoundError(f"type of day must be one of {', '.join(DAYS)}, got {day_type!r}")
+    n_blocked, n_crowds = DAYS[day_type]
+    rng = stream(seed, "building days", world.fingerprint, day_type)
+    neighbour, opened = world.neighbour, np.ones(world.n_states, np.bool_)
+    busy = _on_shortest_ways(world, rng)
+    for middle in rng.choice(world.n_states, size=min(200, world.n_states), replace=False, p=busy):
+        if n_blocked == 0:
+            break
+        trial = opened & ~_around(world, int(middle), BLOCK_RADIUS)
+        left = _largest_part(_without(world.neighbour, trial), trial)
+        # A passage may be blocked where the rest of the building stays one.
+        if left.sum() >= trial.sum() - 2 and left.mean() >= 0.9:
+            neighbour, opened, n_blocked = _without(world.neighbour, left), left, n_blocked - 1
+    crowded = np.zeros(world.n_states, np.bool_)
+    for middle in rng.choice(world.n_states, size=n_crowds, replace=False, p=busy):
+        crowded |= _around(world, int(middle), CROWD_RADIUS)
+    return Day(neighbour, crowded & opened, opened)
+
+
+def _on_shortest_ways(world: GridWorld, rng: np.random.Generator, ways: int = 40) -> NDArray[np.float64]:
+    """How often shortest ways between random places pass each cell, as probabilities above 0."""
+    counts = np.full(world.n_states, 0.01)
+    starts = rng.integers(world.n_states, size=ways)
+    before = csgraph.shortest_path(
+        _graph(world.neighbour), indices=starts, unweighted=True, return_predecessors=True
+    )[1]
+    for row, place in zip(before, rng.integers(world.n_states, size=ways), strict=True):
+        while place >= 0:
+            counts[place] += 1
+            place = row[place]
+    return counts / counts.sum()
+
+
+def _graph(neighbour: NDArray[np.int32], cost: NDArray[np.float64] | None = None) -> sparse.csr_matrix:
+    """Moves as a graph; `cost` of entering each cell, else 1."""
+    n = len(neighbour)
+    start, move = np.nonzero(neighbour >= 0)
+    end = neighbour[start, move]
+    weights = np.ones(len(end)) if cost is None else cost[end]
+    return sparse.csr_matrix((weights, (start, end)), shape=(n, n))
+
+
+def _around(world: GridWorld, middle: int, radius: int) -> NDArray[np.bool_]:
+    return np.abs(world.cells - world.cells[middle]).max(axis=1) <= radius
+
+
+def _without(neighbour: NDArray[np.int32], opened: NDArray[np.bool_]) -> NDArray[np.int32]:
+    """Moves between open cells alone."""
+    passes = (neighbour >= 0) & opened[:, None] & opened[neighbour]
+    return np.where(passes, neighbour, -1).astype(np.int32)
+
+
+def _largest_part(neighbour: NDArray[np.int32], opened: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    part = csgraph.connected_components(_graph(neighbour), directed=False)[1]
+    return opened & (part == np.bincount(part[opened]).argmax())
+
+
+@dataclass(frozen=True)
+class WayObservation:
+    """The cell, the destination, and whether the last move was refused."""
+
+    cell: int
+    destination: int
+    refused: bool = False
+
+
+class BuildingWay:
+    """One way on a day of a hidden type.
+
+    Parameters
+    ----------
+    world : GridWorld
+        The building by its map.
+    day : Day
+    start, destination : int
+        Different open cells.
+    """
+
+    n_actions = 4
+
+    def __init__(self, world: GridWorld, day: Day, start: int, destination: int) -> None:
+        if start == destination or not day.open[[start, destination]].all():
+            raise InputError(f"start and destination must be different open cells, got {start} and {destination}")
+        self.world, self._day, self.start, self.destination = world, day, start, destination
+        self._now = (start, 0, False)
+
+    @property
+    def ended(self) -> bool:
+        """Whether the destination was reached, or the way was cut."""
+        return self._now[2]
+
+    @cached_property
+    def best_return(self) -> float:
+        """Largest return of an agent that knows the day; not discounted."""
+        cost = np.where(self._day.crowded, -CROWD, -MOVE)
+        graph = _graph(self._day.neighbour, cost)
+        return -float(csgraph.dijkstra(graph, indices=self.start)[self.destination])
+
+    def reset(self) -> WayObservation:
+        """Back to the start."""
+        self._now = (self.start, 0, False)
+        return WayObservation(self.start, self.destination)
+
+    def available(self) -> NDArray[np.bool_]:
+        """(4,) all moves until the end; the day may refuse them."""
+        return np.full(4, not self.ended)
+
+    def step(self, action: int) -> tuple[WayObservation, float, bool]:
+        """Move north, south, east or west: observation, points, and whether the way ended.
+
+        Raises
+        ------
+        InputError
+            There is no such move, or the way has ended.
+        """
+        cell, taken, ended = self._now
+        if ended or not 0 <= action < 4:
+            raise InputError(f"action must lie in [0, 4) before the end, got {action}; see available()")
+        target = int(self._day.neighbour[cell, action])
+        refused = target < 0
+        cell = cell if refused else target
+        reward = REFUSED if refused else CROWD if self._day.crowded[cell] else MOVE
+        self._now = (cell, taken + 1, cell == self.destination or taken + 1 >= LONGEST)
+        return WayObservation(cell, self.destination, refused), reward, self.ended
+
+    def copy_state(self) -> tuple[int, int, bool]:
+        """All that `restore` needs."""
+        return self._now
+
+    def restore(self, state: tuple[int, int, bool]) -> None:
+        """Go on from a copied state of the same way."""
+        self._now = state
+
+
+@dataclass(frozen=True, eq=False)
+class BuildingDays:
+    """Ways by number in one building.
+
+    Parameters
+    ----------
+    world : GridWorld
+    stream : TaskStream
+        Its types are keys of `DAYS`.
+    seed : int
+        Of blocked passages, crowds, starts and destinations.
+    n_destinations : int
+        Number of places that ways lead to, at least 1: most jobs recur.
+    """
+
+    world: GridWorld
+    stream: TaskStream
+    seed: int = 0
+    n_destinations: int = 12
+
+    @cached_property
+    def _days(self) -> dict[str, Day]:
+        return {name: day_in(self.world, name, self.seed) for name in self.stream.types}
+
+    def task(self, number: int) -> tuple[DrawnTask, BuildingWay]:
+        """Task `number` and its world; the same for the same number."""
+        drawn, days = self.stream.draw(number), self._days
+        # Destinations are open on every day, so that days cannot be told apart by them.
+        always = np.logical_and.reduce([day.open for day in days.values()])
+        places = stream(self.seed, "building days", "destinations").permutation(np.flatnonzero(always))
+        rng = stream(self.seed, "building days", "way", number)
+        destination = int(places[int(rng.integers(self.n_destinations))])
+        start = int(rng.choice(np.setdiff1d(places, [destination])))
+        return drawn, BuildingWay(self.world, days[drawn.hidden_type], start, destination)

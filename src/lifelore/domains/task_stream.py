@@ -1,0 +1,130 @@
+"""Streams of tasks with an observable context and a hidden type, for worlds in which an agent lives long.
+
+Contexts are as frequent as the powers of their rank (Zipf); each has a usual type. A type may arrive late, and the
+usual types may be dealt anew. Any task can be drawn without those before it.
+"""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Protocol, runtime_checkable
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.errors import InputError
+from lifelore.core.streams import stream
+
+
+@runtime_checkable
+class LivedTask(Protocol):
+    """A task in progress: actions are the integers in [0, n_actions), of which some are available at a time."""
+
+    n_actions: int
+
+    def reset(self) -> Any:
+        """Begin an episode; the first observation."""
+        ...
+
+    def available(self) -> NDArray[np.bool_]:
+        """(n_actions,) whether each action can be taken now."""
+        ...
+
+    def step(self, action: int) -> tuple[Any, float, bool]:
+        """Take an action: observation, reward, and whether the episode ended."""
+        ...
+
+    def copy_state(self) -> Any:
+        """All that `restore` needs; it can be pickled."""
+        ...
+
+    def restore(self, state: Any) -> None:
+        """Go on from a copied state."""
+        ...
+
+
+@dataclass(frozen=True)
+class DrawnTask:
+    """A task's number, its observable context, and its hidden type."""
+
+    number: int
+    context: int
+    hidden_type: str
+
+
+@dataclass(frozen=True)
+class TaskStream:
+    """Which context and which type each task has.
+
+    Parameters
+    ----------
+    types : tuple of str
+        Names of the types.
+    seed : int
+    n_contexts : int
+        At least 1.
+    zipf : float
+        Context of rank r has a probability proportional to r to the power −zipf; at least 0.
+    loyalty : float
+        Probability in [0, 1] that a task is of its context's usual type; otherwise all types are equally likely.
+    arrivals : mapping of str to int
+        First task of types that arrive late; this task is surely of that type.
+    changes : tuple of int
+        Tasks from which on every context's usual type is dealt anew.
+
+    Raises
+    ------
+    InputError
+        A value breaks its rule.
+
+    Examples
+    --------
+    >>> jobs = TaskStream(("careful", "hasty"), loyalty=1.0, n_contexts=1)
+    >>> len({jobs.draw(number).hidden_type for number in range(20)})
+    1
+    """
+
+    types: tuple[str, ...]
+    seed: int = 0
+    n_contexts: int = 4
+    zipf: float = 1.0
+    loyalty: float = 0.8
+    arrivals: Mapping[str, int] = field(default_factory=dict)
+    changes: tuple[int, ...] = ()
+
+    def __post_init__(self) -> None:
+        if self.n_contexts < 1 or not self.zipf >= 0 or not 0 <= self.loyalty <= 1:
+            raise InputError(
+                "n_contexts must be at least 1, zipf at least 0 and loyalty in [0, 1], got "
+                f"{self.n_contexts}, {self.zipf} and {self.loyalty}"
+            )
+        for name, first in self.arrivals.items():
+            if name not in self.types or first < 1:
+                raise InputError(f"arrivals must name a type and a task from 1, got {name!r}: {first}")
+        if len(set(self.arrivals.values())) < len(self.arrivals):
+            raise InputError(f"arrivals must be at different tasks, got {dict(self.arrivals)}")
+        if len(set(self.types)) < len(self.types) or len(self.types) <= len(self.arrivals):
+            raise InputError(f"types must differ and some must be there from the start, got {self.types}")
+
+    def present(self, number: int) -> tuple[str, ...]:
+        """Types that task `number` may have."""
+        return tuple(name for name in self.types if self.arrivals.get(name, 0) <= number)
+
+    def usual_type(self, context: int, number: int) -> str:
+        """The usual type of a context at the time of a task."""
+        changes = [change for change in self.changes if change <= number]
+        born = tuple(name for name in self.types if self.arrivals.get(name, 0) <= max(changes, default=0))
+        rng = stream(self.seed, "task stream", "usual types", len(changes))
+        # Deal all types out before any is dealt again.
+        deals = [rng.permutation(len(born)) for _ in range(-(-self.n_contexts // len(born)))]
+        return born[int(np.concatenate(deals)[context])]
+
+    def draw(self, number: int) -> DrawnTask:
+        """Task `number`, from 0."""
+        rng = stream(self.seed, "task stream", "task", number)
+        weights = np.arange(1, self.n_contexts + 1) ** -float(self.zipf)
+        context = int(rng.choice(self.n_contexts, p=weights / weights.sum()))
+        present, loyal = self.present(number), rng.random() < self.loyalty
+        drawn = present[int(rng.integers(len(present)))]
+        arriving = next((name for name, first in self.arrivals.items() if first == number), None)
+        usual = self.usual_type(context, number) if loyal else drawn
+        return DrawnTask(number, context, arriving or usual)

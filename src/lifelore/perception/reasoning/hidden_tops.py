@@ -1,0 +1,115 @@
+"""Objects whose top the camera did not fully see: something may rest there unseen.
+
+The camera sees a place if no point of another object lies on the line of sight before it. Places are taken on a
+grid over the highest points of an object, a little above them, with a margin around for the part of the top that
+is itself out of sight. The table, and points of no object, hide nothing.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+
+CELL = 0.01
+"""Metres between two places; smaller finds smaller hidden parts and costs time with its square."""
+TOP = 0.015
+"""Metres below an object's highest points that still belong to its top: the noise of a Kinect on a table."""
+ABOVE = 0.01
+"""Metres above the top at which places are looked at; half the height of a small object."""
+BEFORE = 0.02
+"""Metres by which a point must lie before a place to hide it; more than the noise of the depth."""
+PIXEL = 0.004
+"""Radians; above the angle between neighbouring points of a Kinect (0.002), so that a surface has no gaps."""
+LEAST_HIDDEN = 6
+"""Hidden places (6 cm²) from which a small object could lie there unseen; fewer are noise at edges."""
+
+
+def hidden_tops(cloud: LabelledCloud) -> tuple[int, ...]:
+    """The objects whose top is partly hidden by other objects, ascending; none without a camera.
+
+    A camera below a top does not see it at all, but such a position is often a placeholder, as in the header of a
+    cloud that was moved to another frame: these tops do not count.
+
+    Parameters
+    ----------
+    cloud : LabelledCloud
+        In the scene frame, z up.
+    """
+    if cloud.camera is None or not cloud.objects:
+        return ()
+    is_object = cloud.labels > TABLE
+    image = _Image(cloud.points[is_object] - cloud.camera, cloud.labels[is_object])
+    places = {label: _places_over(cloud.of(label)) - cloud.camera for label in cloud.objects}
+    return tuple(label for label, rays in places.items() if image.n_hidden(rays, label) >= LEAST_HIDDEN)
+
+
+class _Image:
+    """The nearest object in each pixel and its distance, and the distance of the nearest other object.
+
+    Parameters
+    ----------
+    rays : (n, 3) float64
+        Points from the camera, metres, n ≥ 1.
+    labels : (n,) int64
+        The object of each.
+    """
+
+    def __init__(self, rays: NDArray[np.float64], labels: NDArray[np.int64]) -> None:
+        pixels = _pixels(rays)
+        self._low = pixels.min(axis=0)
+        columns, rows = (pixels.max(axis=0) - self._low + 1).tolist()
+        self._shape = columns, rows
+        at, depths = self._numbers(pixels - self._low), _lengths(rays)
+        self._first = np.full(int(np.prod(self._shape)), np.inf)
+        self._second = self._first.copy()
+        self._nearest = np.zeros(len(self._first), np.int64)
+        np.minimum.at(self._first, at, depths)
+        wins = depths == self._first[at]
+        self._nearest[at[wins]] = labels[wins]
+        other = labels != self._nearest[at]
+        np.minimum.at(self._second, at[other], depths[other])
+
+    def n_hidden(self, rays: NDArray[np.float64], label: int) -> int:
+        """Number of places below the camera before which another object than `label` lies; rays are ``(m, 3)``."""
+        pixels = _pixels(rays) - self._low
+        inside = ((pixels >= 0) & (pixels < self._shape)).all(axis=1) & (rays[:, 2] < 0)
+        at = self._numbers(pixels[inside])
+        depths = np.where(self._nearest[at] == label, self._second[at], self._first[at])
+        return int((depths < _lengths(rays[inside]) - BEFORE).sum())
+
+    def _numbers(self, pixels: NDArray[np.int64]) -> NDArray[np.int64]:
+        return pixels[:, 0] * self._shape[1] + pixels[:, 1]
+
+
+def _places_over(points: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Places above an object's top, ``(n, 3)``: filled between its highest points, and one cell around."""
+    height = float(np.quantile(points[:, 2], 0.98))
+    top = points[points[:, 2] >= height - TOP, :2]
+    cells = np.unique(np.floor(top / CELL).astype(np.int64), axis=0)
+    low = cells.min(axis=0) - 1
+    grid = np.zeros(cells.max(axis=0) - low + 2, bool)
+    grid[tuple((cells - low).T)] = True
+    filled = _between(grid) | _between(grid.T).T
+    wide = filled.copy()
+    for axis in (0, 1):
+        wide |= np.roll(wide, 1, axis) | np.roll(wide, -1, axis)
+    places = (np.argwhere(wide) + low + 0.5) * CELL
+    return np.column_stack([places, np.full(len(places), height + ABOVE)])
+
+
+def _between(grid: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Cells with a filled cell before and behind them in their row, filled ones included."""
+    before = np.maximum.accumulate(grid, axis=1)
+    behind = np.maximum.accumulate(grid[:, ::-1], axis=1)[:, ::-1]
+    return before & behind
+
+
+def _pixels(rays: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Column and row of the pixel that each ray falls into, ``(n, 2)``."""
+    turn = np.arctan2(rays[:, 1], rays[:, 0])
+    rise = np.arctan2(rays[:, 2], np.hypot(rays[:, 0], rays[:, 1]))
+    return np.floor(np.column_stack([turn, rise]) / PIXEL).astype(np.int64)
+
+
+def _lengths(rays: NDArray[np.float64]) -> NDArray[np.float64]:
+    return np.sqrt(np.einsum("ij,ij->i", rays, rays))

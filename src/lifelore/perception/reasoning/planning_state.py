@@ -1,0 +1,158 @@
+"""`PlanningState`: the facts of a scene that are sure enough to plan with, and those that stay unknown.
+
+A pair's label is split into what a planner needs: *both* means *on* and *adjacent*, so the probability that a
+rests on b is the sum of those of *on* and *both*. The probability of *clear(b)* is that no object rests on b.
+Pairs count as independent. A fact of the most likely scene is stated if its probability is at least a threshold;
+otherwise it is unknown. *clear(b)* is also unknown if other objects hide a part of b's top from the camera.
+
+For a planner, a fact that is not stated is false. So an object on which something may rest unseen is marked:
+nothing is planned on it or with it, even when everything known has been taken off it.
+"""
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import prod
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.relations import ADJACENT, BOTH, CORE_RELATIONS, ON
+from lifelore.perception.reasoning.fact import Fact
+from lifelore.perception.reasoning.hidden_tops import hidden_tops
+from lifelore.perception.reasoning.label_distribution import LabelDistribution, label_distributions
+from lifelore.perception.reasoning.scene_logic import alternatives
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.scene import Scene
+
+CLEAR = "clear"
+PLAN_CONFIDENCE = 0.6
+"""Default threshold of planning problems: the smallest at which 95 % of the plans are valid in simulation (`bench
+plans`). A higher value gives fewer plans, of which more are valid."""
+DOUBTFUL, HIDDEN = "doubtful", "hidden"
+"""Reasons why a fact is unknown: its probability is below the threshold, or the place is out of sight."""
+
+
+@dataclass(frozen=True, order=True)
+class UnknownFact:
+    """A fact of the most likely scene that is not stated, its probability in [0, 1], and the reason.
+
+    Examples
+    --------
+    >>> str(UnknownFact(Fact("clear", (3,)), 0.75, HIDDEN))
+    'clear(3), probability 0.75, hidden'
+    """
+
+    fact: Fact
+    probability: float
+    reason: str
+
+    def __str__(self) -> str:
+        return f"{self.fact}, probability {self.probability:.2f}, {self.reason}"
+
+
+@dataclass(frozen=True)
+class PlanningState:
+    """The objects of a scene, and its facts to plan with.
+
+    Parameters
+    ----------
+    objects : tuple of int
+        Ascending.
+    stated : tuple of Fact
+        ``on(a, b)``, ``on(a, table)``, ``adjacent(a, b)`` with a < b, ``clear(a)``, and words of a user; sorted.
+    unknown : tuple of UnknownFact
+        Sorted.
+    may_be_covered : tuple of int
+        Objects on which something may rest beside what is stated, ascending.
+    """
+
+    objects: tuple[int, ...]
+    stated: tuple[Fact, ...]
+    unknown: tuple[UnknownFact, ...] = ()
+    may_be_covered: tuple[int, ...] = ()
+
+
+def scene_state(scene: Scene, least: float = 0.0) -> PlanningState:
+    """The state of a perceived scene at a threshold in [0, 1]; hidden tops are unknown at any threshold.
+
+    Raises
+    ------
+    InputError
+        The threshold is outside [0, 1].
+    """
+    distributions = label_distributions(alternatives(scene.beliefs)) if scene.beliefs else None
+    return planning_state(scene.relations, scene.objects, least, distributions, hidden_tops(scene.cloud))
+
+
+def planning_state(
+    relations: Iterable[Relation],
+    objects: Iterable[int] = (),
+    least: float = 0.0,
+    distributions: Sequence[LabelDistribution] | None = None,
+    hidden: Iterable[int] = (),
+) -> PlanningState:
+    """The state that relations give.
+
+    Parameters
+    ----------
+    relations : iterable of Relation
+        The most likely scene, and words of a user, whose confidence is their probability.
+    objects : iterable of int
+        Objects beside those the relations name.
+    least : float
+        Least probability of a stated fact, in [0, 1]; at 0 all are stated.
+    distributions : sequence of LabelDistribution, optional
+        Probabilities of all labels of each near pair; default: from the confidences of the relations.
+    hidden : iterable of int
+        Objects whose top is partly hidden.
+
+    Raises
+    ------
+    InputError
+        The threshold is outside [0, 1].
+    """
+    if not 0 <= least <= 1:
+        raise InputError(f"min_confidence must be a probability from 0 to 1, got {least!r}")
+    relations = tuple(relations)
+    things = tuple(sorted({*objects, *(end for r in relations for end in (r.a, r.b))} - {TABLE}))
+    known = label_distributions(relations) if distributions is None else distributions
+    by_pair = {frozenset(one.pair): one for one in known}
+    likely = _likely_facts(relations, by_pair)
+    stated = {fact for fact, probability in likely.items() if probability >= least}
+    unknown = {UnknownFact(fact, likely[fact], DOUBTFUL) for fact in set(likely) - stated}
+    covered = []
+    for thing in things:
+        on_it = {fact.arguments[0] for fact in likely if fact.name == ON and fact.arguments[1] == thing}
+        stated_on_it = {a for a in on_it if Fact(ON, (a, thing)) in stated}
+        free = prod(1 - one.carried(x) for one in known for x in _others(one, thing) if x not in stated_on_it)
+        # At threshold 0 the most likely scene counts as it is.
+        doubtful = least > 0 and (on_it != stated_on_it or free < least)
+        unseen = thing in set(hidden) and not on_it
+        if doubtful or unseen:
+            covered.append(thing)
+        if not on_it and (doubtful or unseen):
+            unknown.add(UnknownFact(Fact(CLEAR, (thing,)), free, DOUBTFUL if doubtful else HIDDEN))
+        elif not on_it:
+            stated.add(Fact(CLEAR, (thing,)))
+    return PlanningState(things, tuple(sorted(stated)), tuple(sorted(unknown)), tuple(covered))
+
+
+def _others(one: LabelDistribution, thing: int) -> list[int]:
+    """The other object of a pair that this object is part of; none for the table and other pairs."""
+    return [x for x in one.pair if x not in (thing, TABLE)] if thing in one.pair else []
+
+
+def _likely_facts(
+    relations: Iterable[Relation], by_pair: dict[frozenset[int], LabelDistribution]
+) -> dict[Fact, float]:
+    """*on*, *adjacent* and words of the most likely scene with their probabilities."""
+    likely: dict[Fact, float] = {}
+    for r in relations:
+        one = by_pair.get(frozenset((r.a, r.b)))
+        if r.relation in (ON, BOTH):
+            likely[Fact(ON, (r.a, r.b))] = r.confidence if one is None else one.carried(r.a)
+        if r.relation in (ADJACENT, BOTH) and TABLE not in (r.a, r.b):
+            fact = Fact(ADJACENT, (min(r.a, r.b), max(r.a, r.b)))
+            likely[fact] = r.confidence if one is None else one.beside
+        if r.relation not in CORE_RELATIONS:
+            likely[Fact(r.relation, (r.a, r.b))] = r.confidence
+    return likely

@@ -1,0 +1,57 @@
+"""Orders of hidden customers: what is shown, what pays, and the best return."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.streams import stream
+from lifelore.domains.factory.customer_orders import CUSTOMERS, CustomerOrder, FactoryCustomers
+from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.domains.task_stream import LivedTask, TaskStream
+
+LAYOUT = modified_factory(stream(0, "test"))
+
+
+def test_the_optimal_policy_has_the_best_return():
+    order = CustomerOrder(LAYOUT, "lamps")
+    assert isinstance(order, LivedTask)
+    q = LAYOUT.task(CUSTOMERS["lamps"]).optimal_q()
+    observation, total, discount = order.reset(), 0.0, 1.0
+    while not order.ended:
+        observation, reward, _ = order.step(int(q[order.copy_state()[0]].argmax()))
+        total, discount = total + discount * reward, discount * LAYOUT.floor.discount
+    assert observation.assembled == frozenset(CUSTOMERS["lamps"])
+    assert total == pytest.approx(order.best_return, abs=1e-6)
+
+
+def test_the_list_shows_in_what_succeeds_alone():
+    seen = []
+    for customer in ("bicycles", "chairs"):
+        order = CustomerOrder(LAYOUT, customer)
+        order.restore((int(LAYOUT.procure_at[4]), 0, False))
+        seen.append((order.step(4)[1], order.copy_state()[0] // LAYOUT.n_cells > 0))
+    assert seen == [(-10.0, False), (10.0, True)]
+    assert CustomerOrder(LAYOUT, "bicycles").reset() == CustomerOrder(LAYOUT, "chairs").reset()
+
+
+def test_orders_depend_on_their_number_alone():
+    orders = FactoryCustomers(TaskStream(tuple(CUSTOMERS)), 3)
+    (drawn, one), (again, other) = orders.task(5), orders.task(5)
+    assert drawn == again
+    assert one.factory.fingerprint == other.factory.fingerprint
+    assert one.factory.fingerprint != orders.task(6)[1].factory.fingerprint
+    assert pickle.loads(pickle.dumps(one.copy_state())) == other.copy_state()
+
+
+def test_mistakes_are_refused():
+    with pytest.raises(NotFoundError, match="customer must be one of"):
+        CustomerOrder(LAYOUT, "cars")
+    order = CustomerOrder(LAYOUT, "carts")
+    with pytest.raises(InputError, match=r"action must lie in \[0, 6\)"):
+        order.step(6)
+    order.restore((0, 1999, False))
+    assert order.step(0)[2]
+    assert not order.available().any()
+    assert np.all(CustomerOrder(LAYOUT, "carts").available())
