@@ -55,8 +55,8 @@ def draw(result: Mapping) -> Figure:
         draw_curves(
             axes, tasks, series, looks=looks, title=title.format(**settings), xlabel="tasks lived", legend=False
         )
-        axes.set_ylim(0, None)
         axes.grid(axis="y", color=LIGHT)
+    panels[0].set_ylim(0, None)
     panels[0].set_ylabel(f"regret of a task's first {settings['early']} episodes")
     panels[0].legend(loc="lower left")
     figure.suptitle(f"Means of {settings['lives']} lives with 95 % intervals", x=0.01, ha="left")
