@@ -75,7 +75,7 @@ def test_a_raw_frame_out_of_a_rosbag(shelf, tmp_path):
     from lifelore.bridges.rosbag_cloud import read_bag_cloud
 
     cloud = read_bag_cloud(recorded(tmp_path / "room", shelf.points.astype(np.float32)))
-    assert cloud.shape == (480, 640)
+    assert cloud.grid == (480, 640)
     np.testing.assert_array_equal(cloud.points, shelf.points.astype(np.float32))
     scene = segmented_scene(cloud, up=shelf.up)
     assert scene.table.plane.normal @ shelf.up > np.cos(np.radians(2))

@@ -86,7 +86,7 @@ def test_what_a_model_says_with_symmetric_words_both_ways():
         Relation(2, 3, "dwarfs", 0.9, 0.0),
         Relation(2, 3, "near", 0.9, 0.0),
     )
-    model = SimpleNamespace(predict_pairs=lambda scene: said, symmetric=frozenset({"dwarfs", "near"}))
+    model = SimpleNamespace(predict_pairs=lambda scene: said, symmetric_=frozenset({"dwarfs", "near"}))
     found = predicted(model, ROW)  # type: ignore[arg-type]
     assert set(found) == set(WORDS)
     assert found["under"] == {(3, 2)}

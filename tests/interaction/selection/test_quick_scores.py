@@ -95,7 +95,8 @@ def test_rules_choose_as_by_exact_scores_in_float32_and_by_tangents(seed, mass):
         for rule, scores in zip(rules, exact, strict=True):
             found = rule.scores(again, belief)
             assert_same_choice(found, scores)
-            assert (found >= scores - 1e-9 * np.abs(scores).max()).all()
+            # A ratio to a gain of 1e-8 nats has the rounding of that difference of entropies.
+            assert (found >= scores - 1e-9 * np.abs(scores).max() - 1e-7 * np.abs(scores)).all()
 
 
 def assert_same_choice(found, exact):

@@ -5,6 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.region import Region, inside
 from lifelore.perception.segmentation.table_frame import segmented_scene
 
@@ -63,6 +64,7 @@ def test_too_many_objects_stop_with_one_line():
     block = rng.uniform([0, 0, 0], [0.04, 0.04, 0.06], (500, 3))
     blocks = [block + np.array([0.05 + 0.1 * i, 0.05 + 0.1 * j, 0]) for i in range(4) for j in range(3)]
     cloud = PointCloud(np.concatenate([table, *blocks]))
-    assert len(segmented_scene(cloud, up="z").cloud.objects) == 12
+    clusters = SegmentationSettings(method="clusters")
+    assert len(segmented_scene(cloud, "z", clusters).cloud.objects) == 12
     with pytest.raises(InputError, match=r"cut into 12 objects, but at most 11 .*--roi, --max-range"):
-        segmented_scene(cloud, up="z", region=Region(max_objects=11))
+        segmented_scene(cloud, "z", clusters, Region(max_objects=11))

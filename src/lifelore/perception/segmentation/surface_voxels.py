@@ -14,6 +14,10 @@ _NEIGHBOURS = 24
 """Greatest number of voxels that a normal is fitted to; more is slower, and no more accurate."""
 _SUPPORT = 3.6
 """Voxel sizes: radius of the points that a normal is fitted to. Less is noisier, more rounds off creases."""
+DENSE = 1.5
+"""Least mean number of points in a voxel; below, a surface has holes between its voxels, and they grow."""
+COARSER, COARSEST = 1.25, 3.0
+"""Step and limit of that growth, in sizes asked for."""
 _LEVEL = 0.5
 """Without a camera, a normal steeper than this points up; the others point away from the middle of their
 surface."""
@@ -45,14 +49,17 @@ class SurfaceVoxels:
 def surface_voxels(
     points: NDArray[np.float64], camera: NDArray[np.float64] | None, size: float, most: int
 ) -> SurfaceVoxels:
-    """The voxels of points (n, 3), n ≥ 1; `size` is doubled until there are at most `most`.
+    """The voxels of points (n, 3), n ≥ 1; `size` grows until they are dense, and at most `most`.
 
     Without a `camera`, level surfaces face upwards and the others away from the middle of their connected surface.
     """
     from scipy.spatial import KDTree
 
     unlabelled = LabelledCloud(points, np.zeros(len(points), np.int64))
-    thin = voxelised(unlabelled, size)
+    thin, limit = voxelised(unlabelled, size), COARSEST * size
+    while len(points) < DENSE * len(thin.counts) and COARSER * size <= limit:
+        size *= COARSER
+        thin = voxelised(unlabelled, size)
     while len(thin.counts) > most:
         size *= 2
         thin = voxelised(unlabelled, size)

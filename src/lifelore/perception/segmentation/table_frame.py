@@ -106,7 +106,7 @@ def segmented_scene(
         scene = LabelledCloud(scene_points, labels, cloud.colours, camera, others)
         return SegmentedScene(scene, False, search.table, search.tilted)
     cut = _cut(points, scene_points, cloud, camera, search.table, segmentation or SegmentationSettings())
-    _check_number(cut.labels, region)
+    _check_number(cut.labels, region, search)
     scene = LabelledCloud(scene_points, cut.labels, cloud.colours, camera, others)
     return SegmentedScene(scene, True, search.table, search.tilted, cut.confidence)
 
@@ -118,12 +118,13 @@ def _check_camera(camera: NDArray[np.float64] | None) -> None:
         )
 
 
-def _check_number(labels: NDArray[np.int64], region: Region) -> None:
+def _check_number(labels: NDArray[np.int64], region: Region, search: Search) -> None:
     n = len(np.unique(labels[labels > TABLE]))
     if n > region.max_objects:
+        hint = "" if search.table is not None else "check up, which no plane is level with (--up); "
         raise InputError(
-            f"the cloud was cut into {n} objects, but at most {region.max_objects} are perceived; crop it to the"
-            " table (--roi, --max-range), or give labels"
+            f"the cloud was cut into {n} objects, but at most {region.max_objects} are perceived; {hint}crop it to"
+            " the table (--roi, --max-range), or give labels"
         )
 
 

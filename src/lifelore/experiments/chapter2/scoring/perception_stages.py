@@ -47,8 +47,6 @@ def timed_stages(
     logic = timed(
         STAGES[5], lambda: most_likely_scene(alternatives(beliefs), cloud.objects, beside=pairs_beside(seen))
     )
-    timed(
-        STAGES[6],
-        lambda: scene_document(Scene(cloud, found, logic.relations).without_unrelated_contacts, seconds=0.0),
-    )
+    scene = Scene(cloud, found, logic.relations, logic.optimal, beliefs)
+    timed(STAGES[6], lambda: scene_document(scene.without_unrelated_contacts, seconds=0.0))
     return seconds
