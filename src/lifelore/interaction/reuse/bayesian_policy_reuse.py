@@ -85,7 +85,7 @@ class BayesianPolicyReuse:
     Attributes
     ----------
     novelty : UnknownType or None
-        Its `probability` is the probability that no known type fits; None without the argument.
+        Its attribute ``probability`` is the probability that no known type fits; None without the argument.
 
     Raises
     ------
