@@ -1,6 +1,7 @@
 """`LabelledCloud`: points with the object that each belongs to, in the scene frame."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +22,7 @@ class LabelledCloud:
     points : (n, 3) float64
         Metres, finite, z up; z = 0 at the table where one is known.
     labels : (n,) int64
-        `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and above).
+        Not changed afterwards. `UNLABELLED` (0), `TABLE` (1), or the number of an object (2 and above).
     colours : (n, 3) uint8, optional
     camera : (3,) float64, optional
         Position of the camera, in the same frame.
@@ -57,7 +58,7 @@ class LabelledCloud:
     @property
     def objects(self) -> tuple[int, ...]:
         """Numbers of the objects that have points, ascending; the table is not among them."""
-        return tuple(int(label) for label in np.unique(self.labels) if label > TABLE)
+        return tuple(label for label in self._rows if label > TABLE)
 
     @property
     def has_table(self) -> bool:
@@ -66,4 +67,14 @@ class LabelledCloud:
 
     def of(self, label: int) -> NDArray[np.float64]:
         """The points of one object, shape ``(m, 3)``."""
-        return self.points[self.labels == label]
+        rows = self._rows.get(label)
+        return self.points[:0] if rows is None else self.points[rows]
+
+    @cached_property
+    def _rows(self) -> dict[int, NDArray[np.int64]]:
+        """The points of each label, ascending, in the order of the cloud."""
+        # Short integers are sorted by radix.
+        short = self.labels.astype(np.uint16) if len(self.labels) and self.labels.max() < 1 << 16 else self.labels
+        order = np.argsort(short, kind="stable")
+        found, first = np.unique(short[order], return_index=True)
+        return dict(zip(found.tolist(), np.split(order, first[1:]), strict=True)) if len(found) else {}
