@@ -194,3 +194,18 @@ def test_what_ten_runs_a_pair_give_in_other_worlds_is_what_the_claims_measured()
         assert numbers == pytest.approx(found, abs=near), line
     assert f"{100 * pacman['reached_stretch_bpr']['value']:.0f} % too" in PAGE
     assert f"as with exact ones ({golf['error_shot_2_exact']['value']:.1f})" in PAGE
+
+
+def test_the_default_rule_with_uncertain_models_is_as_the_claim_measured():
+    found = json.loads((RESULTS / "C4.17" / "result.json").read_text(encoding="utf-8"))["measured"]
+    text = " ".join(PAGE.split("- **With uncertain models**")[1].split("The decision stands")[0].split())
+
+    def told(name: str, sign: int = 1) -> str:
+        low, high = sorted(sign * end for end in found[name]["ci95"])
+        return f"{sign * found[name]['value']:.2f} [{low:.2f} {high:.2f}]"
+
+    assert told("regret_IDS_uncertain") in text
+    assert told("regret_EI_pay_uncertain") in text
+    assert told("regret_IDS_uncertain_minus_plug_in", -1) in text
+    for rule in ("IDS", "EI_pay"):
+        assert f"{100 * found[f'stuck_above_least_{rule}_uncertain']['value']:.0f} %" in text
