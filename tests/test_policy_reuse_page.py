@@ -177,17 +177,21 @@ def test_what_ten_runs_a_pair_give_is_what_the_claims_measured():
 
 
 def test_what_ten_runs_a_pair_give_in_other_worlds_is_what_the_claims_measured():
-    golf, pacman = (
+    golf, phone, pacman = (
         json.loads((RESULTS / claim / "result.json").read_text(encoding="utf-8"))["measured"]
-        for claim in ("C4.2", "C4.4")
+        for claim in ("C4.2", "C4.3", "C4.4")
     )
     measured = [
         (golf["error_shot_2_learnt"], golf["error_shot_2_uncertain"], 1, 0.051),
         (pacman["reached_bpr"], pacman["reached_bpr_doubting"], 100, 0.51),
         (pacman["median_needed_bpr"], pacman["median_needed_bpr_doubting"], 1, 0.01),
         (pacman["regret_bpr"], pacman["regret_bpr_doubting"], 1, 0.51),
+        *(
+            (phone[f"zero_at_end_{signal}_learnt"], phone[f"zero_at_end_{signal}_uncertain"], 100, 0.051)
+            for signal in ("u", "sar", "sas")
+        ),
     ]
-    told = PAGE.split("| world | plug-in | uncertain | goal |")[1].splitlines()[2:6]
+    told = PAGE.split("| world | plug-in | uncertain | goal |")[1].splitlines()[2:9]
     for line, (plug_in, uncertain, factor, near) in zip(told, measured, strict=True):
         numbers = [float(cell.strip(" %").replace(",", "")) for cell in line.strip("|").split("|")[1:3]]
         found = [factor * measure["value"] for measure in (plug_in, uncertain)]

@@ -6,6 +6,7 @@ import numpy as np
 
 from lifelore.experiments.chapter4.c4_03_telephone_signals.run import SIGNALS
 from lifelore.experiments.chapter4.reuse.looks import lines_of, look_of
+from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
@@ -35,19 +36,26 @@ EDGES = {
 
 def draw(result: Mapping) -> Figure:
     settings = result["settings"]
-    table = ResultsTable(result["rows"], ("reading", "models", "samples", "signal")).select(reading="A")
-    kinds = {"exact": None, "learnt": settings["samples"]}
-    words = {"exact": "exact models", "learnt": f"models learnt from {settings['samples']} calls a pair"}
+    keys = ("reading", "models", "model", "samples", "signal")
+    table = ResultsTable(result["rows"], keys).select(reading="A")
+    few = settings["samples"]
+    kinds = {EXACT: None, LEARNT: few}
     n = settings["default_models"]
+    words = {
+        EXACT: f"{n} language models, exact models",
+        LEARNT: f"models learnt from {few} calls a pair",
+        UNCERTAIN: "the same, known to be uncertain",
+    }
     with house_style():
-        figure = new_figure(11.2, 6.6)
-        top, bottom = figure.subplots(2, 2)
+        figure = new_figure(12.4, 6.6)
+        grid = figure.add_gridspec(2, 6)
+        top = [figure.add_subplot(grid[0, 3 * i : 3 * i + 3]) for i in range(2)]
+        bottom = [figure.add_subplot(grid[1, 2 * i : 2 * i + 2]) for i in range(3)]
         draw_call_graph(top[0], EDGES)
         top[0].set_title("A call (reading A)")
         _draw_sums(top[1], table, settings, kinds)
-        for axes, (kind, samples) in zip(bottom, kinds.items(), strict=True):
-            own = table.select(models=n, samples=samples)
-            _draw_regret(axes, own, f"{n} language models, {words[kind]}")
+        for axes, (kind, title) in zip(bottom, words.items(), strict=True):
+            _draw_regret(axes, table.select(models=n, model=kind, samples=kinds.get(kind, few)), title)
         bottom[0].set_ylabel("regret of a call: mean, and + deviation")
         figure.legend(*bottom[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
     return figure
@@ -72,7 +80,7 @@ def _draw_sums(axes: Axes, table: ResultsTable, settings: Mapping, kinds: Mappin
         for j, (kind, samples) in enumerate(kinds.items()):
             places[2.4 * i + j] = f"{n}\n{kind}"
             for k, signal in enumerate(SIGNALS):
-                row = table.record(models=n, samples=samples, signal=signal)
+                row = table.record(models=n, model=kind, samples=samples, signal=signal)
                 x, mean, colour = 2.4 * i + j + 0.25 * (k - 1), row["cumulative"]["value"], look_of(signal)[0]
                 axes.plot([x, x], [mean, mean + row["deviation_of_sum"]], color=colour, lw=1.4)
                 axes.plot([x], [mean], "o", color=colour, ms=4.5)
