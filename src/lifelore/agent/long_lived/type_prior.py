@@ -133,8 +133,9 @@ class TypePrior:
     def weights(self, date: int) -> dict[tuple[float, float], float]:
         """Half-life in dates and weight of all contexts in tasks, to the probability that they predict best."""
         self._read_until(date)
+        weights = self._weights()
         return {
-            (half_life, shared): float(self._weights()[i, j])
+            (half_life, shared): float(weights[i, j])
             for i, half_life in enumerate(self.half_lives)
             for j, shared in enumerate(SHARED)
         }
@@ -156,8 +157,8 @@ class TypePrior:
         total = in_context.sum(axis=-1, keepdims=True)
         found = np.empty((len(contexts), len(self.half_lives), len(SHARED), self.n_types))
         for place, shared in enumerate(SHARED):
-            told = 0.0 if np.isinf(shared) else 1 / (total + shared)
-            found[:, :, place] = told * in_context + (1 - told * total) * anywhere
+            weight = 0.0 if np.isinf(shared) else 1 / (total + shared)
+            found[:, :, place] = weight * in_context + (1 - weight * total) * anywhere
         return found
 
     # ---- the past, decayed -----------------------------------------------------------------------
