@@ -98,10 +98,23 @@ class TypePrior:
         belief = np.asarray(belief, np.float64)
         if belief.shape != (self.n_types,) or not ((belief >= 0).all() and abs(belief.sum() - 1) <= 1e-6):
             raise InputError(f"belief must be ({self.n_types},), at least 0, and sum to 1, got {belief!r:.80}")
-        held = np.flatnonzero(belief >= LEAST_BELIEF)
+        self.count(context, np.where(belief >= LEAST_BELIEF, belief, 0.0), date)
+
+    def count(self, context: int, counts: ArrayLike, date: int) -> None:
+        """Count beliefs of several tasks of a context and date, already added up, (n_types,).
+
+        Raises
+        ------
+        InputError
+            The counts are not of the types, or below 0.
+        """
+        counts = np.asarray(counts, np.float64)
+        if counts.shape != (self.n_types,) or not (counts >= 0).all():
+            raise InputError(f"counts must be ({self.n_types},) and at least 0, got {counts!r:.80}")
+        held = np.flatnonzero(counts > 0)
         if date not in self.dates:
             self.dates[date] = ActionPrior(self.n_types, key=self.key)
-        self.dates[date].update(np.full(len(held), context), np.eye(self.n_types, dtype=bool)[held], belief[held])
+        self.dates[date].update(np.full(len(held), context), np.eye(self.n_types, dtype=bool)[held], counts[held])
         if date < self._next_date:
             self._forget_past()
 

@@ -6,8 +6,10 @@ remembers what every sequence of actions did and serves all users.
 """
 
 import heapq
+from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import count
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,7 +88,9 @@ class OutcomeTree:
         self.tray, self.gripper = tray, gripper
         # Outcomes do not depend on the user: any serves.
         self._job = TabletopJob(tray, JobType(User("nobody", 0.0, 0.0, 0.0), gripper))
+        self.n_actions = self._job.n_actions
         self._nodes: dict[Actions, _Node] = {(): self._node(None)}
+        self._seen: dict[tuple[Actions, str], Any] = {}
 
     def _node(self, events: Events | None) -> _Node:
         available = tuple(np.flatnonzero(self._job.available()).tolist())
@@ -100,6 +104,13 @@ class OutcomeTree:
             observation, _, _ = self._job.step(actions[-1])
             self._nodes[actions] = self._node(observation.last)
         return self._nodes[actions]
+
+    def seen(self, actions: Actions, purpose: str, look: Callable[[TabletopJob], Any]) -> Any:
+        """What `look` makes of the job after a sequence of actions; computed once for each purpose."""
+        if (actions, purpose) not in self._seen:
+            self._job.restore(self.after(actions).state)
+            self._seen[actions, purpose] = look(self._job)
+        return self._seen[actions, purpose]
 
     def __len__(self) -> int:
         return len(self._nodes)

@@ -1,0 +1,207 @@
+"""The types that the agent has met: counts of effects by cause, for each; additive, so that fleets can share them.
+
+The law of a cause under type i, after the counts c of the present task:
+
+    group(e)  ∝ Σ_j n_j(e), over all causes of the group, + α₀ p₀(e)
+    pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
+    P_i(e)    ∝ n_i(e) + κ pooled(e) + w c(e)
+
+An unknown type has n = 0: it behaves as types usually do until its own task shows otherwise.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.long_lived.task_family import TaskFamily
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
+from lifelore.interaction.outcomes.special_functions import gammaln
+from lifelore.interaction.signals.category_signal import CategorySignal
+
+Array = NDArray[np.float64]
+Effects = Sequence[tuple[int, int]]
+
+FIRST = 0.5
+"""Weight α₀ of the effects that a family calls possible, in observations."""
+POOLED = 1.0
+"""Weight κ of what all types have in common, in observations; more lets a type learn more slowly."""
+OWN = 3.0
+"""Weight w of an observation of the present task: it is about this very scene."""
+
+
+def count_effects(counts: ActionPrior, effects: Effects) -> None:
+    """Add the effects of a task to the counts of a type; each cause counts once, whatever its number of repeats.
+
+    The episodes of a task are not independent: the same scene answers the same act alike.
+    """
+    if effects:
+        causes, found = np.array(effects, np.int64).T
+        _, place, repeats = np.unique(causes, return_inverse=True, return_counts=True)
+        best = np.zeros((len(causes), counts.n_actions), np.bool_)
+        best[np.arange(len(causes)), found] = True
+        counts.update(causes, best, 1 / repeats[place])
+
+
+@dataclass(eq=False)
+class KnownType:
+    """A type that was met.
+
+    Parameters
+    ----------
+    name : str
+        Unique in a fleet: ``"robot.number"``; merged types have several names.
+    effects : ActionPrior
+        Counts of effects by cause.
+    n_tasks : int
+        Number of tasks behind the counts.
+    """
+
+    name: str
+    effects: ActionPrior
+    n_tasks: int = 0
+
+
+@dataclass(eq=False)
+class KnownTypes:
+    """The known types of a family, and the laws of their effects.
+
+    Parameters
+    ----------
+    family : TaskFamily
+    types : list of KnownType
+    """
+
+    family: TaskFamily
+    types: list[KnownType] = field(default_factory=list)
+
+    def __len__(self) -> int:
+        return len(self.types)
+
+    @cached_property
+    def counts(self) -> Array:
+        """(n_types, n_causes, n_effects) counts."""
+        causes = np.arange(self.family.n_causes)
+        rows = [known.effects.counts(causes) for known in self.types]
+        found = np.array(rows).reshape(len(rows), self.family.n_causes, self.family.n_effects)
+        return self.family.smoothed(found)
+
+    @cached_property
+    def pooled(self) -> Array:
+        """(n_causes, n_effects) the law that all types have in common."""
+        counts, family = self.counts.sum(axis=0), self.family
+        groups = np.zeros((family.groups.max() + 1, family.n_effects))
+        np.add.at(groups, family.groups, counts)
+        group = groups[family.groups] + FIRST * family.possible
+        total = counts + FIRST * group / group.sum(axis=1, keepdims=True)
+        return total / total.sum(axis=1, keepdims=True)
+
+    def tried(self, own: Array) -> NDArray[np.bool_]:
+        """(n_causes,) whether anything is known of each cause or its group, after the task's own counts."""
+        seen = self.counts.any(axis=(0, 2)) | own.any(axis=1)
+        groups = self.family.groups
+        return np.isin(groups, groups[seen])
+
+    def laws(self, own: Array, generator: np.random.Generator | None = None) -> Array:
+        """P(effect | cause), (n_types + 1, n_causes, n_effects), after the task's own counts (n_causes, n_effects).
+
+        The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
+        """
+        rows = np.concatenate([self.counts, np.zeros((1, *self.pooled.shape))])
+        rows += POOLED * self.pooled + OWN * self.family.smoothed(own[None])
+        if generator is not None:
+            rows = generator.standard_gamma(rows) + 1e-12 * rows
+        return rows / rows.sum(axis=2, keepdims=True)
+
+    @cached_property
+    def judged(self) -> NDArray[np.int64]:
+        """The causes that were tried, ascending."""
+        return np.flatnonzero(self.counts.any(axis=(0, 2)))
+
+    def library(self, prior: Array) -> PolicyLibrary:
+        """A library whose policies are the judged causes, and whose signals are their effects."""
+        rows = self.counts[:, self.judged] + POOLED * self.pooled[self.judged]
+        count = rows.sum(axis=2)
+        performance = GaussianOutcomes(np.zeros(count.shape), 1.0)
+        signal = CategorySignal(rows / count[:, :, None], count=count)
+        return PolicyLibrary(performance, signal, tuple(known.name for known in self.types), prior=prior)
+
+    def teach(self, type_: int, effects: Effects) -> None:
+        """Add the effects of a task to a type."""
+        known = self.types[type_]
+        count_effects(known.effects, effects)
+        known.n_tasks += 1
+        self._forget_laws()
+
+    def add(self, name: str, effects: Effects) -> int:
+        """Add a new type with the effects of its first task; its number."""
+        self.types.append(KnownType(name, ActionPrior(self.family.n_effects, key=f"{self.family.name}/{name}")))
+        self.teach(len(self.types) - 1, effects)
+        return len(self.types) - 1
+
+    def _forget_laws(self) -> None:
+        for name in ("counts", "pooled", "judged"):
+            self.__dict__.pop(name, None)
+
+
+def merged_types(known: KnownTypes, least: float = 0.0) -> tuple[KnownTypes, list[int]]:
+    """Join types that one law explains as well as two, and tell where each type went.
+
+    Parameters
+    ----------
+    known : KnownTypes
+        Not changed: merging is for reading, memory keeps each type's own counts.
+    least : float
+        Types stay apart where the evidence for two laws exceeds this, in nats. At 0 they are joined where one law
+        is the likelier explanation.
+
+    Returns
+    -------
+    (KnownTypes, list of int)
+        The merged types, and for each of `known.types` its number among them.
+    """
+    prior = FIRST * known.pooled
+    alone = [_log_evidence(counts, prior) for counts in known.counts]
+    groups: list[list[int]] = [[number] for number in range(len(known))]
+    sums = [counts.copy() for counts in known.counts]
+    while len(groups) > 1:
+        pairs = [
+            (alone[i] + alone[j] - _log_evidence(sums[i] + sums[j], prior), i, j)
+            for i in range(len(groups))
+            for j in range(i + 1, len(groups))
+        ]
+        for_two, i, j = min(pairs)
+        if for_two > least:
+            break
+        groups[i] += groups.pop(j)
+        sums[i] += sums.pop(j)
+        alone.pop(j)
+        alone[i] = _log_evidence(sums[i], prior)
+    merged = KnownTypes(known.family)
+    place = [0] * len(known)
+    for number, group in enumerate(sorted(groups, key=min)):
+        members = [known.types[member] for member in sorted(group)]
+        total = ActionPrior(known.family.n_effects, key="merged")
+        for member in members:
+            alike = ActionPrior.from_fixed_point_counts(*member.effects.fixed_point_counts(), key="merged")
+            total.merge(alike)
+        name = "+".join(member.name for member in members)
+        merged.types.append(KnownType(name, total, sum(member.n_tasks for member in members)))
+        for member in group:
+            place[member] = number
+    return merged, place
+
+
+def _log_evidence(counts: Array, prior: Array) -> float:
+    """Log probability of counts of effects under Dirichlet laws around `prior`, (n_causes, n_effects) each."""
+    seen = counts.sum(axis=1) > 0
+    counts, prior = counts[seen], prior[seen]
+    possible = prior > 0
+    safe = np.where(possible, prior, 1.0)
+    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum()
+    total = prior.sum(axis=1)
+    return float(gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total)).sum())

@@ -1,0 +1,59 @@
+"""The alarm that no known type fits, calibrated on tasks that the known types would show.
+
+A task shows the effects of causes that the agent chose. The calibration draws causes as often as earlier tasks had
+them, and their effects from the known types, whose laws are in doubt as far as their counts leave them. A cause is
+judged once a task: the same scene answers the same act alike in every episode, and repeats are no news.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.novelty.calibration import calibration_of
+from lifelore.interaction.novelty.known_tasks import known_tasks
+from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics
+from lifelore.interaction.reuse.user_beliefs import UserBeliefs
+
+N_TASKS = 400
+"""Simulated tasks behind the threshold; more cost time and state the rate more precisely."""
+
+
+def calibrated_alarm(
+    library: PolicyLibrary,
+    frequency: NDArray[np.float64],
+    horizon: int,
+    false_alarm: float,
+    generator: np.random.Generator,
+    mass: float = 0.05,
+) -> NoveltyDetector:
+    """A detector for one task.
+
+    Parameters
+    ----------
+    library : PolicyLibrary
+        Its policies are causes, its signals their effects.
+    frequency : (n_causes,) float
+        How often earlier tasks had each cause, above 0.
+    horizon : int
+        Number of different causes that a task usually shows; at most n_causes count.
+    false_alarm : float
+        Probability of an alarm in a task of a known type, in (0, 1).
+    """
+    n_causes = len(frequency)
+    horizon = min(horizon, n_causes)
+    # The largest of log frequency + Gumbel noise come first: a draw without replacement, by frequency.
+    noise = generator.gumbel(size=(N_TASKS, n_causes))
+    order = np.argsort(-(np.log(frequency) + noise), axis=1)[:, :horizon]
+    statistics, tasks = NoveltyStatistics(library), known_tasks(library, N_TASKS, generator)
+    users = UserBeliefs(library, N_TASKS, "f8", seed=generator, models="plug-in")
+    sums, every = statistics.sums(N_TASKS), np.arange(N_TASKS)
+    found = np.empty((N_TASKS, horizon))
+    for place in range(horizon):
+        causes = order[:, place]
+        belief = users.algorithm.belief(users.log_belief)
+        effects = tasks.signals(causes)
+        statistics.add(sums, belief, causes, effects)
+        users.update(every, causes, effects.astype(np.int64))
+        found[:, place] = statistics.statistic(sums)
+    return NoveltyDetector(library, calibration_of(found, false_alarm), mass)

@@ -1,0 +1,192 @@
+"""What the long-lived agent asks of a family of tasks: causes and effects, features, and plans of its behaviours.
+
+An *act* is an action in words of the perceived scene ("pick the object on top"). A *cause* is an act together
+with the features that its effect may depend on; an *effect* is a category of what followed. How effects depend on
+causes is what the agent learns of each type. A *behaviour* acts best if the task is of one type.
+"""
+
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.domains.task_stream import DrawnTask
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Step:
+    """The result of an act.
+
+    Parameters
+    ----------
+    reward : float
+    effects : tuple of (int, int)
+        Causes and their effects; none for an act that shows nothing.
+    ended : bool
+        Whether the episode ended.
+    """
+
+    reward: float
+    effects: tuple[tuple[int, int], ...]
+    ended: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Plan:
+    """What each behaviour would do now, and what it is worth under each type.
+
+    Parameters
+    ----------
+    values : (n_types, n_behaviours) float64
+        Expected return from now on of a behaviour in a task of a type; behaviour k is the best one for type k.
+    acts : (n_behaviours,) int64
+    trying : (n_behaviours,) int64
+        The same where giving up is ruled out, because it teaches nothing.
+    """
+
+    values: Array
+    acts: NDArray[np.int64]
+    trying: NDArray[np.int64]
+
+
+@dataclass(frozen=True, eq=False)
+class Abilities:
+    """Which parts of the agent work; ablations switch them off.
+
+    Parameters
+    ----------
+    perception : bool
+        Whether relations of the scene are features.
+    prior : bool
+        Whether action priors guide: acts that were best before, and types that came before in a context.
+    reuse : bool
+        Whether types and their behaviours are remembered; without, all tasks teach one model.
+    memory : bool
+        Whether anything is carried from task to task.
+    """
+
+    perception: bool = True
+    prior: bool = True
+    reuse: bool = True
+    memory: bool = True
+
+
+AGENTS = {
+    "full": Abilities(),
+    "no-perception": Abilities(perception=False),
+    "no-prior": Abilities(prior=False),
+    "no-reuse": Abilities(reuse=False),
+    "scratch": Abilities(prior=False, reuse=False, memory=False),
+}
+"""The agent and its ablations."""
+
+
+@dataclass(eq=False)
+class SharedKnowledge:
+    """What is the same for all types of a family.
+
+    Parameters
+    ----------
+    moves : ActionPrior
+        Counts of what follows in the scene, by codes of the family's own; empty where it needs none.
+    acts : ActionPrior
+        How often each act was best, by context.
+    """
+
+    moves: ActionPrior
+    acts: ActionPrior
+    guided: bool = field(default=True)
+
+
+class AgentTask(Protocol):
+    """A task as the agent meets it; its type is hidden."""
+
+    @property
+    def context(self) -> int:
+        """Code of the perceived features, for the prior over acts."""
+        ...
+
+    @property
+    def moved(self) -> tuple[int, int] | None:
+        """Code and result to count in `SharedKnowledge.moves` for the last act; None for nothing."""
+        ...
+
+    def begin(self) -> None:
+        """Begin an episode: look at the scene."""
+        ...
+
+    def plan(self, laws: Array, tried: NDArray[np.bool_], new: int | None, shared: SharedKnowledge) -> Plan:
+        """Plan from here.
+
+        Parameters
+        ----------
+        laws : (n_types, n_causes, n_effects) float64
+            P(effect | cause; type).
+        tried : (n_causes,) bool
+            Whether anything is known of a cause.
+        new : int, optional
+            The row that stands for an unknown type: its behaviour also tries what was never tried.
+        shared : SharedKnowledge
+        """
+        ...
+
+    def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Contexts of this task (n,) and their best acts (n, n_acts), under laws (n_causes, n_effects) of a type."""
+        ...
+
+    def act(self, act: int) -> Step:
+        """Act."""
+        ...
+
+    def describe(self) -> str:
+        """The perceived scene in a few words."""
+        ...
+
+
+class TaskFamily(Protocol):
+    """Tasks of one kind, by number."""
+
+    name: str
+    acts: tuple[str, ...]
+    n_causes: int
+    n_effects: int
+    n_results: int
+    """Number of results that `AgentTask.moved` may name; 1 where there are none."""
+    possible: Array
+    """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1."""
+    groups: NDArray[np.int64]
+    """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
+
+    def meet(self, number: int, abilities: Abilities) -> tuple[DrawnTask, AgentTask]:
+        """Task `number`, drawn and met."""
+        ...
+
+    def best_return(self, number: int) -> float:
+        """The best possible return of task `number`, for scoring; the agent never asks."""
+        ...
+
+    def smoothed(self, counts: Array) -> Array:
+        """Counts (n, n_causes, n_effects) shared among similar effects; unchanged where no effects are similar."""
+        ...
+
+    def cause_name(self, cause: int) -> str:
+        """A cause in words."""
+        ...
+
+    def effect_name(self, cause: int, effect: int) -> str:
+        """An effect in words."""
+        ...
+
+
+def record_key(family: str, part: str) -> str:
+    """Key of a record of a family in memory."""
+    return f"{family}/{part}"
+
+
+def about(family: TaskFamily) -> dict[str, Any]:
+    """Description of a family's records for people."""
+    return {"family": family.name}
