@@ -331,12 +331,16 @@ class Memory:
         """Remove all contributions of a robot for ever; return their number.
 
         Tombstones stay, so that no replay, merge or import restores them. Later contributions of the robot are
-        stored again.
+        stored again. An SQLite file and its log hold no byte of the contributions afterwards; the names of robots
+        and processes stay in the tombstones. A PostgreSQL server deletes rows, and their bytes stay in its files
+        until ``VACUUM FULL``, in its log and backups until these expire.
 
         Raises
         ------
         NotFoundError
             The robot has no contributions.
+        StoreError
+            The robot is forgotten, but another process reads the file, so that the log still holds the bytes.
         """
         with self._store.writing() as conn:
             forgotten = ledger.entries(conn, robot)
@@ -349,18 +353,21 @@ class Memory:
             leases.forget(conn, robot)
             stale = merging.delete(conn, [entry.number for entry in forgotten])
             cache.rebuild(conn, stale)
+        self._store.empty_log()
         return len(forgotten)
 
     def forget_records(self, names: Sequence[tuple[str, str, int]]) -> int:
         """Remove the records of some (kind, key, version) for ever; return the number of contributions concerned.
 
         The other records of these contributions stay. No replay, merge or import restores the records. Records of
-        these keys that are contributed later are stored again.
+        these keys that are contributed later are stored again. The bytes go as in `forget`; the keys stay.
 
         Raises
         ------
         NotFoundError
             No record has one of these keys.
+        StoreError
+            As for `forget`.
         """
         with self._store.writing() as conn:
             touched: set[int] = set()
@@ -370,6 +377,7 @@ class Memory:
                 touched |= mentions
             stamp = ledger.next_stamp(conn)
             cache.rebuild(conn, merging.forget_records(conn, dict.fromkeys(names, stamp)))
+        self._store.empty_log()
         return len(touched)
 
     def rebuild(self) -> None:
