@@ -30,6 +30,8 @@ FIRST = 0.5
 """Weight α₀ of the effects that a family calls possible, in observations."""
 POOLED = 1.0
 """Weight κ of what all types have in common, in observations; more lets a type learn more slowly."""
+TELLING = 1.0
+"""Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
 OWN = 3.0
 """Weight w of an observation of the present task: it is about this very scene."""
 
@@ -150,42 +152,32 @@ class KnownTypes:
             self.__dict__.pop(name, None)
 
 
-def merged_types(known: KnownTypes, least: float = 0.0) -> KnownTypes:
-    """Join types that one law explains as well as two.
+def merged_types(known: KnownTypes) -> KnownTypes:
+    """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts.
 
-    Parameters
-    ----------
-    known : KnownTypes
-        Not changed: merging is for reading, memory keeps each type's own counts.
-    least : float
-        Types stay apart where the evidence for two laws exceeds this, in nats. At 0 they are joined where one law
-        is the likelier explanation.
+    Two types stay apart where some cause is better explained by two laws than by one, by `TELLING` nats, and where
+    all causes together are.
     """
     prior = FIRST * known.pooled
     groups: list[list[int]] = [[number] for number in range(len(known))]
     sums = [counts.copy() for counts in known.counts]
-    alone = [_log_evidence(counts, prior) for counts in sums]
-    for_two = {
-        (i, j): alone[i] + alone[j] - _log_evidence(sums[i] + sums[j], prior)
-        for i in range(len(groups))
-        for j in range(i + 1, len(groups))
-    }
-    while for_two:
-        i, j = min(for_two, key=for_two.__getitem__)
-        if for_two[i, j] > least:
+
+    def apart(i: int, j: int) -> float:
+        for_two = _log_evidence(sums[i], prior) + _log_evidence(sums[j], prior)
+        for_two -= _log_evidence(sums[i] + sums[j], prior)
+        return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
+
+    pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
+    while pairs:
+        i, j = min(pairs, key=pairs.__getitem__)
+        if pairs[i, j] > 0:
             break
         groups[i] += groups[j]
-        sums[i] += sums[j]
-        alone[i] = _log_evidence(sums[i], prior)
-        for_two = {pair: found for pair, found in for_two.items() if j not in pair}
-        for pair in for_two:
-            if i in pair:
-                first, second = pair
-                for_two[pair] = alone[first] + alone[second] - _log_evidence(sums[first] + sums[second], prior)
         groups[j] = []
-    return KnownTypes(
-        known.family, [_joined([known.types[k] for k in sorted(group)]) for group in groups if group]
-    )
+        sums[i] += sums[j]
+        pairs = {pair: apart(*pair) if i in pair else found for pair, found in pairs.items() if j not in pair}
+    joined = [_joined([known.types[number] for number in sorted(group)]) for group in groups if group]
+    return KnownTypes(known.family, joined)
 
 
 def _joined(types: list[KnownType]) -> KnownType:
@@ -201,12 +193,13 @@ def _joined(types: list[KnownType]) -> KnownType:
     return KnownType("+".join(members), effects, sightings, members)
 
 
-def _log_evidence(counts: Array, prior: Array) -> float:
-    """Log probability of counts of effects under Dirichlet laws around `prior`, (n_causes, n_effects) each."""
+def _log_evidence(counts: Array, prior: Array) -> Array:
+    """Log probability of the counts of each cause under a Dirichlet law around `prior`, (n_causes,)."""
+    total, found = prior.sum(axis=1), np.zeros(len(prior))
     seen = counts.sum(axis=1) > 0
-    counts, prior = counts[seen], prior[seen]
+    counts, prior, total = counts[seen], prior[seen], total[seen]
     possible = prior > 0
     safe = np.where(possible, prior, 1.0)
-    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum()
-    total = prior.sum(axis=1)
-    return float(gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total)).sum())
+    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum(axis=1)
+    found[seen] = gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total))
+    return found
