@@ -6,7 +6,8 @@ The law of a cause under type i, after the counts c of the present task:
     pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
     P_i(e)    ∝ n_i(e) + κ pooled(e) + w c(e)
 
-An unknown type has n = 0: it behaves as types usually do until its own task shows otherwise.
+An unknown type has n = 0 and, instead of pooled, (1 − η) pooled + η p₀: it mostly behaves as types usually do,
+until its own task shows otherwise.
 """
 
 from collections.abc import Sequence
@@ -30,8 +31,10 @@ FIRST = 0.5
 """Weight α₀ of the effects that a family calls possible, in observations."""
 POOLED = 1.0
 """Weight κ of what all types have in common, in observations; more lets a type learn more slowly."""
-TELLING = 1.0
+TELLING = 2.5
 """Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
+NEW = 0.3
+"""Share of what a family calls possible in the law of an unknown type: it may differ from all known ones."""
 OWN = 3.0
 """Weight w of an observation of the present task: it is about this very scene."""
 
@@ -123,11 +126,17 @@ class KnownTypes:
 
         The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
         """
-        rows = np.concatenate([self.counts, np.zeros((1, *self.pooled.shape))])
+        unknown = POOLED * NEW * (self.family.possible - self.pooled)
+        rows = np.concatenate([self.counts, unknown[None]])
         rows += POOLED * self.pooled + OWN * self.family.smoothed(own[None])
         if generator is not None:
             rows = generator.standard_gamma(rows) + 1e-12 * rows
         return rows / rows.sum(axis=2, keepdims=True)
+
+    def differs(self, number: int, effects: Effects) -> bool:
+        """Whether the effects of a task are better explained by a type of its own than by a known one."""
+        own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
+        return evidence_for_two(self.counts[number], self.family.smoothed(own[None])[0], self.pooled) > 0
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
@@ -152,20 +161,25 @@ class KnownTypes:
             self.__dict__.pop(name, None)
 
 
-def merged_types(known: KnownTypes) -> KnownTypes:
-    """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts.
+def evidence_for_two(first: Array, second: Array, pooled: Array) -> float:
+    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one.
 
-    Two types stay apart where some cause is better explained by two laws than by one, by `TELLING` nats, and where
-    all causes together are.
+    It is that of all causes together, and infinite where a single cause gives more than `TELLING`: types may agree
+    in nearly all they do.
     """
-    prior = FIRST * known.pooled
+    prior = FIRST * pooled
+    alone = _log_evidence(first, prior) + _log_evidence(second, prior)
+    for_two = alone - _log_evidence(first + second, prior)
+    return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
+
+
+def merged_types(known: KnownTypes) -> KnownTypes:
+    """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts."""
     groups: list[list[int]] = [[number] for number in range(len(known))]
     sums = [counts.copy() for counts in known.counts]
 
     def apart(i: int, j: int) -> float:
-        for_two = _log_evidence(sums[i], prior) + _log_evidence(sums[j], prior)
-        for_two -= _log_evidence(sums[i] + sums[j], prior)
-        return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
+        return evidence_for_two(sums[i], sums[j], known.pooled)
 
     pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
     while pairs:
