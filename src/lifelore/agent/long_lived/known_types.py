@@ -119,8 +119,8 @@ class KnownTypes:
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
-        """The causes that were tried, ascending."""
-        return np.flatnonzero(self.counts.any(axis=(0, 2)))
+        """The causes that were tried and tell types apart, ascending."""
+        return np.flatnonzero(self.counts.any(axis=(0, 2)) & self.family.judges)
 
     def library(self, prior: Array) -> PolicyLibrary:
         """A library whose policies are the judged causes, and whose signals are their effects."""

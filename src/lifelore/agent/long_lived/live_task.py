@@ -136,7 +136,7 @@ class Recognition:
             self.alarm = calibrated_alarm(
                 library,
                 np.maximum(knowledge.causes[self.known.judged], 0.5),
-                max(1, round(knowledge.causes.sum() / max(knowledge.n_tasks, 1))),
+                max(1, round(knowledge.causes[knowledge.family.judges].sum() / max(knowledge.n_tasks, 1))),
                 settings.false_alarm,
                 stream(seed, "long-lived", "alarm", knowledge.n_tasks),
                 settings.unknown,

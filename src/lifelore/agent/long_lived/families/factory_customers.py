@@ -53,6 +53,7 @@ class FactoryFamily:
     n_results = 1
     possible = np.full((len(ACTS), len(EFFECTS)), 1 / len(EFFECTS))
     groups = np.arange(len(ACTS)) // N_COMPONENTS
+    judges = np.ones(len(ACTS), np.bool_)
 
     def order(self, number: int) -> tuple[DrawnTask, CustomerOrder]:
         """Order `number`, drawn and as the world has it."""
