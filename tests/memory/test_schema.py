@@ -26,6 +26,7 @@ def first_schema():
                     "DELETE FROM lifelore_cells WHERE lore < 0",
                     "ALTER TABLE lifelore_cells DROP COLUMN state",
                     "DROP TABLE lifelore_forgotten_records",
+                    "DROP TABLE lifelore_leases",
                 ):
                     conn.execute(statement)
                 conn.execute("DELETE FROM lifelore_migrations WHERE number > 1")

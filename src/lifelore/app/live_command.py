@@ -55,8 +55,11 @@ def live(
         ),
     ] = None,
     robot: Annotated[
-        str, Option(help="Name of the robot in memory; robots that run at the same time need different names.")
+        str, Option(help="Name of the robot in memory; processes of one name take different tasks.")
     ] = "robot",
+    refresh: Annotated[
+        bool, Option("--refresh", help="Before each task, recall what other robots and processes have stored.")
+    ] = False,
     building: Annotated[
         str | None,
         Option(metavar="NAME", help="Name of the building; default: recognise it, or name it after its map."),
@@ -160,7 +163,7 @@ def live(
             learner, episodes, max_steps, learning_rate, epsilon, epsilon_decay, epsilon_floor
         ),
         prior=PriorSettings(prior, alpha0, weight, form, ties),
-        memory=MemorySettings(memory, robot, building),
+        memory=MemorySettings(memory, robot, building, refresh),
         sensor=SensorSettings(sensor, range),
         agent=agent,
         compare=compare,

@@ -4,8 +4,8 @@ A memory is a set of *contributions* (the records of one robot about one task) a
 (identities of forgotten contributions). Merging two memories unites both sets, so the result does not depend on
 order and grouping. The merged cells that `Memory.recall` reads are a cache, which `Memory.rebuild` computes again.
 
-Read in this order: `memory`, `contribution`, `folding`, `ledger`, `cache`, `merging`, `export`; then `store`,
-`connection`, `sqlite_file`, `schema`, `refusal` for the database.
+Read in this order: `memory`, `contribution`, `folding`, `ledger`, `cache`, `leases`, `merging`, `export`; then
+`store`, `connection`, `sqlite_file`, `schema`, `refusal` for the database.
 """
 
 from lifelore.memory.cache import KeyState

@@ -1,20 +1,21 @@
 """`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
-from collections.abc import Mapping, Sequence
-from contextlib import closing
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import closing, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
-from lifelore.memory import audit, cache, ledger, merging, overview, schema
+from lifelore.memory import audit, cache, leases, ledger, merging, overview, schema
 from lifelore.memory.cache import EVERY_SLOT, KeyState, StoredState
 from lifelore.memory.connection import Connection
 from lifelore.memory.contribution import new_offer
 from lifelore.memory.export import export
 from lifelore.memory.folding import LoreKey, lift
 from lifelore.memory.location import Server, locate
+from lifelore.memory.record_rules import check_name, check_whole
 from lifelore.memory.store import Store, check_source, open_existing, open_file, open_postgresql, open_source
 
 NAMED = 10
@@ -114,6 +115,7 @@ class Memory:
         seq: int,
         task: Mapping[str, Any],
         state: KeyState | None = None,
+        taken: int | None = None,
     ) -> bool:
         """Store the records of a robot about one finished task, all or none.
 
@@ -130,11 +132,14 @@ class Memory:
         state : KeyState, optional
             The state of one of the records' keys after this contribution, see `recall_state`. It is stored unless
             another process has changed the key since the state was computed.
+        taken : int, optional
+            Number of the task, if the process took it by `take_task`. The contribution ends the lease.
 
         Returns
         -------
         bool
-            False if (robot, process, seq) is already stored or was forgotten; then nothing changes.
+            False if (robot, process, seq) is already stored or was forgotten, or if the lease of `taken` has ended
+            and another process has taken the task; then nothing changes.
 
         Raises
         ------
@@ -145,10 +150,62 @@ class Memory:
         """
         offer = new_offer(robot, records, process=process, seq=seq, task=task)
         with self._store.writing() as conn:
+            if taken is not None and not leases.finish(conn, offer.identity, taken):
+                return False
             row = ledger.insert(conn, offer)
             if row is not None:
                 cache.add(conn, lift(row.number, offer.records), row.lore, state)
         return row is not None
+
+    def take_task(self, robot: str, *, process: str, seconds: int = leases.LEASE_SECONDS) -> int:
+        """Take the next task of a robot that is neither finished nor at work in another process.
+
+        The lease of the task ends when the process contributes it (``contribute(..., taken=NUMBER)``), gives it
+        back, dies on this machine, or after some time; a task that was not finished is then taken again.
+
+        Parameters
+        ----------
+        robot, process : str
+            As for `contribute`.
+        seconds : int
+            Time until other processes may take the task, unless it is finished before.
+
+        Returns
+        -------
+        int
+            Number of the task, from 0. Without other processes it is that of `tasks`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder, open_memory(f"{folder}/fleet.db") as memory:
+        ...     first, second = (memory.take_task("rosie", process=name) for name in ("p1", "p2"))
+        ...     done = memory.contribute("rosie", [], process="p2", seq=0, task={}, taken=second)
+        ...     memory.give_back_task("rosie", first, process="p1")
+        ...     first, second, done, memory.take_task("rosie", process="p2")
+        (0, 1, True, 0)
+        """
+        names = check_name("robot", robot), check_name("process", process)
+        seconds = check_whole("seconds", seconds, smallest=1)
+        with self._store.writing() as conn:
+            return leases.take(conn, *names, seconds)
+
+    def give_back_task(self, robot: str, number: int, *, process: str) -> None:
+        """End the lease of a task that was not finished, so that it is the next to be taken."""
+        with self._store.writing() as conn:
+            leases.give_back(conn, robot, process, number)
+
+    @contextmanager
+    def taken_task(self, robot: str, *, process: str) -> Iterator[int]:
+        """A block with a task of `take_task`, which is given back if the block ends by an error."""
+        number = self.take_task(robot, process=process)
+        try:
+            yield number
+        except BaseException:
+            # The error in progress is the one to report.
+            with suppress(StoreError):
+                self.give_back_task(robot, number, process=process)
+            raise
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
@@ -274,12 +331,16 @@ class Memory:
         """Remove all contributions of a robot for ever; return their number.
 
         Tombstones stay, so that no replay, merge or import restores them. Later contributions of the robot are
-        stored again.
+        stored again. An SQLite file and its log hold no byte of the contributions afterwards; the names of robots
+        and processes stay in the tombstones. A PostgreSQL server deletes rows, and their bytes stay in its files
+        until ``VACUUM FULL``, in its log and backups until these expire.
 
         Raises
         ------
         NotFoundError
             The robot has no contributions.
+        StoreError
+            The robot is forgotten, but another process reads the file, so that the log still holds the bytes.
         """
         with self._store.writing() as conn:
             forgotten = ledger.entries(conn, robot)
@@ -289,20 +350,24 @@ class Memory:
                 more = f" and {len(known) - NAMED:,} more" if len(known) > NAMED else ""
                 raise NotFoundError(f"robot {robot!r} has contributed nothing here; known robots: {named}{more}")
             ledger.add_tombstones(conn, [entry.identity for entry in forgotten])
+            leases.forget(conn, robot)
             stale = merging.delete(conn, [entry.number for entry in forgotten])
             cache.rebuild(conn, stale)
+        self._store.empty_log()
         return len(forgotten)
 
     def forget_records(self, names: Sequence[tuple[str, str, int]]) -> int:
         """Remove the records of some (kind, key, version) for ever; return the number of contributions concerned.
 
         The other records of these contributions stay. No replay, merge or import restores the records. Records of
-        these keys that are contributed later are stored again.
+        these keys that are contributed later are stored again. The bytes go as in `forget`; the keys stay.
 
         Raises
         ------
         NotFoundError
             No record has one of these keys.
+        StoreError
+            As for `forget`.
         """
         with self._store.writing() as conn:
             touched: set[int] = set()
@@ -312,6 +377,7 @@ class Memory:
                 touched |= mentions
             stamp = ledger.next_stamp(conn)
             cache.rebuild(conn, merging.forget_records(conn, dict.fromkeys(names, stamp)))
+        self._store.empty_log()
         return len(touched)
 
     def rebuild(self) -> None:

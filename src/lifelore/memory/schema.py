@@ -1,6 +1,7 @@
 """Tables of a memory, created by numbered migrations; a migration and its note are one transaction.
 
 Contributions, tombstones and forgotten records hold the content; lore, mentions and cells are a cache of them.
+Leases say which process is at work on which task.
 """
 
 import time
@@ -58,11 +59,18 @@ ALTER TABLE lifelore_contributions ADD COLUMN lore {int};
 CREATE INDEX lifelore_contributions_lore ON lifelore_contributions (lore, stamp)
 """
 
+_LEASES = """
+CREATE TABLE lifelore_leases (
+    robot {text} NOT NULL, number {int} NOT NULL, process {text} NOT NULL, holder {text} NOT NULL,
+    until {int} NOT NULL, PRIMARY KEY (robot, number))
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
     3: ("states that learners compute from a key's cells", _STATES),
     4: ("states beside the cells, and the only key of a contribution beside it", _TOGETHER),
+    5: ("leases of tasks", _LEASES),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2

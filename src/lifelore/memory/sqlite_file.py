@@ -12,9 +12,9 @@ from lifelore.memory.schema import APPLICATION_ID, refuse_newer
 
 _MAGIC = b"SQLite format 3\0"
 _HEADER = 100
-# Largest file of which every page is checked before opening (0.2 s for 256 MiB in the cache); for larger
-# files use `Memory.check`.
-CHECKED_BYTES = 2**28
+# Largest file of which every page is read and checked before opening (0.1 s for 16 MiB); for larger files use
+# `Memory.check`.
+CHECKED_BYTES = 2**24
 
 Access = Literal["ro", "rw", "rwc"]
 

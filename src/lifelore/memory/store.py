@@ -71,6 +71,26 @@ class Store:
             yield conn
             conn.control("COMMIT")
 
+    def empty_log(self) -> None:
+        """Move the log of an SQLite file into the file and empty it; does nothing on a PostgreSQL server.
+
+        SQLite overwrites deleted rows and freed pages by zeros (``secure_delete``), but the log has earlier copies
+        of these pages until it is emptied.
+
+        Raises
+        ------
+        StoreError
+            Another process has been reading for `BUSY_SECONDS`.
+        """
+        if not self.is_sqlite:
+            return
+        with one_line_refusals(self.location), self.pool.connection() as conn:
+            if conn.value("PRAGMA wal_checkpoint(TRUNCATE)"):
+                raise StoreError(
+                    f"memory {self.location}: the content is deleted, but its bytes are still in the log, which "
+                    f"another process has read for {BUSY_SECONDS} s; they go when all have closed the memory"
+                )
+
     def lies_at(self, place: Path | Server) -> bool:
         """Whether `place` is the location of this database."""
         if isinstance(place, Path):

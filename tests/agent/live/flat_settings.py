@@ -25,7 +25,7 @@ def flat_settings(**flat: Any) -> LifeSettings:
     condition = {"condition": flat.pop("prior")} if "prior" in flat else {}
     prior = PriorSettings(**condition, **taken("alpha0", "weight", "form", "ties"))
     location = {"location": flat.pop("memory")} if "memory" in flat else {}
-    memory = MemorySettings(**location, **taken("robot"))
+    memory = MemorySettings(**location, **taken("robot", "refresh"))
     kind = {"kind": flat.pop("sensor")} if "sensor" in flat else {}
     life["sensor"] = SensorSettings(**kind, **taken("range"))
     return LifeSettings(WorldSettings(**{"domain": "lattice"} | flat), learning, prior, memory, **life)

@@ -9,10 +9,10 @@ import pytest
 
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LifeSettings
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.buildings.occupancy_map import OccupancyMap, write_occupancy_map
 from lifelore.domains.grids.grid_world import MOVE_BITS
-from lifelore.memory import open_memory
+from lifelore.memory import Memory, open_memory
 
 from .flat_settings import flat_settings
 
@@ -54,6 +54,65 @@ def test_a_life_on_a_server_is_the_life_in_a_file(tmp_path, new_place):
         )
         assert in_file["tasks"] == on_server["tasks"]
         assert in_file["memory"] == on_server["memory"]
+
+
+def test_recalling_before_each_task_changes_nothing_for_a_robot_alone(tmp_path):
+    lives = [
+        live(settings(tmp_path, memory=str(tmp_path / f"{refresh}.db"), refresh=refresh)).report
+        for refresh in (False, True)
+    ]
+    assert without_time(lives[0]) == without_time(lives[1])
+
+
+def test_processes_of_a_robot_live_different_tasks_and_learn_from_each_other(tmp_path):
+    """The second process lives its two tasks while the first is between its first and its second task."""
+    reports = []
+
+    def other(task: dict, results: dict) -> None:
+        if not reports:
+            reports.append(live(settings(tmp_path, tasks=2)).report)
+
+    first = live(settings(tmp_path, tasks=2, refresh=True), watch=other).report
+    assert [task["index"] for task in first["tasks"]] == [0, 3]
+    assert [task["index"] for task in reports[0]["tasks"]] == [1, 2]
+    # Each began with all that was stored before, so the four tasks are those of a single life.
+    once = live(settings(tmp_path, tasks=4, memory=str(tmp_path / "once.db"))).report["tasks"]
+    assert [first["tasks"][0], *reports[0]["tasks"], first["tasks"][1]] == once
+
+
+def test_a_task_that_another_process_took_over_is_stored_once(tmp_path, monkeypatch):
+    """Each lease ends at once, and during the first task another process lives the same task."""
+    notices, others = [], []
+    contribute = Memory.contribute
+
+    def slowly(memory, *args, **kwargs):
+        if not others:
+            others.append(None)
+            with memory._store.writing() as conn:
+                conn.execute("UPDATE lifelore_leases SET until = 0")
+            others[0] = live(settings(tmp_path, tasks=1)).report["tasks"]
+        return contribute(memory, *args, **kwargs)
+
+    monkeypatch.setattr(Memory, "contribute", slowly)
+    life = live(settings(tmp_path, tasks=3), notify=notices.append)
+    assert [task["index"] for task in others[0]] == [0]
+    assert [task["index"] for task in life.report["tasks"]] == [1, 2]
+    assert notices == ["task 0 took so long that another process took it over; its result here is not used"]
+    once = live(settings(tmp_path, tasks=3, memory=str(tmp_path / "once.db"))).report["tasks"]
+    assert others[0] + life.report["tasks"] == once
+
+
+def test_a_task_that_fails_is_the_next_one_again(tmp_path, monkeypatch):
+    def full(*args, **kwargs):
+        raise StoreError("the disk is full")
+
+    live(settings(tmp_path, tasks=1))
+    with monkeypatch.context() as patch:
+        patch.setattr(Memory, "contribute", full)
+        with pytest.raises(StoreError, match="full"):
+            live(settings(tmp_path))
+    report = live(settings(tmp_path, tasks=1)).report
+    assert [task["index"] for task in report["tasks"]] == [1]
 
 
 def test_another_robot_counts_its_own_tasks_and_shares_the_lore(tmp_path):

@@ -153,7 +153,7 @@ def life(agent, family, n_tasks):
         if not abilities.memory:
             knowledge = Knowledge.empty(family)
         drawn, task = family.meet(number, abilities)
-        lived = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
+        lived, _ = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
         missed.append(family.best_return(number) - lived.returns[0])
     assert min(missed) >= 0
     return np.array(missed), knowledge

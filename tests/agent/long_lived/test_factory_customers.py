@@ -160,7 +160,7 @@ def life(agent, family, n_tasks):
         if not abilities.memory:
             knowledge = Knowledge.empty(family)
         drawn, task = family.meet(number, abilities)
-        lived = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
+        lived, _ = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
         missed.append(family.best_return(number) - lived.returns[0])
         assert lived.returns[1] == pytest.approx(family.best_return(number))
     return np.array(missed), knowledge

@@ -5,7 +5,7 @@ import time
 import uuid
 import warnings
 from collections.abc import Hashable
-from contextlib import nullcontext
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Event
@@ -216,13 +216,19 @@ class _ExternalLife:
     def run(self, progress: Progress | None, stop: Event) -> None:
         total = self.settings.tasks
         for done in range(total):
-            index = self.tasks_before + done
             try:
-                self._live_task(index, done, stop)
+                with self._task_number(done) as index:
+                    self._live_task(index, done, stop)
             except Stopped:
                 break
             if progress:
                 progress(done + 1, total, f"task {index}")
+
+    def _task_number(self, done: int) -> AbstractContextManager[int]:
+        """The number of a task that no other process of this robot lives."""
+        if self.memory is None:
+            return nullcontext(done)
+        return self.memory.taken_task(self.settings.robot, process=self.process)
 
     def _live_task(self, index: int, seq: int, stop: Event) -> None:
         task = self._task(index, stop)
@@ -232,7 +238,8 @@ class _ExternalLife:
         if self.memory:
             about = {"index": index, "world": self.name}
             records = [counts] if len(counts.slots) else []
-            self.memory.contribute(self.settings.robot, records, process=self.process, seq=seq, task=about)
+            robot, process = self.settings.robot, self.process
+            self.memory.contribute(robot, records, process=process, seq=seq, task=about, taken=index)
         for learner in learners.values():
             self.states.update(learner.q)
         self.finished.append({"index": index, "goal": None, "optimal_return": None, "agents": agents})

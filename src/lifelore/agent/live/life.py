@@ -212,9 +212,9 @@ class _RunningLife:
     def _recalled(self) -> Lore:
         return Lore.recalled(self.world, self.scope, self.settings.prior.alpha0, self.memory, self.place.grid)
 
-    def _look_at_map(self, done: int) -> None:
+    def _look_at_map(self, index: int, done: int) -> None:
         """Replace the world if the watched map has changed; keep it if the new map cannot be used."""
-        index, path = self.tasks_before + done, self.settings.world.map
+        path = self.settings.world.map
         change: dict = {"before_task": index}
         assert self.map_watch is not None, "only a watched map is looked at"
         try:
@@ -261,22 +261,38 @@ class _RunningLife:
         for done in range(total):
             if stop.is_set():
                 break
-            if self.map_watch and done:
-                self._look_at_map(done)
             try:
-                results.append(self._live_task(self.tasks_before + done, done, pool, stop))
-                if watch:
-                    watch(self.finished[-1], results[-1])
-                if done >= TASKS_WITH_POLICY:
-                    for result in results[done - TASKS_WITH_POLICY].values():
-                        result.drop_arrays()
+                with self.memory.taken_task(self.settings.memory.robot, process=self.process) as index:
+                    if self.map_watch and done:
+                        self._look_at_map(index, done)
+                    if self.settings.memory.refresh and done:
+                        self.lores[self.names[0]] = self._recalled()
+                    result = self._live_task(index, done, pool, stop)
             except Stopped:
                 break
+            if result is not None:
+                results.append(result)
+                if watch:
+                    watch(self.finished[-1], result)
+                if len(results) > TASKS_WITH_POLICY:
+                    for old in results[-1 - TASKS_WITH_POLICY].values():
+                        old.drop_arrays()
             if progress:
-                progress(done + 1, total, f"task {self.tasks_before + done}")
+                progress(done + 1, total, f"task {index}")
         return results
 
-    def _live_task(self, index: int, seq: int, pool: ThreadPoolExecutor, stop: Event) -> dict[str, TaskResult]:
+    def _lost(self, index: int) -> None:
+        """Go on without a task that another process has taken over: it is the other's to store."""
+        self.lores[self.names[0]] = self._recalled()
+        if self.notify:
+            self.notify(
+                f"task {index} took so long that another process took it over; its result here is not used"
+            )
+
+    def _live_task(
+        self, index: int, seq: int, pool: ThreadPoolExecutor, stop: Event
+    ) -> dict[str, TaskResult] | None:
+        """Live one task and store it; None if another process has taken the task over in the meantime."""
         own = self.places.goal(seq)
         task = self.stream.task(index, own and own.state)
         tables = task.tables()
@@ -297,13 +313,16 @@ class _RunningLife:
         records = {name: self._learn(name, results[name], goal) for name in self.names}
         chosen = {} if own is None else own.to_dict()
         about = {"index": index, "goal": self.world.cells[goal].tolist()}
-        self.memory.contribute(
+        stored = self.memory.contribute(
             self.settings.memory.robot,
             records[self.names[0]] + self.unstored + self._names(own) + self._job_records(seq),
             process=self.process,
             seq=seq,
             task=about | chosen | {"world": self.world.fingerprint},
+            taken=index,
         )
+        if not stored:
+            return self._lost(index)
         self.unstored = []
         agents = {name: result.to_dict() for name, result in results.items()}
         self.finished.append(about | chosen | {"optimal_return": optimal, "agents": agents})

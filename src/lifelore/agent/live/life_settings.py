@@ -144,11 +144,12 @@ class MemorySettings:
     location : str, optional
         SQLite file or ``postgresql://`` URL; None: the user's own memory.
     robot : str
-        Name of the robot in memory, 1 to 200 printable characters. Robots that run at the same time need
-        different names.
+        Name of the robot in memory, 1 to 200 printable characters. Processes of one name take different tasks.
     building : str, optional
         Name of the building: the map must fit the remembered building of this name, or the building is a new one.
         None: recognise the building; a new one gets the name of its map.
+    refresh : bool
+        Recall before each task, so that the agent uses what other robots and processes have stored since the last.
 
     Raises
     ------
@@ -159,6 +160,7 @@ class MemorySettings:
     location: str | None = None
     robot: str = "robot"
     building: str | None = None
+    refresh: bool = False
 
     def __post_init__(self) -> None:
         for label, name in (("robot", self.robot), ("building", self.building)):

@@ -46,6 +46,7 @@ def settings_document(settings: LifeSettings, world: GridWorld, location: str) -
         "goals": len(settings.goals) or None,
         "again": settings.again or None,
         "watch": settings.watch or None,
+        "refresh": settings.memory.refresh or None,
         "size": settings.world.size,
         "loops": settings.world.loops,
     }

@@ -1,83 +1,166 @@
-"""What a long-lived agent knows of a family of tasks, and its form as records of memory."""
+"""What a long-lived agent knows of a family of tasks, and its form as records of memory.
 
+All of it is counts that add up: effects of causes and sightings for each type, and what all types share. A fleet
+can therefore merge them in any order. Types that are alike are joined when knowledge is read, never in memory.
+"""
+
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Self
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.action.priors.action_prior import ActionPrior
-from lifelore.agent.long_lived.known_types import Effects, KnownTypes
-from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily, record_key
+from lifelore.action.priors.action_prior import KIND, ActionPrior
+from lifelore.agent.long_lived.known_types import Effects, KnownType, KnownTypes, effect_counts, merged_types
+from lifelore.agent.long_lived.task_family import SharedKnowledge, TaskFamily
 from lifelore.agent.long_lived.type_prior import TypePrior
+from lifelore.core.protocols import Record
 
 Array = NDArray[np.float64]
 
-MOST_TYPES = 256
-"""Types that a robot can number in memory."""
-LEAST_BELIEF = 1e-3
-"""Beliefs below this are not remembered."""
+MOST_CONTEXTS = 1 << 20
+"""Contexts of tasks are numbered below this."""
+LEAST_BELIEF = 0.01
+"""Types of less belief learn nothing from a task."""
+
+
+@dataclass(frozen=True, eq=False)
+class TaskNews:
+    """What a task has taught.
+
+    Parameters
+    ----------
+    context, date : int
+    belief : mapping of str to float
+        Belief in each type, by name, at the end of the task: as much does each learn from it.
+    effects : sequence of (int, int)
+        Causes and effects, in their order.
+    moves : sequence of (int, int)
+        Codes and results of `AgentTask.moved`.
+    contexts, best : (n,) int64, (n, n_acts) bool
+        Best acts in the contexts of the task.
+    """
+
+    context: int
+    date: int
+    belief: Mapping[str, float]
+    effects: Effects
+    moves: Effects
+    contexts: NDArray[np.int64]
+    best: NDArray[np.bool_]
 
 
 @dataclass(eq=False)
 class Knowledge:
-    """Types, what all types share, and which types came in which context.
+    """Types by name, and what all types share.
 
     Parameters
     ----------
     family : TaskFamily
-    types : KnownTypes
+    types : dict of str to KnownType
     shared : SharedKnowledge
-    sightings : dict of int to ActionPrior
-        For each date, how much belief each type had at the end of the tasks of each context.
-    causes : (n_causes,) float64
-        Number of tasks that showed each cause.
-    n_tasks : int
-        Number of tasks that were lived.
     """
 
     family: TaskFamily
-    types: KnownTypes
+    types: dict[str, KnownType]
     shared: SharedKnowledge
-    sightings: dict[int, ActionPrior] = field(default_factory=dict)
-    causes: Array = field(default_factory=lambda: np.zeros(0))
-    n_tasks: int = 0
+    _view: KnownTypes | None = field(default=None, repr=False)
 
     @classmethod
     def empty(cls, family: TaskFamily) -> Self:
         """The knowledge of an agent that has lived through no task."""
-        name = family.name
-        shared = SharedKnowledge(
-            ActionPrior(family.n_results, key=record_key(name, "moves")),
-            ActionPrior(len(family.acts), key=record_key(name, "acts")),
-        )
-        return cls(family, KnownTypes(family), shared, {}, np.zeros(family.n_causes))
+        return cls(family, {}, SharedKnowledge.empty(family))
 
-    # ---- reading -----------------------------------------------------------------------------------
+    @property
+    def n_tasks(self) -> int:
+        """Number of tasks that were lived."""
+        return round(float(self.shared.causes.counts([self.family.n_causes])[0, 0]))
+
+    def known_types(self) -> KnownTypes:
+        """The types, alike ones joined, in the order of their names; they follow what is learnt."""
+        if self._view is None:
+            types = KnownTypes(self.family, [self.types[name] for name in sorted(self.types)])
+            self._view = merged_types(types) if len(types) > 1 else types
+        return self._view
 
     def type_prior(self) -> TypePrior:
-        """The prior over the types by context and date, learnt from the sightings."""
-        n_types = len(self.types)
-        prior = TypePrior(np.full(n_types, 1 / n_types), key=record_key(self.family.name, "sightings"))
-        for date, counts in self.sightings.items():
-            contexts = counts.contexts
-            rows = counts.counts(contexts)[:, :n_types]
-            for context, row in zip(contexts.tolist(), rows, strict=True):
-                prior.count(context, row, date)
+        """The prior over `known_types` by context and date, learnt from the sightings."""
+        known = self.known_types()
+        prior = TypePrior(np.full(len(known), 1 / len(known)))
+        rows: dict[tuple[int, int], Array] = {}
+        for number, one in enumerate(known.types):
+            codes = one.sightings.contexts
+            for code, count in zip(codes.tolist(), one.sightings.counts(codes)[:, 0], strict=True):
+                rows.setdefault(divmod(code, MOST_CONTEXTS), np.zeros(len(known)))[number] += count
+        for (date, context), row in sorted(rows.items()):
+            prior.count(context, row, date)
         return prior
 
     # ---- learning ----------------------------------------------------------------------------------
 
-    def sight(self, context: int, belief: Array, date: int) -> None:
-        """Remember the belief over types (n_types,) at the end of a task."""
-        held = np.flatnonzero(belief >= LEAST_BELIEF)
-        if date not in self.sightings:
-            self.sightings[date] = ActionPrior(MOST_TYPES, key=record_key(self.family.name, "sightings"))
-        best = np.zeros((len(held), MOST_TYPES), np.bool_)
-        best[np.arange(len(held)), held] = True
-        self.sightings[date].update(np.full(len(held), context), best, belief[held])
+    def learn(self, news: TaskNews) -> list[Record]:
+        """Learn from a task; return the records by which memory adds it."""
+        parts = self._parts(news)
+        self.add(parts)
+        return [part.to_record({"family": self.family.name}) for part in parts.values() if len(part)]
 
-    def count_causes(self, effects: Effects) -> None:
-        """Count a task, and the causes that it showed."""
-        self.causes[list({cause for cause, _ in effects})] += 1
-        self.n_tasks += 1
+    def _parts(self, news: TaskNews) -> dict[str, ActionPrior]:
+        family, parts = self.family, dict[str, ActionPrior]()
+        code = news.date * MOST_CONTEXTS + news.context
+        for name, belief in news.belief.items():
+            if belief >= LEAST_BELIEF:
+                parts[f"type/{name}"] = effect_counts(family, news.effects, belief)
+                parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
+        codes, results = np.array(news.moves, np.int64).reshape(-1, 2).T
+        parts["moves"] = _counted(codes, results, family.n_results)
+        causes = np.unique([*(cause for cause, _ in news.effects), family.n_causes])
+        parts["causes"] = _counted(causes, np.zeros_like(causes), 1)
+        acts = ActionPrior(len(family.acts))
+        acts.update(news.contexts, news.best)
+        parts["acts"] = acts
+        for name, part in parts.items():
+            part.key = f"{family.name}/{name}"
+        return parts
+
+    def add(self, parts: Mapping[str, ActionPrior]) -> None:
+        """Add counts by the name of their part."""
+        for name, part in parts.items():
+            kind, _, type_name = name.partition("/")
+            if not type_name:
+                _add(getattr(self.shared, kind), part)
+                continue
+            if type_name not in self.types:
+                self.types[type_name] = KnownType.empty(self.family, type_name)
+                self._view = None
+            for one in {id(t): t for t in (self.types[type_name], *self._viewed(type_name))}.values():
+                _add(one.effects if kind == "type" else one.sightings, part)
+        if self._view is not None:
+            self._view.forget_laws()
+
+    def _viewed(self, name: str) -> list[KnownType]:
+        """The joined type that a type belongs to; nothing where it has to be joined again."""
+        return [] if self._view is None else [one for one in self._view.types if name in one.members]
+
+    @classmethod
+    def from_records(cls, family: TaskFamily, records: Iterable[Record]) -> Self:
+        """The knowledge in records of memory; those of other families are left out."""
+        made, prefix = cls.empty(family), f"{family.name}/"
+        for record in records:
+            name = record.key.removeprefix(prefix)
+            if record.kind == KIND and name != record.key:
+                kind = name.partition("/")[0]
+                n = {"type": family.n_effects, "moves": family.n_results, "acts": len(family.acts)}.get(kind, 1)
+                made.add({name: ActionPrior.from_record(record, n)})
+        return made
+
+
+def _counted(codes, results, n: int, weight: float = 1.0) -> ActionPrior:
+    counts = ActionPrior(n)
+    counts.update_trajectory(codes, results, weight)
+    return counts
+
+
+def _add(counts: ActionPrior, part: ActionPrior) -> None:
+    part.key, counts.key = counts.key, counts.key
+    counts.merge(part)

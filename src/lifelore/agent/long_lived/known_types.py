@@ -34,17 +34,19 @@ OWN = 3.0
 """Weight w of an observation of the present task: it is about this very scene."""
 
 
-def count_effects(counts: ActionPrior, effects: Effects) -> None:
-    """Add the effects of a task to the counts of a type; each cause counts once, whatever its number of repeats.
+def effect_counts(family: TaskFamily, effects: Effects, weight: float = 1.0) -> ActionPrior:
+    """Counts of the effects of a task; each cause counts `weight`, whatever its number of repeats.
 
     The episodes of a task are not independent: the same scene answers the same act alike.
     """
+    counts = ActionPrior(family.n_effects)
     if effects:
         causes, found = np.array(effects, np.int64).T
         _, place, repeats = np.unique(causes, return_inverse=True, return_counts=True)
         best = np.zeros((len(causes), counts.n_actions), np.bool_)
         best[np.arange(len(causes)), found] = True
-        counts.update(causes, best, 1 / repeats[place])
+        counts.update(causes, best, weight / repeats[place])
+    return counts
 
 
 @dataclass(eq=False)
@@ -54,16 +56,24 @@ class KnownType:
     Parameters
     ----------
     name : str
-        Unique in a fleet: ``"robot.number"``; merged types have several names.
+        Unique in a fleet: ``"robot.number"``.
     effects : ActionPrior
         Counts of effects by cause.
-    n_tasks : int
-        Number of tasks behind the counts.
+    sightings : ActionPrior
+        Belief in this type at the end of tasks, by date and context; of a single action.
+    members : tuple of str
+        Names of the types that are joined in it.
     """
 
     name: str
     effects: ActionPrior
-    n_tasks: int = 0
+    sightings: ActionPrior
+    members: tuple[str, ...]
+
+    @classmethod
+    def empty(cls, family: TaskFamily, name: str) -> "KnownType":
+        """A type without counts."""
+        return cls(name, ActionPrior(family.n_effects), ActionPrior(1), (name,))
 
 
 @dataclass(eq=False)
@@ -107,7 +117,7 @@ class KnownTypes:
         return np.isin(groups, groups[seen])
 
     def laws(self, own: Array, generator: np.random.Generator | None = None) -> Array:
-        """P(effect | cause), (n_types + 1, n_causes, n_effects), after the task's own counts (n_causes, n_effects).
+        """P(effect | cause), (n_types + 1, n_causes, n_effects), after the task's `own` counts.
 
         The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
         """
@@ -130,26 +140,18 @@ class KnownTypes:
         signal = CategorySignal(rows / count[:, :, None], count=count)
         return PolicyLibrary(performance, signal, tuple(known.name for known in self.types), prior=prior)
 
-    def teach(self, type_: int, effects: Effects) -> None:
-        """Add the effects of a task to a type."""
-        known = self.types[type_]
-        count_effects(known.effects, effects)
-        known.n_tasks += 1
-        self._forget_laws()
+    def named(self, name: str) -> KnownType:
+        """The type that a name belongs to, alone or joined with others."""
+        return next(known for known in self.types if name in known.members)
 
-    def add(self, name: str, effects: Effects) -> int:
-        """Add a new type with the effects of its first task; its number."""
-        self.types.append(KnownType(name, ActionPrior(self.family.n_effects, key=f"{self.family.name}/{name}")))
-        self.teach(len(self.types) - 1, effects)
-        return len(self.types) - 1
-
-    def _forget_laws(self) -> None:
+    def forget_laws(self) -> None:
+        """Compute the laws again: counts have changed."""
         for name in ("counts", "pooled", "judged"):
             self.__dict__.pop(name, None)
 
 
-def merged_types(known: KnownTypes, least: float = 0.0) -> tuple[KnownTypes, list[int]]:
-    """Join types that one law explains as well as two, and tell where each type went.
+def merged_types(known: KnownTypes, least: float = 0.0) -> KnownTypes:
+    """Join types that one law explains as well as two.
 
     Parameters
     ----------
@@ -158,42 +160,46 @@ def merged_types(known: KnownTypes, least: float = 0.0) -> tuple[KnownTypes, lis
     least : float
         Types stay apart where the evidence for two laws exceeds this, in nats. At 0 they are joined where one law
         is the likelier explanation.
-
-    Returns
-    -------
-    (KnownTypes, list of int)
-        The merged types, and for each of `known.types` its number among them.
     """
-    prior = FIRST * known.pooled
-    alone = [_log_evidence(counts, prior) for counts in known.counts]
+    judges = known.family.judges
+    prior = FIRST * known.pooled[judges]
     groups: list[list[int]] = [[number] for number in range(len(known))]
-    sums = [counts.copy() for counts in known.counts]
-    while len(groups) > 1:
-        pairs = [
-            (alone[i] + alone[j] - _log_evidence(sums[i] + sums[j], prior), i, j)
-            for i in range(len(groups))
-            for j in range(i + 1, len(groups))
-        ]
-        for_two, i, j = min(pairs)
-        if for_two > least:
+    sums = list(known.counts[:, judges])
+    alone = [_log_evidence(counts, prior) for counts in sums]
+    for_two = {
+        (i, j): alone[i] + alone[j] - _log_evidence(sums[i] + sums[j], prior)
+        for i in range(len(groups))
+        for j in range(i + 1, len(groups))
+    }
+    while for_two:
+        i, j = min(for_two, key=for_two.__getitem__)
+        if for_two[i, j] > least:
             break
-        groups[i] += groups.pop(j)
-        sums[i] += sums.pop(j)
-        alone.pop(j)
+        groups[i] += groups[j]
+        sums[i] = sums[i] + sums[j]
         alone[i] = _log_evidence(sums[i], prior)
-    merged = KnownTypes(known.family)
-    place = [0] * len(known)
-    for number, group in enumerate(sorted(groups, key=min)):
-        members = [known.types[member] for member in sorted(group)]
-        total = ActionPrior(known.family.n_effects, key="merged")
-        for member in members:
-            alike = ActionPrior.from_fixed_point_counts(*member.effects.fixed_point_counts(), key="merged")
-            total.merge(alike)
-        name = "+".join(member.name for member in members)
-        merged.types.append(KnownType(name, total, sum(member.n_tasks for member in members)))
-        for member in group:
-            place[member] = number
-    return merged, place
+        for_two = {pair: found for pair, found in for_two.items() if j not in pair}
+        for pair in for_two:
+            if i in pair:
+                first, second = pair
+                for_two[pair] = alone[first] + alone[second] - _log_evidence(sums[first] + sums[second], prior)
+        groups[j] = []
+    return KnownTypes(
+        known.family, [_joined([known.types[k] for k in sorted(group)]) for group in groups if group]
+    )
+
+
+def _joined(types: list[KnownType]) -> KnownType:
+    if len(types) == 1:
+        return types[0]
+    members = tuple(name for known in types for name in known.members)
+    effects, sightings = (
+        ActionPrior.merged(
+            ActionPrior.from_fixed_point_counts(*getattr(known, part).fixed_point_counts()) for known in types
+        )
+        for part in ("effects", "sightings")
+    )
+    return KnownType("+".join(members), effects, sightings, members)
 
 
 def _log_evidence(counts: Array, prior: Array) -> float:

@@ -18,9 +18,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
 from lifelore.agent.long_lived.novelty_alarm import calibrated_alarm
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan
+from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -42,14 +43,11 @@ class LivingSettings:
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
-    sure : float
-        Belief from which a type is taught by a task, in (0.5, 1].
     """
 
     n_episodes: int = 8
     false_alarm: float = 0.05
     unknown: float = 0.05
-    sure: float = 0.8
 
 
 @dataclass
@@ -94,8 +92,8 @@ class LivedTask:
         Whether no known type fitted.
     alarm_score : float
         Largest score of the detector, in deviations of known tasks.
-    learnt : str or None
-        Name of the type that learnt from the task; None where no type was sure enough.
+    learnt : str
+        Name of the type that learnt most from the task.
     """
 
     drawn: DrawnTask
@@ -105,7 +103,7 @@ class LivedTask:
     types: list[str] = field(default_factory=list)
     alarm: bool = False
     alarm_score: float = 0.0
-    learnt: str | None = None
+    learnt: str = ""
 
     def to_dict(self) -> dict[str, Any]:
         """The task as JSON data, without its decisions."""
@@ -123,20 +121,21 @@ class Recognition:
     """The belief over types in one task, and the alarm that none fits."""
 
     def __init__(self, knowledge: Knowledge, prior: Array, settings: LivingSettings, seed: int) -> None:
-        self.known, self.settings = knowledge.types, settings
+        self.known = knowledge.known_types()
         self.own = np.zeros((knowledge.family.n_causes, knowledge.family.n_effects))
         self.agent: BayesianPolicyReuse | None = None
         self.alarm: NoveltyDetector | None = None
-        self._judged: set[int] = set()
         self.highest = 0.0
+        self._judged: set[int] = set()
         if len(self.known):
-            library = self.known.library(prior)
-            self._place = {int(cause): place for place, cause in enumerate(self.known.judged)}
+            library, judged = self.known.library(prior), self.known.judged
+            self._place = {int(cause): place for place, cause in enumerate(judged)}
             self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static())
+            frequency = knowledge.shared.causes.counts(judged)[:, 0]
             self.alarm = calibrated_alarm(
                 library,
-                np.maximum(knowledge.causes[self.known.judged], 0.5),
-                max(1, round(knowledge.causes[knowledge.family.judges].sum() / max(knowledge.n_tasks, 1))),
+                np.maximum(frequency, 0.5),
+                max(1, round(frequency.sum() / max(knowledge.n_tasks, 1))),
                 settings.false_alarm,
                 stream(seed, "long-lived", "alarm", knowledge.n_tasks),
                 settings.unknown,
@@ -177,28 +176,45 @@ def live_task(
     settings: LivingSettings,
     name: str,
     seed: int = 0,
-) -> LivedTask:
-    """Live through a task; `knowledge` learns from it. `name` is of the new type, if there will be one."""
-    lived = LivedTask(drawn, types=[known.name for known in knowledge.types.types])
+) -> tuple[LivedTask, list[Record]]:
+    """Live through a task; `knowledge` learns from it.
+
+    Parameters
+    ----------
+    knowledge : Knowledge
+    drawn : DrawnTask
+        Its context is observed; its hidden type is only copied into the result.
+    task : AgentTask
+    abilities : Abilities
+    settings : LivingSettings
+    name : str
+        Of the new type, if the task has one; unique in the fleet.
+    seed : int
+
+    Returns
+    -------
+    (LivedTask, list of Record)
+        What happened, and the records by which memory adds what was learnt.
+    """
+    known, shared = knowledge.known_types(), knowledge.shared
+    lived = LivedTask(drawn, types=[one.name for one in known.types])
 
     # Recognise: which types does this context usually have?
-    n_types, shared = len(knowledge.types), knowledge.shared
-    prior = np.full(n_types, 1 / max(n_types, 1))
-    if abilities.prior and n_types:
-        prior = knowledge.type_prior().prior(drawn.context, drawn.number)
-    lived.prior = prior
-    recognition = Recognition(knowledge, prior, settings, seed)
+    lived.prior = np.full(len(known), 1 / max(len(known), 1))
+    if abilities.prior and len(known):
+        lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
+    recognition = Recognition(knowledge, lived.prior, settings, seed)
     shared.guided = abilities.prior
 
+    # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
     effects: list[tuple[int, int]] = []
+    moves: list[tuple[int, int]] = []
     for episode in range(settings.n_episodes):
         task.begin()
-        # The episodes between the first and the last also try what may be better.
         between = 0 < episode < settings.n_episodes - 1
-        names = ("long-lived", "episode", drawn.number, episode)
         decisions, ended = [], False
         while not ended:
-            generator = stream(seed, *names) if between else None
+            generator = stream(seed, "long-lived", "episode", drawn.number, episode) if between else None
             decision = decide(knowledge, task, recognition, generator, trying=between and not decisions)
             step = task.act(decision.act)
             decision.reward, decision.effects, ended = step.reward, step.effects, step.ended
@@ -206,36 +222,24 @@ def live_task(
             recognition.observe(step.effects)
             effects += step.effects
             if task.moved is not None:
-                shared.moves.update_trajectory([task.moved[0]], [task.moved[1]])
+                moves.append(task.moved)
         lived.returns.append(sum(decision.reward for decision in decisions))
         lived.decisions.append(decisions)
 
-    # Notice and learn: a new type, or more of a known one.
+    # Notice: does any known type fit?
     lived.alarm, lived.alarm_score = recognition.alarmed, recognition.highest
-    number: int | None = None
-    belief = recognition.belief[:-1]
-    if not abilities.reuse and n_types:
-        number = 0
-        knowledge.types.teach(number, effects)
-    elif lived.alarm:
-        number = knowledge.types.add(name, effects)
-        belief = np.zeros(n_types + 1)
-        belief[number] = 1.0
+    believed = recognition.belief[:-1] / max(float(recognition.belief[:-1].sum()), 1e-300)
+    if lived.alarm and (abilities.reuse or not len(known)):
+        row, belief = len(known), {name: 1.0}
     else:
-        belief = belief / belief.sum()
-        if belief.max() >= settings.sure:
-            number = int(belief.argmax())
-            knowledge.types.teach(number, effects)
-    lived.learnt = None if number is None else knowledge.types.types[number].name
+        row = int(believed.argmax()) if abilities.reuse else 0
+        believed = believed if abilities.reuse else np.ones(1)
+        belief = {one.members[0]: value for one, value in zip(known.types, believed.tolist(), strict=True)}
+    lived.learnt = max(belief, key=belief.__getitem__)
 
-    # Remember: the best acts here, the types of this context, and how often each cause comes up.
-    laws = knowledge.types.laws(recognition.own)
-    contexts, best = task.best_acts(laws[-1 if number is None else number], shared)
-    shared.acts.update(contexts, best)
-    if abilities.reuse:
-        knowledge.sight(drawn.context, belief, drawn.number)
-    knowledge.count_causes(effects)
-    return lived
+    # Learn and remember: types learn the effects as far as they are believed, contexts their best acts and types.
+    contexts, best = task.best_acts(known.laws(recognition.own)[row], shared)
+    return lived, knowledge.learn(TaskNews(drawn.context, drawn.number, belief, effects, moves, contexts, best))
 
 
 def decide(
@@ -247,11 +251,12 @@ def decide(
 ) -> Decision:
     """The act of the behaviour that is worth most under the belief; with a generator, under laws drawn from it.
 
-    Drawn laws (posterior sampling) try acts as often as they may be the best ones. With `trying` the agent does not
-    give up.
+    Drawn laws (posterior sampling) try acts as often as they may be the best ones. With `trying` it does not give
+    up.
     """
-    laws = knowledge.types.laws(recognition.own, generator)
-    tried = knowledge.types.tried(recognition.own)
+    known = recognition.known
+    laws = known.laws(recognition.own, generator)
+    tried = known.tried(recognition.own)
     plan: Plan = task.plan(laws, tried, len(laws) - 1, knowledge.shared)
     belief = recognition.belief
     expected = belief @ plan.values

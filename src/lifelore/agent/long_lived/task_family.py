@@ -5,8 +5,8 @@ with the features that its effect may depend on; an *effect* is a category of wh
 causes is what the agent learns of each type. A *behaviour* acts best if the task is of one type.
 """
 
-from dataclasses import dataclass, field
-from typing import Any, Protocol
+from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -95,11 +95,21 @@ class SharedKnowledge:
         Counts of what follows in the scene, by codes of the family's own; empty where it needs none.
     acts : ActionPrior
         How often each act was best, by context.
+    causes : ActionPrior
+        Number of tasks that showed each cause, and after the last cause the number of tasks; of a single action.
+    guided : bool
+        Whether the prior over acts guides plans.
     """
 
     moves: ActionPrior
     acts: ActionPrior
-    guided: bool = field(default=True)
+    causes: ActionPrior
+    guided: bool = True
+
+    @classmethod
+    def empty(cls, family: "TaskFamily") -> "SharedKnowledge":
+        """Without counts."""
+        return cls(ActionPrior(family.n_results), ActionPrior(len(family.acts)), ActionPrior(1))
 
 
 class AgentTask(Protocol):
@@ -135,7 +145,7 @@ class AgentTask(Protocol):
         ...
 
     def best_acts(self, laws: Array, shared: SharedKnowledge) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-        """Contexts of this task (n,) and their best acts (n, n_acts), under laws (n_causes, n_effects) of a type."""
+        """Contexts of this task (n,) and their best acts (n, n_acts) under a type's laws (n_causes, n_effects)."""
         ...
 
     def act(self, act: int) -> Step:
@@ -183,13 +193,3 @@ class TaskFamily(Protocol):
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words."""
         ...
-
-
-def record_key(family: str, part: str) -> str:
-    """Key of a record of a family in memory."""
-    return f"{family}/{part}"
-
-
-def about(family: TaskFamily) -> dict[str, Any]:
-    """Description of a family's records for people."""
-    return {"family": family.name}

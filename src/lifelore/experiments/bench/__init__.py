@@ -31,6 +31,7 @@ BENCHES = {
     "buildings": "lives",
     "merge": "fleet",
     "capacity": "fleet",
+    "large_memory": "fleet",
     "recognition": "lives",
     "lidar": "lives",
     "worlds": "lives",

@@ -1,4 +1,4 @@
-"""Planning over contexts: the best acts under each type, and what each type's best acts are worth under the others.
+"""Planning over contexts: the best acts under each type, and their value under the other types.
 
     Q_i(c, a) = Σ_r P_i(r | c, a) (R_i(c, a, r) + Σ_c' P(c' | c, a, r) V_i(c')),    V_i(c) = max_a Q_i(c, a)
 

@@ -24,6 +24,7 @@ from lifelore.agent.long_lived.families.tray_features import (
     look_with_labels,
     look_without_relations,
 )
+from lifelore.agent.long_lived.known_types import OWN
 from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
@@ -197,6 +198,7 @@ class TabletopTask:
             look_without_relations if not perception else look_with_labels if labelled else look_at_raw_cloud
         )
         self._visited: set[int] = set()
+        self._followed = ActionPrior(N_CONTEXTS + 1)
         self.begin()
 
     # ---- the scene ----------------------------------------------------------------------------------
@@ -253,6 +255,7 @@ class TabletopTask:
         if not ended:
             self._follow(act, number, result)
         self.moved = (before * GIVE_UP + act) * N_RESULTS + result, END if ended else self.context
+        self._followed.update_trajectory([self.moved[0]], [self.moved[1]], OWN)
         self._visited.add(self.context)
         return Step(reward, effects, ended)
 
@@ -292,7 +295,7 @@ class TabletopTask:
     def _model(self, laws: Array, tried: NDArray[np.bool_], shared: SharedKnowledge) -> ContextModel:
         known = shared.moves.contexts // (GIVE_UP * N_RESULTS)
         contexts = np.union1d(known, np.fromiter(self._visited | {self.context}, np.int64))
-        moves = _moves(contexts, shared.moves)
+        moves = _moves(contexts, shared.moves, self._followed)
         causes = _situated_causes(contexts)
         rewards = laws[:, N_SITUATED:] @ BIN_MIDDLES
         return ContextModel(
@@ -321,8 +324,8 @@ def _situated_causes(contexts: NDArray[np.int64]) -> NDArray[np.int64]:
     return situation * GIVE_UP + acts
 
 
-def _moves(contexts: NDArray[np.int64], counted: ActionPrior) -> Array:
-    """P(next context | context, act, result) from what followed before and, at first, from what acts are meant to do."""
+def _moves(contexts: NDArray[np.int64], counted: ActionPrior, own: ActionPrior) -> Array:
+    """P(next context | context, act, result): what followed, in this task too, and at first what is meant to."""
     n = len(contexts)
     acts, results = np.arange(GIVE_UP), np.arange(N_RESULTS)
     meant = np.searchsorted(contexts, _meant(contexts))
@@ -332,14 +335,14 @@ def _moves(contexts: NDArray[np.int64], counted: ActionPrior) -> Array:
     i, a, r = np.indices((n, GIVE_UP, N_RESULTS))
     found[i, a, r, meant] = MEANT
     codes = (contexts[:, None, None] * GIVE_UP + acts[:, None]) * N_RESULTS + results
-    rows = counted.counts(codes.ravel()).reshape(n, GIVE_UP, N_RESULTS, -1)
+    rows = (counted.counts(codes.ravel()) + own.counts(codes.ravel())).reshape(n, GIVE_UP, N_RESULTS, -1)
     found[..., :n] += rows[..., contexts]
     found[..., n] += rows[..., END]
     return found / found.sum(axis=3, keepdims=True)
 
 
 def _meant(contexts: NDArray[np.int64]) -> NDArray[np.int64]:
-    """(n, n_acts - 1, n_results) the context that an act is meant to lead to; `END` for handing over the target."""
+    """(n, n_acts - 1, n_results) the context that an act is meant to lead to; `END` once the target is handed."""
     situation, hand = situation_of(contexts)[:, None], (contexts // 2 % len(HANDS))[:, None]
     acts = np.arange(GIVE_UP)[None]
     below = situation % 2
