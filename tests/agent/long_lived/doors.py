@@ -29,6 +29,10 @@ class Doors:
         return np.arange(N)
 
     @property
+    def judges(self):
+        return np.ones(N, np.bool_)
+
+    @property
     def possible(self):
         return np.full((N, 2), 0.5)
 

@@ -135,13 +135,15 @@ class KnownTypes:
 
     def differs(self, number: int, effects: Effects) -> bool:
         """Whether the effects of a task are better explained by a type of its own than by a known one."""
+        judges = self.family.judges
         own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
-        return evidence_for_two(self.counts[number], self.family.smoothed(own[None])[0], self.pooled) > 0
+        own = self.family.smoothed(own[None])[0, judges]
+        return evidence_for_two(self.counts[number, judges], own, self.pooled[judges]) > 0
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
-        """The causes that were tried, ascending."""
-        return np.flatnonzero(self.counts.any(axis=(0, 2)))
+        """The causes that were tried and tell types apart, ascending."""
+        return np.flatnonzero(self.counts.any(axis=(0, 2)) & self.family.judges)
 
     def library(self, prior: Array) -> PolicyLibrary:
         """A library whose policies are the judged causes, and whose signals are their effects."""
@@ -176,10 +178,11 @@ def evidence_for_two(first: Array, second: Array, pooled: Array) -> float:
 def merged_types(known: KnownTypes) -> KnownTypes:
     """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts."""
     groups: list[list[int]] = [[number] for number in range(len(known))]
-    sums = [counts.copy() for counts in known.counts]
+    judges = known.family.judges
+    pooled, sums = known.pooled[judges], list(known.counts[:, judges])
 
     def apart(i: int, j: int) -> float:
-        return evidence_for_two(sums[i], sums[j], known.pooled)
+        return evidence_for_two(sums[i], sums[j], pooled)
 
     pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
     while pairs:
@@ -188,7 +191,7 @@ def merged_types(known: KnownTypes) -> KnownTypes:
             break
         groups[i] += groups[j]
         groups[j] = []
-        sums[i] += sums[j]
+        sums[i] = sums[i] + sums[j]
         pairs = {pair: apart(*pair) if i in pair else found for pair, found in pairs.items() if j not in pair}
     joined = [_joined([known.types[number] for number in sorted(group)]) for group in groups if group]
     return KnownTypes(known.family, joined)

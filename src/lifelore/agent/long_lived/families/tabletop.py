@@ -116,6 +116,7 @@ class TabletopFamily:
     n_causes = N_SITUATED + N_DEEDS * N_RESULTS
     n_effects = N_BINS
     n_results = N_CONTEXTS + 1
+    judges = np.ones(n_causes, np.bool_)
 
     @property
     def groups(self) -> NDArray[np.int64]:

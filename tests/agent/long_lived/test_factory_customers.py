@@ -1,0 +1,185 @@
+"""Factory customers as the long-lived agent meets them: tours, answers, and a life."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from lifelore.agent.long_lived.families.factory_customers import ACTS, PAID, REFUSED, FactoryFamily, OrderTask
+from lifelore.agent.long_lived.families.order_planning import (
+    UNKNOWN,
+    UNWANTED,
+    WANTED,
+    OrderState,
+    OrderTable,
+    returns_of_tours,
+    set_weights,
+)
+from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.live_task import LivingSettings, live_task
+from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.core.streams import stream
+from lifelore.domains.factory.customer_orders import CUSTOMERS, CustomerOrder
+from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.domains.task_stream import TaskStream
+
+LAYOUT = modified_factory(stream(0, "test"))
+TABLE = OrderTable.of(LAYOUT)
+FULL = AGENTS["full"]
+
+
+def certain_laws(*customers):
+    """Laws of types whose wanted components are certain, (n_types, n_causes, n_effects)."""
+    wanted = np.array([[k in CUSTOMERS[name] for k in range(9)] for name in customers], float)
+    paid = np.concatenate([wanted, np.ones_like(wanted)], axis=1)
+    return np.stack([paid, 1 - paid], axis=2)
+
+
+def played(order, acts_of):
+    """Return of an episode of acts chosen from the task's state."""
+    task = OrderTask(order)
+    total, ended = 0.0, False
+    while not ended:
+        step = task.act(acts_of(task))
+        total, ended = total + step.reward, step.ended
+    return total
+
+
+def plan(task, laws):
+    return task.plan(laws, np.ones(len(ACTS), bool), None, Knowledge.empty(FactoryFamily(ALWAYS)).shared)
+
+
+ALWAYS = TaskStream(("carts", "lamps"), n_contexts=1, loyalty=1.0)
+
+
+@pytest.mark.parametrize("customer", CUSTOMERS)
+def test_the_best_tour_is_the_optimum_over_single_moves(customer):
+    order = CustomerOrder(LAYOUT, customer)
+    wanted = np.isin(np.arange(9), CUSTOMERS[customer])
+    assert TABLE.best(wanted) == pytest.approx(order.best_return, abs=1e-6)
+
+
+def test_the_best_tour_of_two_components_by_brute_force():
+    gamma, pay = LAYOUT.floor.discount, LAYOUT.rewards
+
+    def tour(acts):
+        total, discount, place = 0.0, 1.0, TABLE.start
+        for act in acts:
+            total += discount * TABLE.walk[place, act]
+            discount *= TABLE.shrink[place, act]
+            total += discount * pay.use
+            discount *= gamma
+            place = act
+        return total + discount / gamma * pay.completion
+
+    orders = [acts for acts in permutations((2, 5, 11, 14)) if acts.index(2) < acts.index(11)]
+    orders = [acts for acts in orders if acts.index(5) < acts.index(14)]
+    assert TABLE.best(np.isin(np.arange(9), (2, 5))) == pytest.approx(max(map(tour, orders)))
+
+
+@pytest.mark.parametrize("truth", ["bicycles", "lamps"])
+def test_a_behaviour_is_worth_what_it_gets(truth):
+    laws = certain_laws("bicycles", "carts", "lamps")
+    order = CustomerOrder(LAYOUT, truth)
+    values = plan(OrderTask(order), laws).values[("bicycles", "carts", "lamps").index(truth)]
+    for behaviour in range(3):
+        found = played(order, lambda task, j=behaviour: plan(task, laws).acts[j])
+        assert found <= order.best_return + 1e-9
+        if behaviour == ("bicycles", "carts", "lamps").index(truth):
+            assert found == pytest.approx(order.best_return)
+            assert values[behaviour] == pytest.approx(found)
+        else:
+            assert found < order.best_return
+
+
+def test_returns_of_tours_are_those_of_the_world():
+    order = CustomerOrder(LAYOUT, "chairs")  # wants 4, 6, 7, 8
+    now = OrderTask(order).state
+    planned = np.isin(np.arange(9), (4, 1, 6))[None]
+    rest = np.array([0, 8, 2, 7, 3, 1, 4, 5, 6])
+    truth = np.isin(np.arange(9), CUSTOMERS["chairs"]).astype(int)
+    expected = TABLE.returns(now, planned, rest[None], truth[None])
+    assert played(order, lambda task: TABLE.act(task.state, planned[0], rest)) == pytest.approx(expected[0, 0])
+    pay = np.array([LAYOUT.floor.discount, 10.0, -10.0, 100.0])
+    plain = getattr(returns_of_tours, "py_func", returns_of_tours)
+    again = plain(
+        TABLE.acts,
+        TABLE.walk,
+        TABLE.shrink,
+        pay,
+        now.stages,
+        now.known,
+        now.place,
+        planned,
+        rest[None],
+        truth[None],
+    )
+    assert np.array_equal(again, expected)
+
+
+def test_the_sets_agree_with_what_is_known():
+    known = np.array([WANTED, UNWANTED, UNKNOWN, UNKNOWN])
+    sets = OrderState(np.array([2, 0, 0, 0]), known, 0).sets()
+    assert sorted(map(tuple, sets.tolist())) == [(1, 0, 0, 1), (1, 0, 1, 0), (1, 0, 1, 1)]
+    weights = set_weights(np.array([[0.9, 0.1, 0.2, 0.5]]), sets)
+    by_set = {tuple(s): w for s, w in zip(sets.tolist(), weights[0], strict=True)}
+    total = 0.2 * 0.5 + 0.8 * 0.5 + 0.2 * 0.5
+    assert by_set[1, 0, 0, 1] == pytest.approx(0.8 * 0.5 / total)
+    assert by_set[1, 0, 1, 1] == pytest.approx(0.2 * 0.5 / total)
+
+
+def test_answers_are_news_once_and_the_end_tells_the_rest():
+    task = OrderTask(CustomerOrder(LAYOUT, "lamps"))  # wants 2, 3, 6, 7
+    assert [task.act(act).effects for act in (2, 0, 3)] == [((2, PAID),), ((0, REFUSED),), ((3, PAID),)]
+    assert task.describe() == "procured [2, 3], assembled nothing"
+    for act in (6, 7, 11, 12, 15):
+        step = task.act(act)
+    assert not step.ended
+    step = task.act(16)
+    assert step.ended
+    assert set(step.effects) == {(k, REFUSED) for k in (1, 4, 5, 8)}
+    task.begin()
+    assert task.act(2).effects == ()
+    assert task.act(0).effects == ()
+    assert set(plan(task, certain_laws("carts")).acts) <= {3, 6, 7, 11}
+
+
+def test_the_hidden_list_is_not_read():
+    alike = [OrderTask(CustomerOrder(LAYOUT, name)) for name in ("bicycles", "carts")]
+    laws = certain_laws("bicycles", "tables")
+    first, second = (plan(task, laws) for task in alike)
+    assert np.array_equal(first.values, second.values)
+    assert np.array_equal(first.acts, second.acts)
+    assert [task.act(0).effects for task in alike] == [((0, PAID),)] * 2
+
+
+def life(agent, family, n_tasks):
+    """First returns below the best possible, and the knowledge at the end."""
+    abilities, knowledge, missed = AGENTS[agent], Knowledge.empty(family), []
+    for number in range(n_tasks):
+        if not abilities.memory:
+            knowledge = Knowledge.empty(family)
+        drawn, task = family.meet(number, abilities)
+        lived, _ = live_task(knowledge, drawn, task, abilities, LivingSettings(n_episodes=2), f"a.{number}")
+        missed.append(family.best_return(number) - lived.returns[0])
+        assert lived.returns[1] == pytest.approx(family.best_return(number))
+    return np.array(missed), knowledge
+
+
+def test_a_customer_is_learnt_from_one_order_and_served_best_from_the_next():
+    family = FactoryFamily(TaskStream(("carts",), n_contexts=1))
+    missed, knowledge = life("full", family, 6)
+    assert len(knowledge.types) == 1
+    assert missed[0] > 10
+    assert missed[2:] == pytest.approx(np.zeros(4), abs=1e-6)
+
+
+@pytest.mark.slow
+def test_context_and_reuse_and_memory_pay():
+    family = FactoryFamily(TaskStream(tuple(CUSTOMERS), n_contexts=3, loyalty=1.0))
+    missed = {
+        agent: life(agent, family, 16)[0][8:].mean() for agent in ("full", "no-prior", "no-reuse", "scratch")
+    }
+    assert missed["full"] < missed["no-prior"] < missed["scratch"]
+    assert missed["full"] < 0.3 * missed["no-reuse"]
+    assert missed["full"] < 0.3 * missed["scratch"]
