@@ -1,5 +1,6 @@
 """`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
@@ -253,6 +254,13 @@ class Memory:
         count = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = ?"
         with self._store.reading() as conn:
             return int(conn.value(count, (robot,)))
+
+    def history(self, robot: str) -> list[tuple[dict[str, Any], list[Record]]]:
+        """(task, records) of each contribution of a robot, oldest first; all are in main memory at once."""
+        with self._store.reading() as conn:
+            numbers = [entry.number for entry in ledger.entries(conn, robot)]
+            found = [stored.contribution for stored in ledger.load(conn, numbers)]
+            return [(json.loads(one.task), one.records()) for one in found]
 
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""
