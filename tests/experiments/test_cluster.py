@@ -17,7 +17,7 @@ from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import reproduce
 from lifelore.experiments.engine.source_key import source_key
 
-CLAIM = "C5.1"
+CLAIM = "C3.2"
 
 
 def wait_for(process: subprocess.Popen[str], pattern: str) -> str:
