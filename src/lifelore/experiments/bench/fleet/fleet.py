@@ -28,7 +28,7 @@ from lifelore.experiments.bench.fleet.fleet_processes import (
     processes_on,
 )
 from lifelore.experiments.bench.fleet.fleet_robot import LIFE, LIVES, MOVES, FleetTask, Robot, office
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, row
 from lifelore.memory import open_memory
 
 ROUNDS = {1: 24, 2: 16, 4: 12, 8: 8}
@@ -150,7 +150,7 @@ def _process_rows(processes: dict[str, dict]) -> list[dict]:
 
 
 def _kill_rows(kills: dict[str, Any]) -> list[dict]:
-    labels = {"tasks": "tasks stored", "lost": "tasks in progress that were lost", "twice": "tasks stored twice"}
+    labels = {"tasks": "tasks stored", "lost": "tasks not yet taken again", "twice": "tasks stored twice"}
     return [row(f"{kills['kills']} kills: {text}", kills[name], "tasks") for name, text in labels.items()]
 
 
@@ -173,6 +173,7 @@ def _goals(
     wrong = kills["twice"] + kills["missing"] + len(kills["problems"]) + kills["wrong_sums"]
     return [
         *goals,
-        at_most("tasks lost a kill", 1, kills["lost"] / kills["kills"]),
+        at_least("tasks stored a kill", 1, kills["tasks"] / kills["kills"]),
+        at_most("tasks not yet taken again, a kill", 1, kills["lost"] / kills["kills"]),
         at_most("after kills: tasks twice or missing, problems, wrong sums", 0, wrong),
     ]

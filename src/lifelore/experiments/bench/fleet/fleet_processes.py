@@ -16,8 +16,8 @@ from lifelore.memory import open_memory
 
 PROCESSES, PROCESS_TASKS = 4, 8
 """Robots that run at the same time on one memory, and tasks of each."""
-KILLS, KILL_PROCESSES, SECONDS = 10, 3, (2.0, 6.0)
-"""Kills, processes of the robot that live at a time, and range of the seconds between two kills."""
+KILLS, KILL_PROCESSES, SECONDS = 10, 3, 0.5
+"""Kills, processes of the robot that live at a time, and most seconds between a task of a process and its kill."""
 
 
 def processes_on(place: str) -> dict[str, Any] | None:
@@ -53,18 +53,15 @@ def killed_processes() -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         robot = Robot(str(Path(folder, "fleet.db")), "fleet", 0, office(Path(folder), 0))
         endless = command(robot, 10**6)
-        running = [subprocess.Popen(endless, stdout=subprocess.DEVNULL) for _ in range(KILL_PROCESSES)]
+        running = [subprocess.Popen(endless, stdout=subprocess.PIPE) for _ in range(KILL_PROCESSES)]
         try:
             for _ in range(KILLS):
-                time.sleep(draw.uniform(*SECONDS))
                 victim = running.pop(draw.randrange(len(running)))
-                victim.send_signal(signal.SIGKILL)
-                victim.wait()
-                running.append(subprocess.Popen(endless, stdout=subprocess.DEVNULL))
+                _kill(victim, draw.uniform(0.0, SECONDS))
+                running.append(subprocess.Popen(endless, stdout=subprocess.PIPE))
         finally:
             for process in running:
-                process.kill()
-                process.wait()
+                _kill(process, 0.0)
         with open_memory(robot.memory) as memory:
             before = task_numbers(memory, robot.name)
             problems = memory.check()
@@ -81,3 +78,12 @@ def killed_processes() -> dict[str, Any]:
                 "problems": problems + memory.check(),
                 "wrong_sums": wrong_sums(memory),
             }
+
+
+def _kill(process: subprocess.Popen, seconds: float) -> None:
+    """Kill a process some time after its first task, so that each kill meets a robot at work."""
+    assert process.stdout is not None, "the process prints to a pipe"
+    process.stdout.readline()
+    time.sleep(seconds)
+    process.send_signal(signal.SIGKILL)
+    process.communicate()
