@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
-            "perceive, reuse, long_user, log. Benefit: courier, recognition, lidar, worlds, contexts, "
+            "perceive, reuse, long_user, log. Benefit: fleet, courier, recognition, lidar, worlds, contexts, "
             "raw_frames, segmentation, relations, plans, views, pictures, deep, deep_layouts, novelty, "
             "changing_types, bands. Statistics: evaluation."
         ),

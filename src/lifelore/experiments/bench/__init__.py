@@ -32,6 +32,7 @@ BENCHES = {
     "merge": "fleet",
     "capacity": "fleet",
     "large_memory": "fleet",
+    "fleet": "fleet",
     "recognition": "lives",
     "lidar": "lives",
     "worlds": "lives",
