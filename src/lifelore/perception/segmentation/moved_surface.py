@@ -39,7 +39,7 @@ class ViewAfter:
         self.tree = KDTree(surface.points)
 
     def costs(self, places: NDArray[np.float64]) -> NDArray[np.float64]:
-        """(n,) cost of surface points at places (n, 3): 0 on a surface, 1 if seen to be empty, between if unseen."""
+        """(n,) cost of surface at places (n, 3): 0 on a surface, 1 if seen to be empty, between if unseen."""
         away = places - self._camera
         distance = np.linalg.norm(away, axis=1)
         apart, nearest = self._directions.query(away / distance[:, None], distance_upper_bound=_ANGLE)
