@@ -1,6 +1,7 @@
 """Measures and rows of claim C5.6: paired differences between agents on a robot, unmeasured without a trial."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter5.c5_06_robot_hardware.run import AGENTS
@@ -30,7 +31,9 @@ def hardware_measures(records: Sequence[Mapping]) -> dict[str, Estimate]:
     by = {(record["task"], record["agent"]): record for record in records}
 
     def less(key: str, agent: str) -> Estimate:
-        return mean_estimate([by[task, "full"][key] - by[task, agent][key] for task in tasks])
+        found = mean_estimate([by[task, "full"][key] - by[task, agent][key] for task in tasks])
+        # Differences that are all the same, such as no spill at all, have an interval without width.
+        return found if found.ci95 else replace(found, ci95=(found.value, found.value))
 
     return {
         **{f"points_less_{agent.replace('-', '_')}": less("points", agent) for agent in AGENTS[1:]},
