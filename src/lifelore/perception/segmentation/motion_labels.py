@@ -28,7 +28,7 @@ def motion_labels(
     weights : (e,) float64
         Cost of two neighbours with different motions, at least 0.
     """
-    labels = costs.argmin(axis=1)
+    labels = costs.argmin(axis=1).astype(np.int64)
     least = _energy(costs, pairs, weights, labels)
     for _ in range(_ROUNDS):
         before = least

@@ -70,7 +70,7 @@ def registered(
     for limit in np.linspace(reach, reach / 2, _ITERATIONS):
         moved = motion.apply(points)
         distance, nearest = tree.query(moved, distance_upper_bound=limit)
-        near = np.isfinite(distance)
+        near, nearest = np.isfinite(distance), np.asarray(nearest)
         if np.count_nonzero(near) < 6:
             return motion
         moved, normal = moved[near], normals[nearest[near]]
