@@ -109,7 +109,9 @@ class PokedPatches:
         ends = np.sort(self._patch[surface.pairs], axis=1)
         self._pairs, border = np.unique(ends[ends[:, 0] != ends[:, 1]], axis=0, return_counts=True)
         within = self._segment[self._pairs[:, 0]] == self._segment[self._pairs[:, 1]]
-        self._weights = BORDER * border * np.where(within, 1.0, CREASE)
+        self._weights: NDArray[np.float64] = np.asarray(
+            BORDER * border * np.where(within, 1.0, CREASE), np.float64
+        )
 
     # --- pushes -----------------------------------------------------------------------------------------------
 
@@ -201,7 +203,7 @@ class PokedPatches:
         return np.einsum("nij,nj->ni", rotations, self._surface.points) + shifts
 
     def _patch_costs(self, costs: NDArray[np.float64]) -> NDArray[np.float64]:
-        return np.bincount(self._patch, costs, len(self._counts))
+        return np.bincount(self._patch, costs, len(self._counts)).astype(np.float64)
 
     def _next_motion(
         self, view: ViewAfter, places: NDArray, unexplained: NDArray, poke: Poke, motions: list[RigidMotion]

@@ -66,7 +66,7 @@ def place_flush(rng: np.random.Generator) -> Group:
 
 def _any_block(rng: np.random.Generator) -> Placed:
     size = rng.uniform((0.06, 0.05, 0.05), (0.12, 0.1, 0.12))
-    return stand(box(*map(float, size)), about(2, float(rng.uniform(0, np.pi))))
+    return stand(box(float(size[0]), float(size[1]), float(size[2])), about(2, float(rng.uniform(0, np.pi))))
 
 
 def place_occluded(rng: np.random.Generator) -> Group:
@@ -74,7 +74,7 @@ def place_occluded(rng: np.random.Generator) -> Group:
     length, depth, height = map(float, rng.uniform((0.2, 0.05, 0.05), (0.28, 0.08, 0.09)))
     bar = stand(box(length, depth, height), about(2, rng.normal(0, 0.1)))
     size = rng.uniform((0.045, 0.06, 0.14), (0.06, 0.075, 0.2))
-    screen = stand(box(*map(float, size)), about(2, rng.normal(0, 0.1)))
+    screen = stand(box(float(size[0]), float(size[1]), float(size[2])), about(2, rng.normal(0, 0.1)))
     # The camera looks along +y.
     group = [bar, *put_beside([bar], [screen], -np.pi / 2, float(rng.uniform(0.035, 0.05)))]
     side = 0.0 if rng.random() < 0.5 else np.pi
