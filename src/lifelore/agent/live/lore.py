@@ -13,6 +13,7 @@ from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
 from lifelore.agent.live.transitions import BuildingGrid
 from lifelore.core.learning.known_world import WorldModel
+from lifelore.core.learning.tour_search import KnownTour
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.memory import Memory
@@ -55,6 +56,7 @@ class Lore:
     model: WorldModel
     grid: BuildingGrid
     _stored: NDArray[np.int64] = field(repr=False)
+    _tour: KnownTour | None = field(default=None, repr=False)
 
     @classmethod
     def recalled(
@@ -93,6 +95,11 @@ class Lore:
         news.update(self.scope.contexts, best, weight)
         self.prior.merge(news)
         return news.to_record({"prior": self.scope.kind, "actions": list(MOVE_NAMES)})
+
+    def known_tour(self) -> KnownTour:
+        """A short closed tour of the known places."""
+        self._tour = KnownTour.of(self.model, self.world.cells, self._tour)
+        return self._tour
 
     def model_news(self) -> Record:
         """Transitions that differ from those in memory, as a record."""
