@@ -6,10 +6,12 @@ stands. On the way, it still tries a move that was never made, or enters a place
 task, where that is no farther than the tour's next place.
 """
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.core.compiled.random_state import uniform_integer
@@ -20,8 +22,14 @@ from lifelore.core.planning.closed_tour import closed_tour, nearest_walk
 from lifelore.core.planning.near_distances import NearDistances, known_neighbours, near_distances
 from lifelore.core.planning.search_order import search_order
 
+LENGTH = 1.1
+"""Steps a place of a closed tour, as measured on maps of offices."""
 LEAST_PLACES = 8
 """Number of known places below which no tour is planned."""
+
+Choose = Callable[[NDArray[np.float64], NDArray[np.int64], float], NDArray[np.int64]]
+"""Orders destinations: takes the steps between them (the last row from the start), their states, and the steps of
+the tour; returns those to try before the tour."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +40,16 @@ class KnownTour:
         to ``ends[begin[s]:begin[s + 1]]``
     near : NearDistances
     tour : (n,) int32, the places of the largest region that known moves join
+    destinations : (n,) int64, places that are more likely than others to hold the goal
+    choose : orders those that are tried before the tour
     """
 
     begin: NDArray[np.int32]
     ends: NDArray[np.int32]
     near: NearDistances
     tour: NDArray[np.int32]
+    destinations: NDArray[np.int64]
+    choose: Choose | None = None
 
     @classmethod
     def of(cls, model: WorldModel, cells: NDArray[np.integer], before: "KnownTour | None" = None) -> "KnownTour":
@@ -62,17 +74,34 @@ class KnownTour:
         count = nearest_walk(
             start, begin, ends, np.zeros(n, np.bool_), np.empty(n, np.int32), np.full(n, -1, np.int32), walk
         )
-        return cls(begin, ends, near, closed_tour(near, walk[:count]))
+        return cls(begin, ends, near, closed_tour(near, walk[:count]), np.empty(0, np.int64))
+
+    def with_destinations(self, destinations: NDArray[np.int64], choose: Choose) -> "KnownTour":
+        """The same tour with places to try before it."""
+        return replace(self, destinations=destinations, choose=choose)
 
     def order(self, place: NDArray[np.int8], start: int) -> NDArray[np.int32]:
         """The places not yet visited in the order of visits from `start`; none out of the tour's reach."""
         wanted = np.zeros(len(place), np.bool_)
         wanted[self.tour] = place[self.tour] == NOT_LOOKED
         wanted[start] = False
+        tried = self._tried(wanted, start)
+        if len(tried):
+            wanted[tried], start = False, int(tried[-1])
         nearest = self._nearest(wanted, start) if len(self.tour) >= LEAST_PLACES else -1
         if nearest < 0:
+            return tried
+        return np.r_[tried, search_order(self.near, self.tour, wanted, start, nearest)]
+
+    def _tried(self, wanted: NDArray[np.bool_], start: int) -> NDArray[np.int32]:
+        """The destinations to try before the tour."""
+        places = self.destinations[wanted[self.destinations]]
+        if self.choose is None or not len(places):
             return np.empty(0, np.int32)
-        return search_order(self.near, self.tour, wanted, start, nearest)
+        moves = np.ones(len(self.ends)), self.ends, self.begin
+        graph = sparse.csr_array(moves, shape=(len(wanted),) * 2)
+        steps = csgraph.dijkstra(graph, indices=np.r_[places, start], unweighted=True)[:, places]
+        return self.choose(steps, places, LENGTH * len(self.tour)).astype(np.int32)
 
     def _nearest(self, wanted: NDArray[np.bool_], start: int) -> int:
         """The wanted state nearest to `start`, -1 if none is reached."""
