@@ -6,6 +6,8 @@ tasks. Steps are those until the goal is entered, the means are over the last ha
 resample offices. The last method knows all destinations and how often each is the goal: no order is better.
 """
 
+from pathlib import Path
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -38,12 +40,13 @@ NOTHING, NEAREST, REUSE, EXACT, BEST = (
     "exact search, all known",
 )
 RULES = {NEAREST: by_nearness, REUSE: by_rate, EXACT: by_exact_search}
+OUT = Path("results")
 MOST_RATIO = 1.25
 """Most steps of policy reuse in the exact order, as ratio to the exact search that knows all."""
 
 
-def bench_destinations(repeats: int, progress: Progress) -> dict:
-    """Rows and goals; see `lifelore.experiments.bench.bench`."""
+def bench_destinations(repeats: int, progress: Progress, out: Path = OUT) -> dict:
+    """Rows and goals; see `lifelore.experiments.bench.bench`. The figure is written with three repeats or more."""
     rows, goals = [], []
     for number, (law, exponent) in enumerate(LAWS.items()):
         found: dict[str, list[float]] = {name: [] for name in (NOTHING, *RULES, BEST)}
@@ -55,7 +58,17 @@ def bench_destinations(repeats: int, progress: Progress) -> dict:
         for other, most in ((BEST, MOST_RATIO), (NEAREST, 1.0)):
             ratio = ratio_estimate(found[EXACT], found[other]).value
             goals.append(at_most(f"{EXACT} / {other}, {law}", most, ratio))
+    if repeats >= 3:
+        _draw(rows, out)
     return {"rows": rows, "goals": goals}
+
+
+def _draw(rows: list[dict], out: Path) -> None:
+    from lifelore.experiments.bench.lives.figure_destinations import draw_destinations
+    from lifelore.figures.style import save_figure
+
+    out.mkdir(parents=True, exist_ok=True)
+    save_figure(draw_destinations((NOTHING, *RULES, BEST), tuple(LAWS), rows), out / "bench_destinations.png")
 
 
 def _rows(law: str, found: dict[str, list[float]]) -> list[dict]:
