@@ -1,0 +1,28 @@
+"""The state that all routes share: the open memory, open studies, settings and metrics."""
+
+from dataclasses import dataclass, field
+
+from lifelore.agent.personalise.open_studies import OpenStudies
+from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.telemetry import Metrics
+from lifelore.memory import Memory
+
+
+@dataclass
+class Service:
+    """The state of one application.
+
+    Parameters
+    ----------
+    settings : ServiceSettings
+    memory : Memory
+        Open until the application stops.
+    """
+
+    settings: ServiceSettings
+    memory: Memory
+    metrics: Metrics = field(default_factory=Metrics)
+    studies: OpenStudies = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.studies = OpenStudies(self.memory)
