@@ -41,7 +41,14 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     StoreError, InputError, NotFoundError
         The memory or the token file cannot be opened.
     """
-    from lifelore.app.service import health_routes, log_routes, study_routes, user_routes
+    from lifelore.app.service import (
+        adaptation_routes,
+        health_routes,
+        log_routes,
+        panel_routes,
+        study_routes,
+        user_routes,
+    )
 
     tokens: TokenFile | None = None if settings.token_file is None else read_tokens(settings.token_file)
     service = Service(settings, open_memory(settings.memory, durable=True))
@@ -57,7 +64,7 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     )  # fmt: skip
     app.state.service = service
     _answer_errors(app, service)
-    for routes in (health_routes, study_routes, user_routes, log_routes):
+    for routes in (health_routes, study_routes, user_routes, panel_routes, adaptation_routes, log_routes):
         app.include_router(routes.router(service))
     app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics)
     return app

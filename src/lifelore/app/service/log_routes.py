@@ -24,13 +24,17 @@ class FitRequest(BaseModel):
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"log": EXAMPLE, "types": 2}})
     log: str = Field(description="CSV with the columns user, policy, outcome, and if known type and context.")
     model: Literal["auto", "gaussian", "student-t", "categorical"] = Field("auto", description="Outcomes' model.")
-    types: int | None = Field(None, ge=1, le=100, description="Number of types; left out: selected by the outcomes.")
+    types: int | None = Field(
+        None, ge=1, le=100, description="Number of types; left out: selected by the outcomes."
+    )
     control: FiniteFloat = Field(0.1, description="Share of users in the control group, in [0, 1).")
     incumbent: str | None = Field(None, description="Policy of the control group; left out: each policy alike.")
     rule: str = Field("information-directed", description="Selection rule.")
     explore: FiniteFloat = Field(0.0, description="Share of choices that are drawn from all policies, in [0, 1].")
     change: FiniteFloat = Field(0.002, description="Probability that a user's type changes between two choices.")
-    models: Literal["uncertain", "plug-in"] = Field("uncertain", description="Whether models of few runs learn too.")
+    models: Literal["uncertain", "plug-in"] = Field(
+        "uncertain", description="Whether models of few runs learn too."
+    )
     features: list[str] = Field([], description="Columns of numbers that are known of a user beforehand.")
 
 
@@ -39,7 +43,9 @@ class EvaluateRequest(BaseModel):
 
     model_config = ConfigDict(extra="forbid", json_schema_extra={"example": {"log": LOGGED, "policies": ["slow"]}})
     log: str = Field(description="CSV with the columns user, policy, outcome and probability.")
-    policies: list[str] = Field([], description="Single policies; left out with the other targets: all of the log.")
+    policies: list[str] = Field(
+        [], description="Single policies; left out with the other targets: all of the log."
+    )
     rules: list[str] = Field([], description="Selection rules that learn from the log.")
     study: str | None = Field(None, description="A study in memory to replay.")
     first: int | None = Field(None, ge=1, description="Evaluate the first so many decisions of each user.")
@@ -59,7 +65,9 @@ def router(service: Service) -> APIRouter:
         options = document.model_dump(exclude={"log", "features"})
         settings = FitSettings(study, seed=service.settings.seed, **options)
         with TemporaryDirectory() as folder:
-            fitted = fit([_written(folder, document.log)], memory, settings, LogFormat(features=tuple(document.features)))
+            fitted = fit(
+                [_written(folder, document.log)], memory, settings, LogFormat(features=tuple(document.features))
+            )
         studies.drop(study)
         return fitted
 
@@ -78,7 +86,9 @@ def router(service: Service) -> APIRouter:
         with TemporaryDirectory() as folder:
             return evaluate([_written(folder, document.log)], settings, memory=memory)
 
-    @routes.get("/studies/{study}/log", summary="All decisions of a study with their probabilities, as CSV in a field")
+    @routes.get(
+        "/studies/{study}/log", summary="All decisions of a study with their probabilities, as CSV in a field"
+    )
     def log(study: Name) -> dict[str, str]:
         with TemporaryDirectory() as folder:
             path = Path(folder) / "log.csv"

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 
+from lifelore.agent.personalise.open_panels import OpenPanels
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics
@@ -23,6 +24,8 @@ class Service:
     memory: Memory
     metrics: Metrics = field(default_factory=Metrics)
     studies: OpenStudies = field(init=False)
+    panels: OpenPanels = field(init=False)
 
     def __post_init__(self) -> None:
         self.studies = OpenStudies(self.memory)
+        self.panels = OpenPanels(self.memory, self.studies, self.settings.seed)
