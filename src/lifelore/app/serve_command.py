@@ -1,6 +1,7 @@
 """`lifelore serve`: the HTTP service over a memory."""
 
 import json
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -25,6 +26,9 @@ def serve(
     body: Annotated[float, Option(help="Size of the largest request in MiB.")] = 64.0,
     rate: Annotated[float, Option(help="Requests per second of a client; 0: no limit.")] = 1000.0,
     seconds: Annotated[float, Option(help="Longest time that a request may take.")] = 60.0,
+    map: Annotated[
+        list[str] | None, Option(metavar="NAME=YAML", help="A ROS map for advice; may be repeated.")
+    ] = None,
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
@@ -55,7 +59,13 @@ def serve(
     from lifelore.app.service.server import serve as served
     from lifelore.app.service.settings import ServiceSettings
 
-    settings = ServiceSettings(where, token_file, seed, int(body * (1 << 20)), rate, seconds)
+    maps: dict[str, str] = {}
+    for part in map or ():
+        name, _, file = part.partition("=")
+        maps[name] = file
+        if not name or not Path(file).is_file():
+            raise InputError(f"map must be NAME=YAML with a file that exists, got '{part}'")
+    settings = ServiceSettings(where, token_file, seed, int(body * (1 << 20)), rate, seconds, maps)
 
     def ready(url: str) -> None:
         print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)

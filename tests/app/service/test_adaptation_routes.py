@@ -8,7 +8,8 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.signals.category_signal import CategorySignal
 
 LIBRARY = {
-    "types": ["steady", "shaky"], "policies": ["slow", "fast"], "means": [[0.4, 1.0], [0.8, 0.3]], "deviations": 0.1,
+    "types": ["steady", "shaky"], "policies": ["slow", "fast"],
+    "means": [[0.4, 1.0], [0.8, 0.3]], "deviations": 0.1,
     "signals": [[[0.9, 0.1], [0.8, 0.2]], [[0.6, 0.4], [0.2, 0.8]]], "categories": ["hit", "miss"],
 }  # fmt: skip
 MOVES = [("fast", "miss"), ("fast", "miss"), ("slow", "hit"), ("fast", "miss")]

@@ -15,7 +15,6 @@ from lifelore.app.service.application import create_app
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
 
-
 EXAMPLES = 15
 """Requests for each route."""
 

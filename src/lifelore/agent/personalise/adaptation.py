@@ -3,8 +3,8 @@
     adapt_library/NAME        the library's file, eight bytes in a value; about: id, bytes, epsilon
     adapt_user/NAME/USER      slots: step, episode, surprises, and the bits of the log belief by type
 
-The choice follows from the belief, the seed and the number of the step, so that asking twice changes nothing. Moves
-are numbered, so that moves that come twice count once. Thesis: §4.8.4, Alg. 9.
+The choice follows from the belief, the seed and the number of the step, so that asking twice changes nothing.
+Moves are numbered, so that moves that come twice count once. Thesis: §4.8.4, Alg. 9.
 """
 
 import hashlib

@@ -15,6 +15,11 @@ class OpenPanels:
         self._open: dict[str, Panel] = {}
         self._lock = threading.Lock()
 
+    def drop_all(self) -> None:
+        """Read every panel again at its next use."""
+        with self._lock:
+            self._open.clear()
+
     def get(self, name: str) -> Panel:
         """The panel of the study of that name; errors as for `open_study`."""
         study = self._studies.get(name)

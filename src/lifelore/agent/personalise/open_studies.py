@@ -44,6 +44,10 @@ class OpenStudies:
         self._open[name] = known._replace(looked=now)
         return known.study
 
+    def drop_all(self) -> None:
+        """Read every study again at its next use."""
+        self._open.clear()
+
     def drop(self, name: str) -> None:
         """Read the study again at its next use."""
         self._open.pop(name, None)

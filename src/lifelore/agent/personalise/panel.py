@@ -26,7 +26,7 @@ Numbers = NDArray[np.int64]
 
 
 def drawn(probs: NDArray[np.float64], draws: NDArray[np.float64]) -> Numbers:
-    """The policy of each row of probabilities that a number in [0, 1) falls on, (n,); never one of probability 0."""
+    """The policy of each row of probabilities that a number in [0, 1) falls on, (n,), none of probability 0."""
     ends = probs.cumsum(axis=1)
     chosen = (ends <= draws[:, None] * ends[:, -1:]).sum(axis=1)
     last = probs.shape[1] - 1 - (probs[:, ::-1] > 0).argmax(axis=1)

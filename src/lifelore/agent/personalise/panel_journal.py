@@ -2,8 +2,8 @@
 
     reuse_panel/STUDY/RUN.SEQ    about: kind (decisions or outcomes), order, length, request, policies
 
-A record holds the columns of its batch one after the other, eight bytes in a value. Each run of a program has a name
-of its own, so that journals of several memories merge. Names of users are not stored, only hashes of them.
+A record holds the columns of its batch one after the other, eight bytes in a value. Each run of a program has a
+name of its own, so that journals of several memories merge. Names of users are not stored, only hashes of them.
 """
 
 import secrets

@@ -20,7 +20,8 @@ from lifelore.app.service.user_routes import User
 Name = Annotated[str, Path(description="Name of the adaptation.", min_length=1, max_length=60, examples=["game"])]
 Signal = int | FiniteFloat | str | list[list[int]]
 _LIBRARY = {
-    "types": ["steady", "shaky"], "policies": ["slow", "fast"], "means": [[0.4, 0.9], [0.8, 0.3]], "deviations": 0.1,
+    "types": ["steady", "shaky"], "policies": ["slow", "fast"],
+    "means": [[0.4, 0.9], [0.8, 0.3]], "deviations": 0.1,
     "signals": [[[0.9, 0.1], [0.8, 0.2]], [[0.6, 0.4], [0.2, 0.8]]], "categories": ["hit", "miss"],
 }  # fmt: skip
 

@@ -43,9 +43,12 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     """
     from lifelore.app.service import (
         adaptation_routes,
+        advice_routes,
         health_routes,
         log_routes,
+        memory_routes,
         panel_routes,
+        perceive_routes,
         study_routes,
         user_routes,
     )
@@ -56,6 +59,7 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     @asynccontextmanager
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
+        service.worker.stop()
         service.memory.close()
 
     app = FastAPI(
@@ -64,7 +68,17 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     )  # fmt: skip
     app.state.service = service
     _answer_errors(app, service)
-    for routes in (health_routes, study_routes, user_routes, panel_routes, adaptation_routes, log_routes):
+    for routes in (
+        health_routes,
+        study_routes,
+        user_routes,
+        panel_routes,
+        adaptation_routes,
+        log_routes,
+        perceive_routes,
+        advice_routes,
+        memory_routes,
+    ):
         app.include_router(routes.router(service))
     app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics)
     return app

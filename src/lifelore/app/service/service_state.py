@@ -2,10 +2,12 @@
 
 from dataclasses import dataclass, field
 
+from lifelore.agent.advise.advice_desk import AdviceDesk
 from lifelore.agent.personalise.open_panels import OpenPanels
 from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics
+from lifelore.app.service.worker_process import WorkerProcess
 from lifelore.memory import Memory
 
 
@@ -23,9 +25,11 @@ class Service:
     settings: ServiceSettings
     memory: Memory
     metrics: Metrics = field(default_factory=Metrics)
+    worker: WorkerProcess = field(default_factory=WorkerProcess)
     studies: OpenStudies = field(init=False)
     panels: OpenPanels = field(init=False)
 
     def __post_init__(self) -> None:
+        self.desks: dict[str, AdviceDesk] = {}
         self.studies = OpenStudies(self.memory)
         self.panels = OpenPanels(self.memory, self.studies, self.settings.seed)

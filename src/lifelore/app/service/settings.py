@@ -1,7 +1,8 @@
 """Settings of the service: its memory, tokens and limits."""
 
 import ipaddress
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 from lifelore.core.errors import InputError
 
@@ -27,6 +28,8 @@ class ServiceSettings:
         Requests per second of a client, over ten seconds; 0: no limit.
     seconds : float
         Longest time that a request may take.
+    maps : mapping of str to str
+        Files of ROS maps by the name that advice desks give them.
     """
 
     memory: str | None = None
@@ -35,6 +38,7 @@ class ServiceSettings:
     largest_body: int = 64 * MEBIBYTE
     rate: float = 1000.0
     seconds: float = 60.0
+    maps: Mapping[str, str] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if self.largest_body < 1:
