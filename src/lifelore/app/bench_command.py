@@ -10,8 +10,8 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, merge, priors, factory, separator, perceive, reuse, "
-            "long_user, log. Benefit: courier, recognition, lidar, worlds, contexts, raw_frames, segmentation, "
-            "relations, plans, views, pictures, deep, deep_layouts, novelty, changing_types, bands. "
+            "long_user, log, serve. Benefit: courier, recognition, lidar, worlds, contexts, raw_frames, "
+            "segmentation, relations, plans, views, pictures, deep, deep_layouts, novelty, changing_types, bands. "
             "Statistics: evaluation."
         ),
     ],

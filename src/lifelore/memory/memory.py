@@ -1,7 +1,7 @@
 """`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
 from collections.abc import Mapping, Sequence
-from contextlib import closing
+from contextlib import AbstractContextManager, closing
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -149,6 +149,19 @@ class Memory:
             if row is not None:
                 cache.add(conn, lift(row.number, offer.records), row.lore, state)
         return row is not None
+
+    def together(self) -> AbstractContextManager[None]:
+        """A block in which all that this thread reads and stores is one transaction, stored when the block ends.
+
+        Many small contributions then wait for the disk once. A contribution that fails inside the block leaves
+        the others as they are. An error that leaves the block undoes all of them.
+
+        Raises
+        ------
+        StoreError
+            The end of the block: the disk refuses; nothing of the block was stored.
+        """
+        return self._store.together()
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.

@@ -14,6 +14,7 @@ from typing import Any
 
 import pytest
 
+from lifelore.agent.personalise.panel import Panel
 from lifelore.agent.reuse.history import open_history, parse_identifier
 from lifelore.agent.reuse.study import open_study
 from lifelore.memory import open_memory
@@ -87,7 +88,7 @@ def test_a_new_token_is_printed_once(ask, tmp_path):
     assert answer["token"] not in (tmp_path / "tokens").read_text()
 
 
-def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]]) -> None:
+def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]], batches: list[Any]) -> None:
     """Decide and observe until the service is gone; note what it acknowledged."""
     with contextlib.suppress(OSError, http.client.HTTPException), Client(url) as client:
         for number in itertools.count():
@@ -97,18 +98,25 @@ def load(url: str, name: str, acknowledged: list[tuple[dict, float | None]]) -> 
             ended = client.ask("POST", "/v1/studies/s/outcomes", {"decision": made["decision"], "outcome": number})
             assert ended["taken"]
             acknowledged[-1] = (made, float(number))
+            if number % 5:
+                continue
+            request = {"users": [user, f"{user}'s friend"], "request": f"{name}/{number}"}
+            batches.append((request, client.ask("POST", "/v1/studies/s/panel/decisions", request)))
 
 
-def killed_under_load(started, memory: Path, run: int, seconds: float) -> list[tuple[dict, float | None]]:
+def killed_under_load(
+    started, memory: Path, run: int, seconds: float, batches: list[Any]
+) -> list[tuple[dict, float | None]]:
     child, url = started(memory)
     notes: list[list[tuple[dict, float | None]]] = [[] for _ in range(CLIENTS)]
     clients = [
-        threading.Thread(target=load, args=(url, f"run {run} client {number}", note))
+        threading.Thread(target=load, args=(url, f"run {run} client {number}", note, batches))
         for number, note in enumerate(notes)
     ]
     for client in clients:
         client.start()
-    while not any(notes):
+    while not any(outcome is not None for note in notes for _, outcome in note):
+        assert child.poll() is None
         time.sleep(0.01)
     time.sleep(seconds)
     child.kill()
@@ -125,12 +133,15 @@ def kill_loop(started, study, memory: Path, kills: int, seed: int) -> None:
         client.ask("PUT", "/v1/studies/s", study)
     child.terminate()
     child.wait()
-    draw, acknowledged = random.Random(seed), []
+    draw, acknowledged, batches = random.Random(seed), [], []
     for run in range(kills):
-        acknowledged += killed_under_load(started, memory, run, draw.uniform(0.0, 0.5))
+        acknowledged += killed_under_load(started, memory, run, draw.uniform(0.0, 0.5), batches)
         with open_memory(memory) as opened:
             assert opened.check() == []
             assert_stored(opened, acknowledged)
+            panel = Panel(opened, open_study(opened, "s"))
+            for request, answer in batches:
+                assert panel.decide(request["users"], request=request["request"]) == answer | {"repeated": True}
     assert any(outcome is not None for _, outcome in acknowledged)
 
 

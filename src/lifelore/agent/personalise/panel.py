@@ -69,6 +69,7 @@ class Panel:
         )
         self._rows: dict[int, int] = {}
         self._names: dict[str, int] = {}
+        self._keys = np.empty(0, np.uint64)
         self._batches: dict[str, _Batch] = {}
         self._requests: dict[str, str] = {}
         for entry in self._journal.entries():
@@ -118,16 +119,14 @@ class Panel:
                 return self._answer(self._requests[request], repeated=True)
             policies = self.study.active
             may = self._available(len(users), policies, available, masks)
-            keys = np.fromiter((self._key(user) for user in users), np.uint64, len(users))
-            rows = self._rows_of(keys)
+            rows = self._rows_of_names(users)
+            keys = self._keys[rows]
             probs, control = self._probabilities(keys, rows, may)
             draws = stream(self._seed, "reuse panel", self.study.name, len(self._batches)).random(len(rows))
             chosen = drawn(probs, draws)
-            columns: Columns = {
-                "user": keys, "policy": chosen, "control": control,
-                "probability": probs[np.arange(len(rows)), chosen],
-            }  # fmt: skip
-            name = self._journal.append("decisions", columns, policies=policies, request=request)
+            probability = probs[np.arange(len(rows)), chosen]
+            columns: Columns = {"policy": chosen, "control": control, "probability": probability}
+            name = self._journal.append_decisions(keys, rows, columns, policies=policies, request=request)
             self._take(name, rows, Entry(name, "decisions", {"policies": policies, "request": request}, columns))
             return self._answer(name, repeated=False)
 
@@ -169,7 +168,7 @@ class Panel:
             if new.any():
                 columns = {"outcome": values[new], "place": at[new]}
                 self._learnable(own, columns)
-                self._journal.append("outcomes", columns, batch=batch)
+                self._journal.append_outcomes(columns, batch=batch)
                 self._learn(own, columns)
             return {"taken": int(new.sum()), "known": int((~new).sum())}
 
@@ -182,22 +181,29 @@ class Panel:
         return [dict(zip(self.study.library.types, row.tolist(), strict=True)) for row in found]
 
     def _key(self, user: str) -> int:
-        key = self._names.get(user)
-        if key is None:
-            check_word("user", user)
-            digest = hashlib.sha256(f"{self.study.name}\x1f{user}".encode()).digest()
-            key = self._names[user] = int.from_bytes(digest[:8], "big")
-        return key
+        check_word("user", user)
+        return int.from_bytes(hashlib.sha256(f"{self.study.name}\x1f{user}".encode()).digest()[:8], "big")
+
+    def _rows_of_names(self, users: Sequence[str]) -> Numbers:
+        """Rows of users by name; new users get the next rows, unless a name breaks its rule."""
+        if new := [user for user in dict.fromkeys(users) if user not in self._names]:
+            rows = self._rows_of(np.array([self._key(user) for user in new], np.uint64))
+            self._names.update(zip(new, rows.tolist(), strict=True))
+        return np.fromiter(map(self._names.__getitem__, users), np.int64, len(users))
 
     def _rows_of(self, keys: NDArray[np.uint64]) -> Numbers:
-        """Rows of users; new users get the next rows."""
-        listed = keys.tolist()
-        known = len(self._rows)
-        for key in listed:
-            self._rows.setdefault(key, len(self._rows))
-        if (more := len(self._rows) - max(known, self._beliefs.n_users)) > 0:
+        """Rows of users by key; new users get the next rows."""
+        rows = np.fromiter(
+            (self._rows.setdefault(key, len(self._rows)) for key in keys.tolist()), np.int64, len(keys)
+        )
+        if (more := len(self._rows) - self._beliefs.n_users) > 0:
             self._beliefs.add_users(more)
-        return np.fromiter(map(self._rows.__getitem__, listed), np.int64, len(listed))
+        if len(self._rows) > len(self._keys):
+            grown = np.zeros(2 * len(self._rows), np.uint64)
+            grown[: len(self._keys)] = self._keys
+            self._keys = grown
+        self._keys[rows] = keys
+        return rows
 
     def _available(
         self, n: int, policies: list[str], available: Sequence[str] | None, masks: ArrayLike | None

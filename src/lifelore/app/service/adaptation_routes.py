@@ -78,7 +78,10 @@ def router(service: Service) -> APIRouter:
         return select(memory, open_adaptation(memory, name), user, service.settings.seed)
 
     @routes.post("/users/{user}/moves", summary="Learn from moves of a user, each once")
-    def moves(name: Name, user: User, document: Moves) -> dict[str, Any]:
+    async def moves(name: Name, user: User, document: Moves) -> dict[str, Any]:
+        return await service.writer.run(learn, name, user, document)
+
+    def learn(name: str, user: str, document: Moves) -> dict[str, Any]:
         listed = [(move.action_set, move.signal) for move in document.moves]
         adaptation = open_adaptation(memory, name)
         return learn_moves(memory, adaptation, user, document.step, listed, ends_episode=document.ends_episode)

@@ -92,7 +92,10 @@ def router(service: Service) -> APIRouter:
         return described(desk(name))
 
     @routes.post("/agents/{agent}/steps", summary="Take in steps of an agent, and advise it where the rule fires")
-    def steps(name: Name, agent: Agent, document: StepsRequest) -> dict[str, Any]:
+    async def steps(name: Name, agent: Agent, document: StepsRequest) -> dict[str, Any]:
+        return await service.writer.run(advise, name, agent, document)
+
+    def advise(name: str, agent: str, document: StepsRequest) -> dict[str, Any]:
         return desk(name).answer(agent, document.step, [step.model_dump() for step in document.steps])
 
     return routes

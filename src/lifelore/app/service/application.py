@@ -60,6 +60,7 @@ def create_app(settings: ServiceSettings) -> FastAPI:
     async def lifespan(app: FastAPI) -> AsyncIterator[None]:
         yield
         service.worker.stop()
+        service.writer.stop()
         service.memory.close()
 
     app = FastAPI(

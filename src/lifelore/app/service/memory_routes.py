@@ -52,16 +52,13 @@ def router(service: Service) -> APIRouter:
     @routes.post("/merge", summary="Add an exported file, all or none", openapi_extra=BODY)
     async def merge(request: Request) -> dict[str, int]:
         counts = await run_in_threadpool(merged, await request.body())
-        service.studies.drop_all()
-        service.panels.drop_all()
-        service.desks.clear()
+        service.read_again()
         return counts
 
     @routes.delete("/robots", summary="Forget all contributions of a robot, for ever")
     def forget_robot(robot: Text) -> dict[str, Any]:
         count = memory.forget(robot)
-        service.panels.drop_all()
-        service.desks.clear()
+        service.read_again()
         return {"robot": robot, "forgotten": count}
 
     @routes.delete("/buildings", summary="Forget the map and the transitions of a building, for ever")

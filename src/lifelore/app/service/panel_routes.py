@@ -3,10 +3,12 @@
 from typing import Any
 
 from fastapi import APIRouter
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.app.service.service_state import Service
 from lifelore.app.service.study_routes import Name
+from lifelore.app.service.user_routes import Answer
 
 MANY = 100_000
 """Largest number of users in a request."""
@@ -49,10 +51,17 @@ class PanelUsers(BaseModel):
 def router(service: Service) -> APIRouter:
     """The routes of panels."""
     routes = APIRouter(prefix="/v1/studies/{study}/panel", tags=["personalise"])
-    panels, metrics = service.panels, service.metrics
+    panels, metrics, run = service.panels, service.metrics, service.writer.run
 
-    @routes.post("/decisions", summary="Choose a policy for each of very many users, and store the decisions")
-    def decisions(study: Name, document: PanelDecisions) -> dict[str, Any]:
+    @routes.post(
+        "/decisions",
+        response_model=Answer,
+        summary="Choose a policy for each of very many users, and store the decisions",
+    )
+    async def decisions(study: Name, document: PanelDecisions) -> Any:
+        return JSONResponse(await run(decide, study, document))
+
+    def decide(study: str, document: PanelDecisions) -> Answer:
         answer = panels.get(study).decide(
             document.users, available=document.available, masks=document.masks, request=document.request
         )
@@ -60,8 +69,11 @@ def router(service: Service) -> APIRouter:
             metrics.decisions.inc(len(answer["chosen"]))
         return answer
 
-    @routes.post("/outcomes", summary="Store outcomes of a batch of decisions, each once")
-    def outcomes(study: Name, document: PanelOutcomes) -> dict[str, Any]:
+    @routes.post("/outcomes", response_model=Answer, summary="Store outcomes of a batch of decisions, each once")
+    async def outcomes(study: Name, document: PanelOutcomes) -> Any:
+        return JSONResponse(await run(observe, study, document))
+
+    def observe(study: str, document: PanelOutcomes) -> Answer:
         answer = panels.get(study).observe(document.batch, document.outcomes, document.places)
         metrics.outcomes.inc(answer["taken"])
         return answer

@@ -8,6 +8,7 @@ from lifelore.agent.personalise.open_studies import OpenStudies
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.telemetry import Metrics
 from lifelore.app.service.worker_process import WorkerProcess
+from lifelore.app.service.writer import Writer
 from lifelore.memory import Memory
 
 
@@ -26,6 +27,7 @@ class Service:
     memory: Memory
     metrics: Metrics = field(default_factory=Metrics)
     worker: WorkerProcess = field(default_factory=WorkerProcess)
+    writer: Writer = field(init=False)
     studies: OpenStudies = field(init=False)
     panels: OpenPanels = field(init=False)
 
@@ -33,3 +35,10 @@ class Service:
         self.desks: dict[str, AdviceDesk] = {}
         self.studies = OpenStudies(self.memory)
         self.panels = OpenPanels(self.memory, self.studies, self.settings.seed)
+        self.writer = Writer(self.memory, self.read_again)
+
+    def read_again(self) -> None:
+        """Read studies, panels and desks again at their next use."""
+        self.studies.drop_all()
+        self.panels.drop_all()
+        self.desks.clear()

@@ -4,6 +4,7 @@ from collections.abc import Callable
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Path
+from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 
 from lifelore.agent.personalise.explanation import explain
@@ -15,6 +16,7 @@ from lifelore.app.service.study_routes import Name
 from lifelore.core.errors import LifeloreError
 
 LARGEST_BATCH = 1000
+Answer = dict[str, Any]
 User = Annotated[str, Path(description="Name of the user.", min_length=1, max_length=200, examples=["ada"])]
 
 
@@ -61,7 +63,7 @@ class Outcomes(BaseModel):
 def router(service: Service) -> APIRouter:
     """The routes of users."""
     routes = APIRouter(prefix="/v1/studies/{study}", tags=["personalise"])
-    memory, studies = service.memory, service.studies
+    memory, studies, run = service.memory, service.studies, service.writer.run
 
     def decide(study: str, document: DecisionRequest) -> dict[str, Any]:
         opened = studies.get(study)
@@ -80,31 +82,39 @@ def router(service: Service) -> APIRouter:
             service.metrics.outcomes.inc()
         return answer
 
-    def each(make: Callable[[], dict[str, Any]]) -> dict[str, Any]:
-        """An answer, or the error of this item alone."""
+    def each(make: Callable[[str, Any], dict[str, Any]], study: str, items: list[Any]) -> dict[str, Any]:
+        """An answer to each item, or the error of this item alone."""
+        studies.get(study)
+        return {"items": [answer_or_error(make, study, item) for item in items]}
+
+    def answer_or_error(make: Callable[[str, Any], dict[str, Any]], study: str, item: Any) -> dict[str, Any]:
         try:
-            return make()
+            return make(study, item)
         except LifeloreError as error:
             message = without_places(str(error), memory.location)
             return {"error": {"kind": KINDS[status_of(error)], "message": message}}
 
-    @routes.post("/decisions", summary="Choose a policy for a user, and store the decision and its probability")
-    def decisions(study: Name, document: DecisionRequest) -> dict[str, Any]:
-        return decide(study, document)
+    @routes.post(
+        "/decisions",
+        response_model=Answer,
+        summary="Choose a policy for a user, and store the decision and its probability",
+    )
+    async def decisions(study: Name, document: DecisionRequest) -> Any:
+        return JSONResponse(await run(decide, study, document))
 
-    @routes.post("/outcomes", summary="Store the outcome of a decision, once, at any later time")
-    def outcomes(study: Name, document: OutcomeRequest) -> dict[str, Any]:
-        return observe(study, document)
+    @routes.post(
+        "/outcomes", response_model=Answer, summary="Store the outcome of a decision, once, at any later time"
+    )
+    async def outcomes(study: Name, document: OutcomeRequest) -> Any:
+        return JSONResponse(await run(observe, study, document))
 
-    @routes.post("/decisions/batch", summary="Choose a policy for each of several users")
-    def decisions_batch(study: Name, document: Decisions) -> dict[str, Any]:
-        studies.get(study)
-        return {"items": [each(lambda item=item: decide(study, item)) for item in document.items]}
+    @routes.post("/decisions/batch", response_model=Answer, summary="Choose a policy for each of several users")
+    async def decisions_batch(study: Name, document: Decisions) -> Any:
+        return JSONResponse(await run(each, decide, study, document.items))
 
-    @routes.post("/outcomes/batch", summary="Store the outcomes of several decisions")
-    def outcomes_batch(study: Name, document: Outcomes) -> dict[str, Any]:
-        studies.get(study)
-        return {"items": [each(lambda item=item: observe(study, item)) for item in document.items]}
+    @routes.post("/outcomes/batch", response_model=Answer, summary="Store the outcomes of several decisions")
+    async def outcomes_batch(study: Name, document: Outcomes) -> Any:
+        return JSONResponse(await run(each, observe, study, document.items))
 
     @routes.get("/users/{user}", summary="Belief about a user, and the evidence behind it")
     def show(study: Name, user: User) -> dict[str, Any]:
