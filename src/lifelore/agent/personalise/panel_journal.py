@@ -3,8 +3,8 @@
     reuse_panel/STUDY/RUN.SEQ    about: kind (decisions or outcomes), order, length, bytes, …
 
 A record holds the compressed columns of its batch, eight bytes in a value: memory takes a microsecond for a value.
-Each run of a program has a name of its own, so that journals of several memories merge. A run numbers its users in the
-order of their first decision. Names of users are not stored, only 64 bits of a hash of each.
+Each run of a program has a name of its own, so that journals of several memories merge. A run numbers its users in
+the order of their first decision. Names of users are not stored, only 64 bits of a hash of each.
 """
 
 import secrets

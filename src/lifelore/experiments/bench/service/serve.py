@@ -16,14 +16,14 @@ from contextlib import contextmanager
 from pathlib import Path
 from statistics import median
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from lifelore.core.errors import LifeloreError
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.rounds import at_least, at_most, paired_ratio, row
-from lifelore.experiments.bench.service.load_client import Connection, run_load
+from lifelore.experiments.bench.service.load_client import SCENARIO, Connection, run_load
 
 CONNECTIONS, SECONDS = 32, 2.0
 """Connections, and seconds of a measurement; more seconds let less chance into the 99th percentile."""
@@ -44,40 +44,73 @@ STUDY = {
 def bench_serve(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`."""
     rounds = min(repeats, ROUNDS)
-    rates: dict[str, list[float]] = {"bare": [], "pairs": [], "batch": [], "p99": []}
+    rates, cpu, p99 = ({"bare": [], "pairs": [], "batch": []} for _ in range(3))
     with (
         TemporaryDirectory() as folder,
         _pinned_client() as core,
         _bare(core) as bare,
         _service(folder, core) as ours,
     ):
-        asyncio.run(_register(ours))
-        for scenario, port in ((_bare_pairs, bare), (_pairs, ours), (_batches, ours)):
-            asyncio.run(run_load(port, scenario, 2, 0.5))  # the first requests import and compile
+        asyncio.run(_register(ours.port))
+        for scenario, server in ((_bare_pairs, bare), (_pairs, ours), (_batches, ours)):
+            _loaded(server, scenario, 2, 0.5)  # the first requests import and compile
         for number in range(rounds):
-            rates["bare"].append(asyncio.run(run_load(bare, _bare_pairs, CONNECTIONS, SECONDS))[0])
-            pairs, seconds = asyncio.run(run_load(ours, _pairs, CONNECTIONS, SECONDS))
-            rates["pairs"].append(pairs)
-            rates["p99"].append(1e3 * float(np.quantile(seconds, 0.99)))
-            batches, _ = asyncio.run(run_load(ours, _batches, BATCH_CONNECTIONS, SECONDS))
-            rates["batch"].append(batches * BATCH)
+            for name, server, scenario, connections in (
+                ("bare", bare, _bare_pairs, CONNECTIONS),
+                ("pairs", ours, _pairs, CONNECTIONS),
+                ("batch", ours, _batches, BATCH_CONNECTIONS),
+            ):
+                measured = _loaded(server, scenario, connections, SECONDS)
+                rates[name].append(measured.units)
+                cpu[name].append(measured.cpu_ms)
+                p99[name].append(measured.p99_ms)
             progress(number + 1, rounds, "rounds")
     share = paired_ratio(rates["pairs"], rates["bare"])
+    cpu_share = paired_ratio(cpu["bare"], cpu["pairs"])
     names = "bare route, asked twice", "decision and outcome", "batches of decisions"
     return {
         "rows": [
             row(names[0], median(rates["bare"]), "pairs/s"),
             row(names[1], median(rates["pairs"]), "pairs/s", names[0], share),
-            row(f"99th percentile of a request, {CONNECTIONS} connections", median(rates["p99"]), "ms"),
-            row(names[2], median(rates["batch"]), "decisions/s"),
+            row(f"99th percentile of a request, {CONNECTIONS} connections", median(p99["pairs"]), "ms"),
+            row(names[2], BATCH * median(rates["batch"]), "decisions/s"),
+            row(f"{names[0]}: processor time of the server", median(cpu["bare"]), "ms"),
+            row(f"{names[1]}: processor time of the server", median(cpu["pairs"]), "ms"),
+            row(f"{names[2]}: processor time of the server", 1e3 * median(cpu["batch"]) / BATCH, "µs"),
         ],
         "goals": [
             at_least("decisions and outcomes per second", PAIRS, median(rates["pairs"])),
             at_least(f"{names[1]} / {names[0]}", SHARE, share),
-            at_most("99th percentile of a request, ms", P99_MS, median(rates["p99"])),
-            at_least("decisions of batches per second", BATCHED, median(rates["batch"])),
+            at_least("the same by processor time, for busy machines", SHARE, cpu_share),
+            at_most("99th percentile of a request, ms", P99_MS, median(p99["pairs"])),
+            at_least("decisions of batches per second", BATCHED, BATCH * median(rates["batch"])),
         ],
     }
+
+
+class _Server(NamedTuple):
+    port: int
+    process: int
+
+
+class _Load(NamedTuple):
+    """Units of work per second; processor milliseconds of the server for each; 99th percentile of a request."""
+
+    units: float
+    cpu_ms: float
+    p99_ms: float
+
+
+def _loaded(server: _Server, scenario: SCENARIO, connections: int, seconds: float) -> _Load:
+    began, before = time.perf_counter(), _processor_seconds(server.process)
+    units, requests = asyncio.run(run_load(server.port, scenario, connections, seconds))
+    elapsed, spent = time.perf_counter() - began, _processor_seconds(server.process) - before
+    return _Load(units, 1e3 * spent / (units * elapsed), 1e3 * float(np.quantile(requests, 0.99)))
+
+
+def _processor_seconds(process: int) -> float:
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 async def _register(port: int) -> None:
@@ -132,29 +165,29 @@ def _pinned_client() -> Iterator[int | None]:
 
 
 @contextmanager
-def _bare(core: int | None) -> Iterator[int]:
+def _bare(core: int | None) -> Iterator[_Server]:
     port = _free_port()
-    with _process(["-m", "lifelore.experiments.bench.service.bare_route", str(port)], port, core):
-        yield port
+    with _process(["-m", "lifelore.experiments.bench.service.bare_route", str(port)], port, core) as process:
+        yield _Server(port, process)
 
 
 @contextmanager
-def _service(folder: str, core: int | None) -> Iterator[int]:
+def _service(folder: str, core: int | None) -> Iterator[_Server]:
     port = _free_port()
     options = ["--port", str(port), "--rate", "0", "--memory", str(Path(folder) / "bench.db")]
-    with _process(["-m", "lifelore.app.command_line", "serve", *options], port, core):
-        yield port
+    with _process(["-m", "lifelore.app.command_line", "serve", *options], port, core) as process:
+        yield _Server(port, process)
 
 
 @contextmanager
-def _process(arguments: list[str], port: int, core: int | None) -> Iterator[None]:
+def _process(arguments: list[str], port: int, core: int | None) -> Iterator[int]:
     quiet: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     process = subprocess.Popen([sys.executable, *arguments], **quiet)
     try:
         if core is not None:
             os.sched_setaffinity(process.pid, {core})
         _wait_for(process, port)
-        yield
+        yield process.pid
     finally:
         process.kill()
         process.wait()
