@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -207,6 +207,19 @@ class Memory:
             with suppress(StoreError):
                 self.give_back_task(robot, number, process=process)
             raise
+
+    def together(self) -> AbstractContextManager[None]:
+        """A block in which all that this thread reads and stores is one transaction, stored when the block ends.
+
+        Many small contributions then wait for the disk once. A contribution that fails inside the block leaves
+        the others as they are. An error that leaves the block undoes all of them.
+
+        Raises
+        ------
+        StoreError
+            The end of the block: the disk refuses; nothing of the block was stored.
+        """
+        return self._store.together()
 
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
