@@ -104,6 +104,9 @@ class Store:
         """
         if not self.is_sqlite:
             return
+        if self._joint is not None:  # the log can be emptied once the block is stored
+            self._own.log_to_empty = True
+            return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             if conn.value("PRAGMA wal_checkpoint(TRUNCATE)"):
                 raise StoreError(
@@ -120,6 +123,9 @@ class Store:
                 yield
             finally:
                 self._own.joint = None
+        if getattr(self._own, "log_to_empty", False):
+            self._own.log_to_empty = False
+            self.empty_log()
 
     @property
     def _joint(self) -> Connection | None:

@@ -64,7 +64,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``
         and ``views``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``:
-        runs of learning; for ``serve``: at most 5; for ``tabletop_lives``: five lives each; for
+        runs of learning; for ``serve``: at most 5; for ``tabletop_lives``: three lives each; for
         ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
