@@ -187,7 +187,7 @@ def merged_types(known: KnownTypes) -> KnownTypes:
     pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
     while pairs:
         i, j = min(pairs, key=pairs.__getitem__)
-        if pairs[i, j] > 0:
+        if pairs[i, j] >= 0:  # 0: types without a common cause
             break
         groups[i] += groups[j]
         groups[j] = []
