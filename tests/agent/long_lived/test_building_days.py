@@ -6,6 +6,7 @@ import networkx as nx
 import numpy as np
 import pytest
 
+from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.long_lived.families.building_days import (
     CROWDED,
     DETOUR,
@@ -16,7 +17,7 @@ from lifelore.agent.long_lived.families.building_days import (
     WayTask,
 )
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.known_types import KnownTypes
+from lifelore.agent.long_lived.known_types import KnownType, KnownTypes, effect_counts
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.domains.buildings import building_days as world
@@ -132,8 +133,8 @@ def test_cells_without_effects_have_those_of_their_neighbours():
 
 
 def test_types_are_told_apart_by_regions_alone():
-    known = KnownTypes(RING)
-    known.add("a", [(1, REFUSED), (RING.n_cells, REFUSED)])
+    counts = effect_counts(RING, [(1, REFUSED), (RING.n_cells, REFUSED)])
+    known = KnownTypes(RING, [KnownType("a", counts, ActionPrior(1), ("a",))])
     assert known.judged.tolist() == [RING.n_cells]
     assert known.library(np.ones(1)).n_policies == 1
 

@@ -162,15 +162,15 @@ class TaskFamily(Protocol):
 
     name: str
     acts: tuple[str, ...]
-    n_causes: int
     n_effects: int
     n_results: int
     """Number of results that `AgentTask.moved` may name; 1 where there are none."""
+
+    n_causes: int
     possible: Array
     """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1."""
     groups: NDArray[np.int64]
     """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
-
     judges: NDArray[np.bool_]
     """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
 

@@ -43,9 +43,10 @@ BENCHES = {
     "evaluation": "interaction",
     "novelty": "interaction",
     "log": "interaction",
+    "long_lived_worlds": "agent",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
-WITH_MAP = ("courier", "recognition", "lidar")
+WITH_MAP = ("courier", "recognition", "lidar", "long_lived_worlds")
 """Benchmarks that also take a ROS map."""
 
 
