@@ -37,6 +37,7 @@ def _register() -> None:
         learn_from_command,
         learn_relations_command,
         live_command,
+        long_life_command,
         memory_commands,
         perceive_command,
         reproduce_command,
@@ -48,6 +49,7 @@ def _register() -> None:
     )
 
     app.command("live")(live_command.live)
+    app.command("explain")(long_life_command.explain)
     app.command("way")(way_command.way)
     app.command("perceive")(perceive_command.perceive)
     app.command("learn-relations")(learn_relations_command.learn_relations)

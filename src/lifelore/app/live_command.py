@@ -15,8 +15,13 @@ Option = typer.Option
 
 
 def live(
+    context: typer.Context,
     domain: Annotated[
-        str, Option(help="World: building, or the thesis's worlds lattice, noise and advice.")
+        str,
+        Option(
+            help="World: building, or the thesis's worlds lattice, noise and advice; or jobs with hidden types: "
+            "tabletop, factory-customers, building-days."
+        ),
     ] = "building",
     map: Annotated[
         str | None, Option(metavar="YAML", help="ROS map of the building; default: a generated office.")
@@ -46,8 +51,12 @@ def live(
         str, Option(help="Action prior conditioned on the observation or the state, or none.")
     ] = "observation",
     agent: Annotated[
-        str, Option(help="Agent: lore, model, prior, scratch, undirected, rmax, frontier, or all.")
-    ] = "lore",
+        str | None,
+        Option(
+            help="Agent: lore, model, prior, scratch, undirected, rmax, frontier, or all [lore]; jobs with hidden "
+            "types: full, no-perception, no-prior, no-reuse or scratch [full]."
+        ),
+    ] = None,
     compare: Annotated[
         bool | None,
         Option(
@@ -92,8 +101,14 @@ def live(
     memory: Annotated[
         str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
     ] = None,
+    labels: Annotated[
+        bool, Option("--labels", help="tabletop: the points of the pictures carry the objects' labels.")
+    ] = False,
     episodes: Annotated[
-        int | None, Option(help="Maximum episodes of a task [model: 100 or more, q: 1000].")
+        int | None,
+        Option(
+            help="Maximum episodes of a task [model: 100 or more, q: 1000]; of jobs with hidden types all [8]."
+        ),
     ] = None,
     max_steps: Annotated[
         int | None, Option(help="Maximum steps of an episode [building: 2000, else 1000].")
@@ -130,6 +145,12 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
+    from lifelore.agent.long_lived.families.by_name import FAMILIES
+
+    if domain in FAMILIES:
+        from lifelore.app.long_life_command import live_long_life
+
+        return live_long_life(context)
     from contextlib import nullcontext
 
     from lifelore.agent.live.life import live as live_through
@@ -165,7 +186,7 @@ def live(
         prior=PriorSettings(prior, alpha0, weight, form, ties),
         memory=MemorySettings(memory, robot, building, refresh),
         sensor=SensorSettings(sensor, range),
-        agent=agent,
+        agent=agent or "lore",
         compare=compare,
         tasks=30 if tasks is None else tasks,
         destinations=destinations,

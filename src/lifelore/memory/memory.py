@@ -1,5 +1,6 @@
 """`Memory`: records of many robots, stored in a file or on a PostgreSQL server."""
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing, contextmanager, suppress
 from pathlib import Path
@@ -253,6 +254,14 @@ class Memory:
         count = "SELECT COUNT(*) FROM lifelore_contributions WHERE robot = ?"
         with self._store.reading() as conn:
             return int(conn.value(count, (robot,)))
+
+    def task_descriptions(self, robot: str) -> Iterator[dict[str, Any]]:
+        """The descriptions of a robot's stored tasks, the newest first."""
+        query = "SELECT task FROM lifelore_contributions WHERE robot = ? ORDER BY stamp DESC"
+        with self._store.reading() as conn:
+            rows = conn.execute(query, (robot,)).fetchall()
+        for (text,) in rows:
+            yield json.loads(text)
 
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""

@@ -5,7 +5,7 @@ can therefore merge them in any order. Types that are alike are joined when know
 """
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Self
 
 import numpy as np
@@ -101,9 +101,12 @@ class Knowledge:
 
     def learn(self, news: TaskNews) -> list[Record]:
         """Learn from a task; return the records by which memory adds it."""
-        parts = self._parts(news)
+        parts = {name: part for name, part in self._parts(news).items() if len(part)}
         self.add(parts)
-        return [part.to_record({"family": self.family.name}) for part in parts.values() if len(part)]
+        return [
+            replace(part.to_record({"family": self.family.name}), key=f"{self.family.name}/{name}")
+            for name, part in parts.items()
+        ]
 
     def _parts(self, news: TaskNews) -> dict[str, ActionPrior]:
         family, parts = self.family, dict[str, ActionPrior]()
@@ -119,8 +122,6 @@ class Knowledge:
         acts = ActionPrior(len(family.acts))
         acts.update(news.contexts, news.best)
         parts["acts"] = acts
-        for name, part in parts.items():
-            part.key = f"{family.name}/{name}"
         return parts
 
     def add(self, parts: Mapping[str, ActionPrior]) -> None:
@@ -128,13 +129,13 @@ class Knowledge:
         for name, part in parts.items():
             kind, _, type_name = name.partition("/")
             if not type_name:
-                _add(getattr(self.shared, kind), part)
+                getattr(self.shared, kind).merge(part)
                 continue
             if type_name not in self.types:
                 self.types[type_name] = KnownType.empty(self.family, type_name)
                 self._view = None
             for one in {id(t): t for t in (self.types[type_name], *self._viewed(type_name))}.values():
-                _add(one.effects if kind == "type" else one.sightings, part)
+                (one.effects if kind == "type" else one.sightings).merge(part)
         if self._view is not None:
             self._view.forget_laws()
 
@@ -151,7 +152,7 @@ class Knowledge:
             if record.kind == KIND and name != record.key:
                 kind = name.partition("/")[0]
                 n = {"type": family.n_effects, "moves": family.n_results, "acts": len(family.acts)}.get(kind, 1)
-                made.add({name: ActionPrior.from_record(record, n)})
+                made.add({name: ActionPrior.from_record(replace(record, key=""), n)})
         return made
 
 
@@ -159,8 +160,3 @@ def _counted(codes, results, n: int, weight: float = 1.0) -> ActionPrior:
     counts = ActionPrior(n)
     counts.update_trajectory(codes, results, weight)
     return counts
-
-
-def _add(counts: ActionPrior, part: ActionPrior) -> None:
-    part.key, counts.key = counts.key, counts.key
-    counts.merge(part)

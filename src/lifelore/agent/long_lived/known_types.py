@@ -6,7 +6,8 @@ The law of a cause under type i, after the counts c of the present task:
     pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
     P_i(e)    ∝ n_i(e) + κ pooled(e) + w c(e)
 
-An unknown type has n = 0: it behaves as types usually do until its own task shows otherwise.
+An unknown type has n = 0 and, instead of pooled, (1 − η) pooled + η p₀: it mostly behaves as types usually do,
+until its own task shows otherwise.
 """
 
 from collections.abc import Sequence
@@ -30,6 +31,10 @@ FIRST = 0.5
 """Weight α₀ of the effects that a family calls possible, in observations."""
 POOLED = 1.0
 """Weight κ of what all types have in common, in observations; more lets a type learn more slowly."""
+TELLING = 2.5
+"""Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
+NEW = 0.3
+"""Share of what a family calls possible in the law of an unknown type: it may differ from all known ones."""
 OWN = 3.0
 """Weight w of an observation of the present task: it is about this very scene."""
 
@@ -121,11 +126,19 @@ class KnownTypes:
 
         The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
         """
-        rows = np.concatenate([self.counts, np.zeros((1, *self.pooled.shape))])
+        unknown = POOLED * NEW * (self.family.possible - self.pooled)
+        rows = np.concatenate([self.counts, unknown[None]])
         rows += POOLED * self.pooled + OWN * self.family.smoothed(own[None])
         if generator is not None:
             rows = generator.standard_gamma(rows) + 1e-12 * rows
         return rows / rows.sum(axis=2, keepdims=True)
+
+    def differs(self, number: int, effects: Effects) -> bool:
+        """Whether the effects of a task are better explained by a type of its own than by a known one."""
+        judges = self.family.judges
+        own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
+        own = self.family.smoothed(own[None])[0, judges]
+        return evidence_for_two(self.counts[number, judges], own, self.pooled[judges]) > 0
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
@@ -150,43 +163,38 @@ class KnownTypes:
             self.__dict__.pop(name, None)
 
 
-def merged_types(known: KnownTypes, least: float = 0.0) -> KnownTypes:
-    """Join types that one law explains as well as two.
+def evidence_for_two(first: Array, second: Array, pooled: Array) -> float:
+    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one.
 
-    Parameters
-    ----------
-    known : KnownTypes
-        Not changed: merging is for reading, memory keeps each type's own counts.
-    least : float
-        Types stay apart where the evidence for two laws exceeds this, in nats. At 0 they are joined where one law
-        is the likelier explanation.
+    It is that of all causes together, and infinite where a single cause gives more than `TELLING`: types may agree
+    in nearly all they do.
     """
-    judges = known.family.judges
-    prior = FIRST * known.pooled[judges]
+    prior = FIRST * pooled
+    alone = _log_evidence(first, prior) + _log_evidence(second, prior)
+    for_two = alone - _log_evidence(first + second, prior)
+    return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
+
+
+def merged_types(known: KnownTypes) -> KnownTypes:
+    """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts."""
     groups: list[list[int]] = [[number] for number in range(len(known))]
-    sums = list(known.counts[:, judges])
-    alone = [_log_evidence(counts, prior) for counts in sums]
-    for_two = {
-        (i, j): alone[i] + alone[j] - _log_evidence(sums[i] + sums[j], prior)
-        for i in range(len(groups))
-        for j in range(i + 1, len(groups))
-    }
-    while for_two:
-        i, j = min(for_two, key=for_two.__getitem__)
-        if for_two[i, j] > least:
+    judges = known.family.judges
+    pooled, sums = known.pooled[judges], list(known.counts[:, judges])
+
+    def apart(i: int, j: int) -> float:
+        return evidence_for_two(sums[i], sums[j], pooled)
+
+    pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
+    while pairs:
+        i, j = min(pairs, key=pairs.__getitem__)
+        if pairs[i, j] > 0:
             break
         groups[i] += groups[j]
-        sums[i] = sums[i] + sums[j]
-        alone[i] = _log_evidence(sums[i], prior)
-        for_two = {pair: found for pair, found in for_two.items() if j not in pair}
-        for pair in for_two:
-            if i in pair:
-                first, second = pair
-                for_two[pair] = alone[first] + alone[second] - _log_evidence(sums[first] + sums[second], prior)
         groups[j] = []
-    return KnownTypes(
-        known.family, [_joined([known.types[k] for k in sorted(group)]) for group in groups if group]
-    )
+        sums[i] = sums[i] + sums[j]
+        pairs = {pair: apart(*pair) if i in pair else found for pair, found in pairs.items() if j not in pair}
+    joined = [_joined([known.types[number] for number in sorted(group)]) for group in groups if group]
+    return KnownTypes(known.family, joined)
 
 
 def _joined(types: list[KnownType]) -> KnownType:
@@ -202,12 +210,13 @@ def _joined(types: list[KnownType]) -> KnownType:
     return KnownType("+".join(members), effects, sightings, members)
 
 
-def _log_evidence(counts: Array, prior: Array) -> float:
-    """Log probability of counts of effects under Dirichlet laws around `prior`, (n_causes, n_effects) each."""
+def _log_evidence(counts: Array, prior: Array) -> Array:
+    """Log probability of the counts of each cause under a Dirichlet law around `prior`, (n_causes,)."""
+    total, found = prior.sum(axis=1), np.zeros(len(prior))
     seen = counts.sum(axis=1) > 0
-    counts, prior = counts[seen], prior[seen]
+    counts, prior, total = counts[seen], prior[seen], total[seen]
     possible = prior > 0
     safe = np.where(possible, prior, 1.0)
-    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum()
-    total = prior.sum(axis=1)
-    return float(gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total)).sum())
+    gain = np.where(possible, gammaln(safe + counts) - gammaln(safe), 0.0).sum(axis=1)
+    found[seen] = gain - (gammaln(total + counts.sum(axis=1)) - gammaln(total))
+    return found

@@ -8,8 +8,8 @@ for each episode:
         act as the behaviour with the largest Σ_i β_i V_i(behaviour) says              reuse
         (between the first episode and the last, with laws drawn from what is known)
         β, p and the task's own counts take in the effects of the act
-an alarm, or no type at all: a new type with this task's effects; else teach the type   learn
-count the best acts, the belief in this context, and what followed what                remember
+an alarm, or effects that tell the task from its type: a new type; else as believed    learn
+count the effects, the best acts, and the belief in this context                       remember
 """
 
 from dataclasses import dataclass, field
@@ -29,6 +29,9 @@ from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
 Array = NDArray[np.float64]
+
+ALARMED = 0.99
+"""Least belief in an unknown type after an alarm; the known types then hardly count."""
 
 
 @dataclass(frozen=True)
@@ -146,7 +149,7 @@ class Recognition:
         """In the known types and, last, in an unknown one, (n_types + 1,)."""
         if self.agent is None or self.alarm is None:
             return np.ones(1)
-        unknown = self.alarm.probability
+        unknown = max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0)
         return np.append((1 - unknown) * self.agent.belief, unknown)
 
     def observe(self, effects: tuple[tuple[int, int], ...]) -> None:
@@ -229,7 +232,8 @@ def live_task(
     # Notice: does any known type fit?
     lived.alarm, lived.alarm_score = recognition.alarmed, recognition.highest
     believed = recognition.belief[:-1] / max(float(recognition.belief[:-1].sum()), 1e-300)
-    if lived.alarm and (abilities.reuse or not len(known)):
+    fits = len(known) > 0 and not lived.alarm and not known.differs(int(believed.argmax()), effects)
+    if not fits and (abilities.reuse or not len(known)):
         row, belief = len(known), {name: 1.0}
     else:
         row = int(believed.argmax()) if abilities.reuse else 0

@@ -160,17 +160,37 @@ class AgentTask(Protocol):
 class TaskFamily(Protocol):
     """Tasks of one kind, by number."""
 
-    name: str
-    acts: tuple[str, ...]
-    n_effects: int
-    n_results: int
-    """Number of results that `AgentTask.moved` may name; 1 where there are none."""
+    @property
+    def name(self) -> str:
+        """Name in memory."""
+        ...
 
-    n_causes: int
-    possible: Array
-    """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1."""
-    groups: NDArray[np.int64]
-    """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
+    @property
+    def acts(self) -> tuple[str, ...]:
+        """Names of the acts."""
+        ...
+
+    @property
+    def n_causes(self) -> int: ...
+
+    @property
+    def n_effects(self) -> int: ...
+
+    @property
+    def n_results(self) -> int:
+        """Number of results that `AgentTask.moved` may name; 1 where there are none."""
+        ...
+
+    @property
+    def possible(self) -> Array:
+        """(n_causes, n_effects) P(effect | cause) before anything was seen; rows sum to 1."""
+        ...
+
+    @property
+    def groups(self) -> NDArray[np.int64]:
+        """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
+        ...
+
     judges: NDArray[np.bool_]
     """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
 

@@ -135,7 +135,7 @@ class OutcomeTree:
         (0, 4)
         """
         before, order = len(self), count()
-        best, best_actions = -np.inf, ()
+        best, best_actions = self._best_known(user)
         # Minus the bound, a number that breaks ties, the sequence, and the return before its last action.
         queue: list[tuple[float, int, Actions, float]] = [(-BRING, next(order), (), 0.0)]
         looked, followed = 0, list[tuple[float, _Node]]()
@@ -154,6 +154,15 @@ class OutcomeTree:
                     heapq.heappush(queue, (-bound, next(order), (*actions, action), value))
         bound = max(best, -queue[0][0]) if queue else best
         return BestReturn(float(best), best_actions, float(bound), len(self) - before)
+
+    def _best_known(self, user: User) -> tuple[float, Actions]:
+        """The best sequence to an end among those that were simulated before; giving up at once, if none is."""
+        ended = [actions for actions, node in self._nodes.items() if node.state.ended]
+        values = {actions: self.value(user, actions) for actions in ended}
+        best = max(values, key=values.__getitem__, default=())
+        if best and values[best] > 0:
+            return values[best], best
+        return 0.0, (self.n_actions - 1,)
 
     def _points(self, user: User, actions: Actions) -> float:
         """Points for the last action of a sequence."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.domains.tabletop_job.best_return import Actions, BestReturn, OutcomeTree
+from lifelore.domains.tabletop_job.best_return import Actions, OutcomeTree
 from lifelore.domains.tabletop_job.job import HAND_OVER_BRISKLY, JobObservation, TabletopJob, reward_of
 from lifelore.domains.tabletop_job.job_types import User
 
@@ -78,7 +78,3 @@ class JobReplay:
     def seen(self, purpose: str, look: Callable[[TabletopJob], T]) -> T:
         """What `look` makes of the job as it is now; computed once for each purpose and sequence of actions."""
         return self.tree.seen(self.actions, purpose, look)
-
-    def best(self) -> BestReturn:
-        """The best possible return of the job."""
-        return self.tree.best(self.user)

@@ -35,6 +35,7 @@ BENCHES = {
     "recognition": "lives",
     "lidar": "lives",
     "worlds": "lives",
+    "tabletop_lives": "lives",
     "contexts": "action",
     "deep_layouts": "action",
     "long_user": "interaction",

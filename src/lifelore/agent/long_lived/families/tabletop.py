@@ -11,7 +11,6 @@ Which context follows is the same for all types and is learnt once (`SharedKnowl
 """
 
 from dataclasses import dataclass, field, replace
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,6 +72,8 @@ N_DEEDS = GIVE_UP + 3
 """The acts, and those of a hand that holds another object than the target."""
 N_SITUATED = N_SITUATIONS * GIVE_UP
 """Causes of results: an act in a situation; the causes of rewards follow."""
+MOST_SEARCHED = 150
+"""Sequences that the search for the best possible return looks at; where it ends before, the best known counts."""
 BIN = 0.5
 """Width of a bin of rewards, points."""
 LOWEST, N_BINS = -10.0, 43
@@ -117,13 +118,13 @@ class TabletopFamily:
     n_results = N_CONTEXTS + 1
     judges = np.ones(n_causes, np.bool_)
 
-    @cached_property
+    @property
     def groups(self) -> NDArray[np.int64]:
         """An act in all situations; each cause of rewards alone."""
         causes = np.arange(self.n_causes)
         return np.where(causes < N_SITUATED, causes % GIVE_UP, causes)
 
-    @cached_property
+    @property
     def possible(self) -> Array:
         """All results, and all bins of rewards, are equally likely before anything was seen."""
         found = np.zeros((self.n_causes, self.n_effects))
@@ -160,7 +161,8 @@ class TabletopFamily:
 
     def best_return(self, number: int) -> float:
         """The best possible return, from a search in the simulator."""
-        return self.job(number)[1].best().value
+        _, job = self.job(number)
+        return job.tree.best(job.user, MOST_SEARCHED).value
 
     def cause_name(self, cause: int) -> str:
         """A cause in words."""

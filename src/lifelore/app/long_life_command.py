@@ -1,0 +1,93 @@
+"""`lifelore live` in domains of jobs with hidden types, and `lifelore explain`."""
+
+from typing import Annotated, Any
+
+import typer
+
+Option = typer.Option
+
+APPLY = {"domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "as_json"}
+"""Options of `lifelore live` that apply to these domains."""
+
+
+def live_long_life(context: typer.Context) -> int:
+    """Live through jobs with hidden types, with the options of `lifelore live`."""
+    from lifelore.agent.long_lived.live_task import LivingSettings
+    from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
+    from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
+    from lifelore.core.errors import InputError
+
+    given: dict[str, Any] = context.params
+    sources = {name: context.get_parameter_source(name) for name in given}
+    typed = {name for name, source in sources.items() if source is not None and source.name == "COMMANDLINE"}
+    if foreign := sorted(typed - APPLY):
+        names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
+        raise InputError(f"{names} does not apply to domain {given['domain']}; leave it out")
+    living = LivingSettings() if given["episodes"] is None else LivingSettings(n_episodes=given["episodes"])
+    settings = LongLifeSettings(
+        given["domain"],
+        given["agent"] or "full",
+        20 if given["tasks"] is None else given["tasks"],
+        given["seed"],
+        given["robot"],
+        given["memory"],
+        living,
+        given["labels"],
+    )
+    with stop_on_interrupt() as stop, progress_bar("living") as progress:
+        report = live_long(settings, progress, stop)
+    if given["as_json"]:
+        print_json(report)
+    else:
+        _print_report(report, settings.robot)
+    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks else 0
+
+
+def _print_report(report: dict[str, Any], robot: str) -> None:
+    """Print a line a task, the share of the best possible return, and how to ask for more."""
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table("task", "context", "first return", "last return", "best possible", "learnt by", "")
+    for task in report["tasks"]:
+        returns = [f"{task[name]:.2f}" for name in ("best_return",)]
+        new = "a new type" if task["alarm"] else ""
+        row = (str(task["task"]), str(task["context"]), f"{task['returns'][0]:.2f}", f"{task['returns'][-1]:.2f}")
+        table.add_row(*row, *returns, task["learnt"], new)
+    console.print(table)
+    for half, found in report["summary"].items():
+        if found["first_episode"] is not None:
+            console.print(
+                f"{half}: {100 * found['first_episode']:.0f} % of the best possible return in first episodes, "
+                f"{100 * found['last_episode']:.0f} % in last ones",
+                highlight=False,
+            )
+    if report["tasks"] and report["agent"] == "full":
+        console.print(
+            f"lifelore explain {report['tasks'][-1]['task']} --robot {robot} says why it acted so",
+            highlight=False,
+        )
+
+
+def explain(
+    task: Annotated[int, typer.Argument(help="Number of the task.")],
+    robot: Annotated[str, Option(help="Name of the robot in memory.")] = "robot",
+    memory: Annotated[
+        str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL; default: your own.")
+    ] = None,
+    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+) -> None:
+    """Say why the agent acted as it did in a task of jobs with hidden types.
+
+    The words are those of the agent: the scene, its belief, the return that it expected, and what it noticed.
+    """
+    from lifelore.agent.long_lived.explanation import explained
+    from lifelore.agent.long_lived.long_life import stored_task
+    from lifelore.app.console import print_json
+
+    document = stored_task(task, robot, memory)
+    if as_json:
+        print_json(document)
+    else:
+        print("\n".join(explained(document)))

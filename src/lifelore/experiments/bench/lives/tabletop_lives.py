@@ -1,0 +1,179 @@
+"""`bench tabletop_lives`: long lives of tabletop jobs, the whole agent beside the agent without each of its parts.
+
+A life is forty jobs and then forty on trays that it has not met. Lives of a round share their trays, in another
+order, and draw their own users, grippers and contexts; equal actions on a tray are simulated once. Every agent
+lives each life from the start, so that all differences are paired. The best possible return is found by search in
+the simulator; it knows the true scene and the hidden type.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.long_lived.families.by_name import TABLETOP_TYPES
+from lifelore.agent.long_lived.families.tabletop import N_SITUATED, SPILLED, TabletopFamily
+from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.live_task import LivedTask, LivingSettings, live_task
+from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.protocols import Progress
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop_job.best_return import OutcomeTree
+from lifelore.domains.task_stream import TaskStream
+from lifelore.experiments.bench.rounds import at_least, at_most, row
+
+Array = NDArray[np.float64]
+
+LIVES = 5
+"""Lives of a round."""
+N_TASKS = 40
+"""Tasks of the first part of a life, and of the second on new trays."""
+LIVING = LivingSettings(n_episodes=5)
+OUT = Path("results")
+
+
+@dataclass(frozen=True)
+class LifeResult:
+    """What an agent reached in one life, task by task.
+
+    first, last, best : (n_tasks,) returns of the first and last episode, and the best possible
+    spills : (n_tasks,) spilling acts of the first episode
+    alarms : (n_tasks,) whether no known type fitted
+    n_types : number of types that are known at the end, alike ones joined
+    """
+
+    first: Array
+    last: Array
+    best: Array
+    spills: Array
+    alarms: Array
+    n_types: int
+
+    def share(self, part: slice, episode: str = "first") -> float:
+        """Share of the best possible return over some tasks."""
+        return float(getattr(self, episode)[part].sum() / self.best[part].sum())
+
+
+NEW = slice(N_TASKS, None)
+
+
+def lived_round(
+    seed: int, labelled: bool, n_tasks: int = N_TASKS, lives: int = LIVES
+) -> list[dict[str, LifeResult]]:
+    """The lives of a round, each by agent."""
+    trees: dict[tuple[int, str], OutcomeTree] = {}
+    return [_life(seed, number, labelled, n_tasks, trees) for number in range(lives)]
+
+
+def _life(
+    seed: int, number: int, labelled: bool, n_tasks: int, trees: dict[tuple[int, str], OutcomeTree]
+) -> dict[str, LifeResult]:
+    rng = stream(seed, "tabletop lives", "trays", number)
+    trays = [*rng.permutation(n_tasks).tolist(), *(n_tasks + rng.permutation(n_tasks)).tolist()]
+    types = TaskStream(TABLETOP_TYPES, seed=1000 * seed + number)
+    family = TabletopFamily(types, seed, labelled, trees, tuple(trays))
+    return {agent: _lived(family, agent, 2 * n_tasks, seed) for agent in AGENTS}
+
+
+def _lived(family: TabletopFamily, agent: str, n_tasks: int, seed: int) -> LifeResult:
+    abilities, knowledge = AGENTS[agent], Knowledge.empty(family)
+    tasks: list[LivedTask] = []
+    for number in range(n_tasks):
+        if not abilities.memory:
+            knowledge = Knowledge.empty(family)
+        drawn, task = family.meet(number, abilities)
+        lived, _ = live_task(knowledge, drawn, task, abilities, LIVING, f"robot.{number}", seed)
+        tasks.append(lived)
+    return LifeResult(
+        np.array([task.returns[0] for task in tasks]),
+        np.array([task.returns[-1] for task in tasks]),
+        np.array([family.best_return(number) for number in range(n_tasks)]),
+        np.array([n_spills(task) for task in tasks], np.float64),
+        np.array([task.alarm for task in tasks], np.float64),
+        len(knowledge.known_types()),
+    )
+
+
+def n_spills(task: LivedTask) -> int:
+    """Acts of the first episode that spilled an object."""
+    effects = [effect for decision in task.decisions[0] for effect in decision.effects]
+    return sum(cause < N_SITUATED and effect == SPILLED for cause, effect in effects)
+
+
+def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
+    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is five lives on eighty trays of its own.
+
+    Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`.
+    """
+    from joblib import Parallel, delayed
+
+    done: list[list[dict[str, LifeResult]]] = []
+    progress(0, repeats, "rounds")
+    work = (delayed(lived_round)(seed, True) for seed in range(repeats))
+    for lives in Parallel(n_jobs=min(2, repeats), return_as="generator")(work):  # type: ignore[union-attr]
+        done.append(lives)
+        progress(len(done), repeats, "rounds")
+    lives = [life for found in done for life in found]
+    if repeats > 1:
+        _draw(lives, out)
+    return report(lives)
+
+
+def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
+    """Rows and goals of some lives."""
+    shares = {agent: np.array([life[agent].share(NEW) for life in lives]) for agent in AGENTS}
+    spills = {agent: np.array([life[agent].spills[NEW].mean() for life in lives]) for agent in AGENTS}
+    rows = []
+    for agent in AGENTS:
+        early = [life[agent].share(slice(0, N_TASKS)) for life in lives]
+        last = [life[agent].share(NEW, "last") for life in lives]
+        rows += [
+            _row(f"{agent}: first episodes of the first forty tasks", mean_estimate(early), "of the best"),
+            _row(f"{agent}: first episodes on new trays", mean_estimate(shares[agent]), "of the best"),
+            _row(f"{agent}: last episodes on new trays", mean_estimate(last), "of the best"),
+            _row(f"{agent}: spills in first episodes on new trays", mean_estimate(spills[agent]), "a task"),
+        ]
+        if agent != "full":
+            less = shares["full"] - shares[agent]
+            rows.append(
+                _row(f"full less {agent}: first episodes on new trays", mean_estimate(less), "of the best")
+            )
+    types = mean_estimate([life["full"].n_types for life in lives])
+    alarms = mean_estimate([life["full"].alarms[NEW].mean() for life in lives])
+    rows += [
+        _row("full: types known at the end", types, "types"),
+        _row("full: alarms on new trays", alarms, "a task"),
+    ]
+    scratch = float(spills["scratch"].mean())
+    goals = [
+        at_least("full: first episodes on new trays", 0.95, float(shares["full"].mean())),
+        at_most("full: spills, of those of scratch", 0.05, float(spills["full"].mean()) / max(scratch, 1e-9)),
+    ]
+    return {"rows": rows, "goals": goals}
+
+
+def _row(name: str, estimate: Estimate, unit: str) -> dict[str, Any]:
+    return row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
+
+
+def curve(lives: Iterable[Mapping[str, LifeResult]], agent: str, width: int = 10) -> tuple[Array, Array]:
+    """Task numbers and share of the best possible return, over `width` tasks up to each, of all lives together."""
+    first = np.sum([life[agent].first for life in lives], axis=0)
+    best = np.sum([life[agent].best for life in lives], axis=0)
+    window = np.ones(width)
+    return np.arange(width, len(first) + 1), np.convolve(first, window, "valid") / np.convolve(
+        best, window, "valid"
+    )
+
+
+def _draw(lives: Sequence[Mapping[str, LifeResult]], out: Path) -> None:
+    from lifelore.experiments.bench.lives.figure_life_curves import draw_life_curves
+    from lifelore.figures.style import save_figure
+
+    out.mkdir(parents=True, exist_ok=True)
+    curves = {agent: curve(lives, agent) for agent in AGENTS}
+    save_figure(draw_life_curves(curves, N_TASKS, len(lives)), out / "bench_tabletop_lives.png")
