@@ -62,7 +62,7 @@ def test_rows_goals_and_figure(monkeypatch, tmp_path):
     steps = []
     document = case.bench_long_lived_worlds(1, lambda *at: steps.append(at[:2]), out=tmp_path)
     assert BENCHES["long_lived_worlds"] == "agent"
-    assert steps == [(done, 4) for done in range(1, 5)]
+    assert steps == [(done, 3) for done in range(1, 4)]
     rows = {row["name"]: row for row in document["rows"]}
     assert len(rows) == len(document["rows"])
     for half in ("first half", "second half"):

@@ -60,9 +60,10 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``recognition``: offices; for ``relations``, ``segmentation``, ``plans`` and ``views``: lots of
-        scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``: runs of learning; for
-        ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
+        lives; for ``long_lived_worlds``: lives, half as many outside the factory; for ``recognition``: offices;
+        for ``relations``, ``segmentation``, ``plans`` and ``views``: lots of scenes, judged together; for
+        ``raw_frames``: rooms of each kind; for ``deep``: runs of learning; for ``evaluation``: 60 simulated
+        studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
