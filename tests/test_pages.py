@@ -41,6 +41,7 @@ EXPECTED = {
         '"advise": false',
         '"advise": true',
     ],
+    "fleet": ["karl", "rosie", "contributions: 2 added", "contributions: 0 added"],
     "policy_reuse": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
 }
 """Words of the output of each page, in this order."""
@@ -51,6 +52,8 @@ NOT_RUN = {
     "lifelore perceive depth.png": "needs a depth image",
     "lifelore perceive organised.pcd": "needs a cloud and masks",
     "lifelore perceive left.pcd": "needs two views",
+    "dask ": "needs a cluster",
+    "lifelore reproduce C3.2 --full --engine": "needs a cluster",
     "make ": "installs from the network",
     "python3 -m venv": "an environment for the next command",
     "pip install": "installs from the network",

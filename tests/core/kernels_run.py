@@ -23,10 +23,11 @@ def all_arrays() -> dict[str, np.ndarray]:
     """Every array that the kernels leave behind, by name."""
     from lifelore.core.compiled.random_state import next_uniform, random_state
     from lifelore.core.learning.curve import new_curve
-    from lifelore.core.learning.known_world import best_known_actions, unknown_world
+    from lifelore.core.learning.known_world import WorldModel, best_known_actions, unknown_world
     from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo, explore, new_model_learner
     from lifelore.core.learning.q_learning import Schedule, learn, new_learner, uniform_rows
     from lifelore.core.learning.sight_search import explore_by_sight, new_sight_search
+    from lifelore.core.learning.tour_search import KnownTour
     from lifelore.core.planning.layered_planning import LayeredPlan, layered_q
     from lifelore.core.planning.planning import optimal_q, policy_values
     from lifelore.core.streams import stream
@@ -73,6 +74,15 @@ def all_arrays() -> dict[str, np.ndarray]:
         while explore_by_sight(tables, model, seen, strategy, explorer, search, curve, 30, 0.9, 50):
             pass
         out |= _named(f"by sight {exhaustive}", (*model, *explorer, *search, *curve))
+    square = np.arange(36).reshape(6, 6)
+    moves = np.stack([square[[0, 0, 1, 2, 3, 4]], square[[1, 2, 3, 4, 5, 5]]], axis=-1)
+    moves = np.concatenate(
+        [moves, np.stack([square[:, [0, 0, 1, 2, 3, 4]], square[:, [1, 2, 3, 4, 5, 5]]], -1)], -1
+    )
+    cells = np.argwhere(square >= 0)
+    known = KnownTour.of(WorldModel(moves.reshape(36, 4).astype(np.int32), np.zeros(36, np.int64)), cells)
+    looked = (np.arange(36) % 5 == 0).astype(np.int8)
+    out |= _named("tour", (*known.near, known.tour, known.order(looked, 7)))
     return out
 
 

@@ -44,6 +44,7 @@ def _register() -> None:
         reuse_command,
         reuse_evaluate_command,
         scenes_command,
+        serve_command,
         teach_command,
         way_command,
     )
@@ -60,6 +61,7 @@ def _register() -> None:
     reuse_command.reuse.command("evaluate")(reuse_evaluate_command.evaluate)
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
+    app.command("serve")(serve_command.serve)
     app.command("reproduce")(reproduce_command.reproduce)
     app.command("bench")(bench_command.bench)
     app.command("doctor")(doctor_command.doctor)

@@ -34,7 +34,11 @@ def live(
     cell: Annotated[float | None, Option(help="Side of a grid cell in metres [building: 0.5].")] = None,
     robot_radius: Annotated[float | None, Option(help="Radius of the robot in metres [building: 0.2].")] = None,
     destinations: Annotated[
-        int, Option(help="Number of recurring places that goals are drawn from; 0: every place.")
+        int,
+        Option(
+            help="Number of recurring places that goals are drawn from, and where goals were found is remembered; "
+            "0: every place."
+        ),
     ] = 0,
     learner: Annotated[
         str, Option(help="model (plans on a learnt model of the moves) or q (the thesis's Q-learning).")

@@ -52,17 +52,16 @@ def _print_report(report: dict[str, Any], robot: str) -> None:
     table = Table("task", "context", "first return", "last return", "best possible", "learnt by", "")
     for task in report["tasks"]:
         returns = [f"{task[name]:.2f}" for name in ("best_return",)]
-        new = "a new type" if task["alarm"] else ""
+        new = "a new type" if task["new_type"] else ""
         row = (str(task["task"]), str(task["context"]), f"{task['returns'][0]:.2f}", f"{task['returns'][-1]:.2f}")
         table.add_row(*row, *returns, task["learnt"], new)
     console.print(table)
     for half, found in report["summary"].items():
-        if found["first_episode"] is not None:
-            console.print(
-                f"{half}: {100 * found['first_episode']:.0f} % of the best possible return in first episodes, "
-                f"{100 * found['last_episode']:.0f} % in last ones",
-                highlight=False,
-            )
+        console.print(
+            f"{half}: {found['first_episode_below_best']:.2f} points below the best possible return in first "
+            f"episodes, {found['last_episode_below_best']:.2f} in last ones; {found['new_types']} new types",
+            highlight=False,
+        )
     if report["tasks"] and report["agent"] == "full":
         console.print(
             f"lifelore explain {report['tasks'][-1]['task']} --robot {robot} says why it acted so",

@@ -18,6 +18,13 @@ def reproduce(
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting of the claims.")
     ] = None,
     jobs: Annotated[int | None, typer.Option(help="Threads; results do not depend on their number.")] = None,
+    engine: Annotated[
+        str,
+        typer.Option(help="Where parts run: local (threads) or dask (a cluster; extra cluster); same results."),
+    ] = "local",
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="dask: the cluster's scheduler, such as tcp://host:8786.")
+    ] = None,
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the results.")] = "results",
     seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
@@ -38,7 +45,8 @@ def reproduce(
     if quick and full:
         raise InputError("quick and full exclude each other: choose one")
     with progress_bar("reproducing") as progress:
-        results = run(claims or [], "full" if full else "quick", _pairs(settings or []), jobs, out, seed, progress)
+        mode, overrides = "full" if full else "quick", _pairs(settings or [])
+        results = run(claims or [], mode, overrides, jobs, out, seed, progress, engine, scheduler)
     if as_json:
         print_json(results)
     else:

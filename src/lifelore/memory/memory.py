@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import closing, contextmanager, suppress
+from contextlib import AbstractContextManager, closing, contextmanager, suppress
 from pathlib import Path
 from types import TracebackType
 from typing import Any, Self
@@ -208,6 +208,19 @@ class Memory:
                 self.give_back_task(robot, number, process=process)
             raise
 
+    def together(self) -> AbstractContextManager[None]:
+        """A block in which all that this thread reads and stores is one transaction, stored when the block ends.
+
+        Many small contributions then wait for the disk once. A contribution that fails inside the block leaves
+        the others as they are. An error that leaves the block undoes all of them.
+
+        Raises
+        ------
+        StoreError
+            The end of the block: the disk refuses; nothing of the block was stored.
+        """
+        return self._store.together()
+
     def recall(self, kind: str, key: str, version: int, *, slots: tuple[int, int] = EVERY_SLOT) -> Record | None:
         """The merged record of all robots, slots ascending, with the newest ``about``; None if there is none.
 
@@ -262,6 +275,13 @@ class Memory:
             rows = conn.execute(query, (robot,)).fetchall()
         for (text,) in rows:
             yield json.loads(text)
+
+    def history(self, robot: str) -> list[tuple[dict[str, Any], list[Record]]]:
+        """(task, records) of each contribution of a robot, oldest first; all are in main memory at once."""
+        with self._store.reading() as conn:
+            numbers = [entry.number for entry in ledger.entries(conn, robot)]
+            found = [stored.contribution for stored in ledger.load(conn, numbers)]
+            return [(json.loads(one.task), one.records()) for one in found]
 
     def robots(self) -> list[str]:
         """The robots that have contributed, sorted."""

@@ -80,6 +80,9 @@ def _look(path: Path, *, immutable: bool) -> None:
         if conn.execute("SELECT 1 FROM sqlite_master WHERE name = 'lifelore_migrations'").fetchone():
             (found,) = conn.execute("SELECT MAX(number) FROM lifelore_migrations").fetchone()
             refuse_newer(str(path), found or 0)
+        programs = "SELECT COUNT(*) FROM sqlite_master WHERE type IN ('view', 'trigger')"
+        if conn.execute(programs).fetchone()[0]:
+            raise StoreError(f"memory {path} has views or triggers, which no Lifelore makes; nothing was changed")
         (pages,) = conn.execute("PRAGMA page_count").fetchone()
         (page_bytes,) = conn.execute("PRAGMA page_size").fetchone()
         if immutable and path.stat().st_size < pages * page_bytes:

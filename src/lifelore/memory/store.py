@@ -1,5 +1,6 @@
 """`Store`: an open database with transactions for one writer at a time, and for readers on a snapshot."""
 
+import threading
 import time
 from collections.abc import Iterator
 from contextlib import closing, contextmanager
@@ -31,6 +32,7 @@ class Store:
         self.location = location
         self.is_sqlite = is_sqlite
         self.schema = schema.LATEST
+        self._own = threading.local()
 
     @property
     def pool(self) -> Pool:
@@ -48,6 +50,10 @@ class Store:
     @contextmanager
     def reading(self) -> Iterator[Connection]:
         """A transaction on a snapshot of the database, which never waits for writers."""
+        if (joint := self._joint) is not None:
+            with one_line_refusals(self.location):
+                yield joint
+            return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             conn.control("BEGIN" if self.is_sqlite else "BEGIN ISOLATION LEVEL REPEATABLE READ")
             yield conn
@@ -56,12 +62,26 @@ class Store:
     @contextmanager
     def looking(self) -> Iterator[Connection]:
         """A connection to read by a single statement, which is its own snapshot of the database."""
+        if (joint := self._joint) is not None:
+            with one_line_refusals(self.location):
+                yield joint
+            return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             yield conn
 
     @contextmanager
     def writing(self) -> Iterator[Connection]:
         """The only writing transaction; it is committed completely, or after an error not at all."""
+        if (joint := self._joint) is not None:
+            with one_line_refusals(self.location):
+                joint.control("SAVEPOINT lifelore_part")
+                try:
+                    yield joint
+                except BaseException:
+                    joint.control("ROLLBACK TO SAVEPOINT lifelore_part")
+                    raise
+                joint.control("RELEASE SAVEPOINT lifelore_part")
+            return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             if self.is_sqlite:
                 conn.control("BEGIN IMMEDIATE")
@@ -84,12 +104,32 @@ class Store:
         """
         if not self.is_sqlite:
             return
+        if self._joint is not None:  # the log can be emptied once the block is stored
+            self._own.log_to_empty = True
+            return
         with one_line_refusals(self.location), self.pool.connection() as conn:
             if conn.value("PRAGMA wal_checkpoint(TRUNCATE)"):
                 raise StoreError(
                     f"memory {self.location}: the content is deleted, but its bytes are still in the log, which "
                     f"another process has read for {BUSY_SECONDS} s; they go when all have closed the memory"
                 )
+
+    @contextmanager
+    def together(self) -> Iterator[None]:
+        """A single writing transaction for all that this thread reads and writes inside the block."""
+        with self.writing() as conn:
+            self._own.joint = conn
+            try:
+                yield
+            finally:
+                self._own.joint = None
+        if getattr(self._own, "log_to_empty", False):
+            self._own.log_to_empty = False
+            self.empty_log()
+
+    @property
+    def _joint(self) -> Connection | None:
+        return getattr(self._own, "joint", None)
 
     def lies_at(self, place: Path | Server) -> bool:
         """Whether `place` is the location of this database."""

@@ -23,14 +23,11 @@ class Doors:
     n_causes = N
     n_effects = 2
     n_results = 1
+    judges = np.ones(N, np.bool_)
 
     @property
     def groups(self):
         return np.arange(N)
-
-    @property
-    def judges(self):
-        return np.ones(N, np.bool_)
 
     @property
     def possible(self):

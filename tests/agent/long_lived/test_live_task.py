@@ -120,7 +120,7 @@ def test_the_explanation_names_belief_act_and_novelty(settled):
     document = task_document(tasks[-1], family, 8.8)
     text = "\n".join(explained(document))
     assert f"→ {family.acts[int(tasks[-1].drawn.hidden_type)]}, as for r." in text
-    assert "known types fitted" in text
+    assert "known types were not ruled out" in text
     assert "the agent knew no type yet" in "\n".join(explained(task_document(tasks[0], family, 8.8)))
 
 

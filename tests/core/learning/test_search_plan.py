@@ -2,6 +2,7 @@
 
 import heapq
 from collections import Counter
+from typing import Any
 
 import numpy as np
 import pytest
@@ -22,7 +23,7 @@ from lifelore.core.learning.known_world import (
     known_policy,
 )
 from lifelore.core.learning.model_learning import new_model_learner
-from lifelore.core.learning.search_plan import NO_CRUMBS, plan_search
+from lifelore.core.learning.search_plan import NO_CRUMBS, OUT_OF_REACH, plan_search
 from lifelore.core.streams import stream
 
 seeds = st.integers(0, 10**6)
@@ -42,8 +43,10 @@ def knowledge(seed: int, n_states=10, n_actions=3, goal=False):
     return target, place, cost_row, try_cost
 
 
-def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0):
-    """The actions of `_plan`, first one first."""
+def planned(
+    target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0, wanted=-1, later=()
+) -> list[int]:
+    """The actions of `plan_search`, first one first; OUT_OF_REACH alone if the wanted place is out of reach."""
     desk = new_model_learner(*target.shape, stream(0, "world"), stream(0, "own"))
     own = random_state(stream(seed, "own"))
     length = plan_search(
@@ -54,6 +57,8 @@ def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0
         cost_row,
         try_cost,
         exhaustive,
+        wanted,
+        np.isin(np.arange(len(place)), later),
         desk.plan,
         desk.queue,
         desk.parent,
@@ -61,6 +66,8 @@ def planned(target, place, cost_row, try_cost, exhaustive=False, seed=0, start=0
         own,
     )
     assert (desk.parent == UNKNOWN).all()  # as it was, whatever the search reached
+    if length == OUT_OF_REACH:
+        return [OUT_OF_REACH]
     return [int(a) for a in desk.plan[:length][::-1]]
 
 
@@ -228,3 +235,32 @@ def test_best_known_actions_shorten_the_way_and_leave_none_out(seed):
     assert (best.any(axis=1) == (distance > 0)).all()
     policy = known_policy(model, explorer.place)
     assert policy.tolist() == [row.index(True) if True in row else -1 for row in expected]
+
+
+# ---- along a tour ------------------------------------------------------------------------------------
+def row_of_places(known: int) -> Any:
+    """Places in a row, moves left and right; nothing is known beyond place `known` - 1."""
+    target = np.array([[max(s - 1, 0), s + 1] for s in range(8)], np.int32)
+    target[-1, 1] = 7
+    target[known - 1, 1] = UNKNOWN
+    place = np.full(8, NOT_LOOKED, np.int8)
+    place[2] = LOOKED
+    return target, place, np.zeros(8, np.int32), np.array([[0.0, 0.0]])
+
+
+def test_a_tour_looks_for_its_next_place_and_crosses_the_later_ones():
+    assert planned(*row_of_places(8), start=2, wanted=5, later=[0, 1, 3, 4, 5]) == [1, 1, 1]
+    assert planned(*row_of_places(8), start=2, wanted=0, later=[0, 1, 3, 4, 5]) == [0, 0]
+
+
+def test_nearer_places_that_are_not_on_the_tour_and_moves_never_made_come_first():
+    assert planned(*row_of_places(8), start=2, wanted=5, later=[1, 4, 5]) == [1]
+    # The move out of place 4 costs three steps, as place 0 does two.
+    assert planned(*row_of_places(5), start=2, wanted=0, later=[0, 1, 3, 4]) == [0, 0]
+    assert planned(*row_of_places(4), start=3, wanted=0, later=[0, 1, 2]) == [1]
+
+
+def test_a_wanted_place_out_of_reach():
+    target, *rest = row_of_places(8)
+    target[4, 1] = 4  # a door was closed
+    assert planned(target, *rest, start=2, wanted=6, later=[0, 1, 3, 4, 5, 6, 7]) == [OUT_OF_REACH]

@@ -103,6 +103,10 @@ class AdviceSession:
             "gain": advice.gain,
         }
 
+    def forget(self, agent: str | int) -> None:
+        """Forget the steps of an agent."""
+        self._agents.pop(agent, None)
+
 
 def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
     """Advice for each line ``{"agent", "state", "action"}``, as soon as the line arrives.

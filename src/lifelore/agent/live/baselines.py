@@ -11,7 +11,7 @@ class AgentKind:
     """What an agent uses in a task.
 
     uses_prior : an action prior orders the moves that it tries
-    remembers : it still knows the transitions that it learnt in earlier tasks
+    remembers : it still knows the transitions that it learnt in earlier tasks, and plans a tour on them
     exploration_strategy : how it searches for the goal
     """
 

@@ -346,6 +346,8 @@ class _RunningLife:
             records.append(lore.learn_prior(result.best, goal, self.settings.prior.weight))
         if kind.remembers and self.settings.learning.learner == "model":
             records.append(lore.model_news())
+            if self.settings.destinations and result.reached:
+                records.append(lore.goals.found(goal))
         return [record for record in records if len(record.slots)]
 
 

@@ -190,7 +190,8 @@ class LifeSettings:
     tasks : int
         Tasks to live through now, ≥ 1; `goals` overrides it, see `n_tasks`.
     destinations : int
-        Number of recurring places that goals are drawn from; 0: every place.
+        Number of recurring places that goals are drawn from; 0: every place. Agents that remember transitions then
+        remember where goals were found too, and try those places first (``goals.goal_counts``).
     start : (x, y) or str, or (row, column), optional
         Place in which every episode starts; None: any place. In buildings metres of the map's frame, or a name
         that memory knows; in other worlds a cell.

@@ -11,8 +11,10 @@ from lifelore.action.priors.action_prior import KIND as PRIOR_KIND
 from lifelore.action.priors.action_prior import VERSION as PRIOR_VERSION
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.agent.live import transitions
+from lifelore.agent.live.goals.goal_counts import GoalCounts
 from lifelore.agent.live.transitions import BuildingGrid
 from lifelore.core.learning.known_world import WorldModel
+from lifelore.core.learning.tour_search import KnownTour
 from lifelore.core.protocols import Record
 from lifelore.domains.grids.grid_world import MOVE_BITS, MOVE_NAMES, PERCEPT, GridWorld
 from lifelore.memory import Memory
@@ -54,7 +56,9 @@ class Lore:
     prior: ActionPrior
     model: WorldModel
     grid: BuildingGrid
+    goals: GoalCounts
     _stored: NDArray[np.int64] = field(repr=False)
+    _tour: KnownTour | None = field(default=None, repr=False)
 
     @classmethod
     def recalled(
@@ -77,13 +81,13 @@ class Lore:
             model = transitions.from_record(world, changed.record if changed else None, grid.corner)
             if changed and grid.building is not None and changed.record.about.get("building") == grid.building:
                 transitions.forget_changed(world, model)
-        return cls(world, scope, prior, model, grid, stored)
+        return cls(world, scope, prior, model, grid, GoalCounts.recalled(world, grid, memory), stored)
 
     def copy(self) -> "Lore":
         """An independent copy for another agent."""
         prior = ActionPrior.merged([self.prior])
         model = WorldModel(self.model.target.copy(), self.model.percept.copy())
-        return Lore(self.world, self.scope, prior, model, self.grid, self._stored.copy())
+        return Lore(self.world, self.scope, prior, model, self.grid, self.goals.copy(), self._stored.copy())
 
     def learn_prior(self, best: NDArray[np.bool_], goal: int, weight: float) -> Record:
         """Count the policy of a finished task without its goal row (Eq. 3.5, 3.7); return the contribution."""
@@ -93,6 +97,11 @@ class Lore:
         news.update(self.scope.contexts, best, weight)
         self.prior.merge(news)
         return news.to_record({"prior": self.scope.kind, "actions": list(MOVE_NAMES)})
+
+    def known_tour(self) -> KnownTour:
+        """A short closed tour of the known places, and the remembered destinations that are tried before it."""
+        self._tour = KnownTour.of(self.model, self.world.cells, self._tour)
+        return self._tour.with_destinations(self.goals.belief()[0], self.goals.order)
 
     def model_news(self) -> Record:
         """Transitions that differ from those in memory, as a record."""

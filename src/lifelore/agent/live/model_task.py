@@ -23,6 +23,7 @@ from lifelore.core.learning.model_learning import (
     explore,
 )
 from lifelore.core.learning.sight_search import FOUND_STEP, SightSearch, explore_by_sight
+from lifelore.core.learning.tour_search import KnownTour, explore_on_tour
 from lifelore.core.mdp import Tables
 
 NEAR = 1e-9
@@ -37,6 +38,7 @@ def live_model_task(
     model: WorldModel,
     perceived: StateInfo,
     search: SightSearch | None,
+    tour: KnownTour | None,
     strategy: ExplorationStrategy,
     explorer: ModelLearner,
     episodes: int,
@@ -47,6 +49,7 @@ def live_model_task(
 
     With `search` the learner perceives places at a distance, else by touch. It may then know enough as soon as it
     sees the goal; it still walks to the end of that episode, which counts for the returns and the model alone.
+    With `tour` it visits the places known before the task in the order of a tour.
     """
     check_deterministic(tables)
     curve = new_curve(episodes)
@@ -54,6 +57,8 @@ def live_model_task(
     task = perceived, strategy, explorer
 
     def run(budget: int) -> int:
+        if tour is not None:
+            return explore_on_tour(tables, model, *task, tour, curve, max_steps, discount, budget)
         if search is None:
             return explore(tables, model, *task, curve, max_steps, discount, budget)
         return explore_by_sight(tables, model, *task, search, curve, max_steps, discount, budget)

@@ -70,6 +70,7 @@ class SharedTask:
             lore.model,
             self._perceived(kind, lore),
             sight and new_sight_search(*sight, self.tables, lore.model),
+            lore.known_tour() if kind.remembers and sight is None else None,
             kind.exploration_strategy,
             explorer,
             settings.episode_cap(world.n_states),

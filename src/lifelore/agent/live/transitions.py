@@ -122,6 +122,11 @@ def cells_from(record: Record, cells: NDArray[np.int64], corner: tuple[int, int]
     return _shifted(cells, _shift(record, corner))
 
 
+def cells_in_building(world: GridWorld, corner: tuple[int, int]) -> NDArray[np.int64]:
+    """The number of each state's cell in the grid of the building's first map; -1 below or left of it."""
+    return _shifted(cells_of(world), corner)
+
+
 def _shift(record: Record, corner: tuple[int, int]) -> tuple[int, int]:
     """Rows and columns from a record's lower left corner to that of a world."""
     row, column = record.about.get("corner", (0, 0))

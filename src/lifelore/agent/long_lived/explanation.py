@@ -28,9 +28,15 @@ def task_document(lived: LivedTask, family: TaskFamily, best: float) -> dict[str
         "alarm": lived.alarm,
         "alarm_score": round(lived.alarm_score, 3),
         "learnt": lived.learnt,
+        "new_type": lived.learnt not in _members(lived.types),
         "first_episode": [_decision(one, family, names) for one in lived.decisions[0]],
         "last_episode": [_decision(one, family, names) for one in lived.decisions[-1]],
     }
+
+
+def _members(types: list[str]) -> set[str]:
+    """Names of the types that are joined in some."""
+    return {name for joined in types for name in joined.split("+")}
 
 
 def _decision(one: Decision, family: TaskFamily, names: list[str]) -> dict[str, Any]:
@@ -71,11 +77,9 @@ def explained(document: dict[str, Any]) -> list[str]:
                 f"       → {step['act']}, as for {step['as_for']} (expected {step['expected']:.2f}{rival}); "
                 f"reward {step['reward']:.2f}"
             )
-    score = document["alarm_score"]
-    if document["alarm"]:
-        lines.append(f"  no known type fitted (surprise {score:.1f} deviations): it became {document['learnt']}")
-    else:
-        lines.append(f"  known types fitted (surprise {score:.1f} deviations): {document['learnt']} learnt most")
+    fitted = "no known type fitted" if document["alarm"] else "known types were not ruled out"
+    taught = "it became the new type" if document["new_type"] else "it taught most to"
+    lines.append(f"  {fitted} (surprise {document['alarm_score']:.1f} deviations); {taught} {document['learnt']}")
     return lines
 
 

@@ -83,8 +83,8 @@ def live_long(
     Returns
     -------
     dict
-        JSON data: ``domain``, ``agent``, ``tasks`` (a document for each task), ``summary`` (share of the best
-        possible return in the first episodes and in the last, over the first and second half of the tasks).
+        JSON data: ``domain``, ``agent``, ``tasks`` (a document for each task), ``summary`` (how far first and last
+        episodes were below the best possible return, over the first and second half of the tasks).
 
     Raises
     ------
@@ -157,23 +157,22 @@ def recalled(family: TaskFamily, memory: Memory) -> Knowledge:
 
 
 def summary(tasks: list[dict[str, Any]]) -> dict[str, Any]:
-    """Share of the best possible return, in the first and the last episodes, by half of the tasks."""
+    """Mean points below the best possible return, in first and last episodes, by half of the tasks."""
     halves = {"first half": tasks[: len(tasks) // 2], "second half": tasks[len(tasks) // 2 :]}
     return {
         name: {
             "tasks": len(half),
-            "first_episode": _share([task["returns"][0] for task in half], half),
-            "last_episode": _share([task["returns"][-1] for task in half], half),
-            "alarms": sum(task["alarm"] for task in half),
+            "first_episode_below_best": _below(half, 0),
+            "last_episode_below_best": _below(half, -1),
+            "new_types": sum(task["new_type"] for task in half),
         }
         for name, half in halves.items()
         if half
     }
 
 
-def _share(returns: list[float], tasks: list[dict[str, Any]]) -> float | None:
-    best = float(np.sum([task["best_return"] for task in tasks]))
-    return round(float(np.sum(returns)) / best, 4) if best > 0 else None
+def _below(tasks: list[dict[str, Any]], episode: int) -> float:
+    return round(float(np.mean([task["best_return"] - task["returns"][episode] for task in tasks])), 4)
 
 
 def stored_task(number: int, robot: str = "robot", memory: str | None = None) -> dict[str, Any]:

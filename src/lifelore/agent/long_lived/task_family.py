@@ -191,8 +191,10 @@ class TaskFamily(Protocol):
         """(n_causes,) causes of one group are alike: what is known of the group stands in for an untried cause."""
         ...
 
-    judges: NDArray[np.bool_]
-    """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
+    @property
+    def judges(self) -> NDArray[np.bool_]:
+        """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
+        ...
 
     def meet(self, number: int, abilities: Abilities) -> tuple[DrawnTask, AgentTask]:
         """Task `number`, drawn and met."""

@@ -14,9 +14,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.reuse.availability import checked_available
-from lifelore.agent.reuse.history import Decision, open_history, parse_identifier, robot_of, user_key
+from lifelore.agent.reuse.history import (
+    Decision,
+    open_history,
+    parse_identifier,
+    read_decisions,
+    robot_of,
+    user_key,
+)
 from lifelore.agent.reuse.log_columns import check_word
 from lifelore.agent.reuse.past import forget_past
+from lifelore.agent.reuse.requests import request_record, requested
 from lifelore.agent.reuse.study import ACTIVE, PILOT, RETIRED, Study
 from lifelore.agent.reuse.user_belief import UserBelief, novelty_of, open_belief
 from lifelore.core.errors import InputError, NotFoundError, StoreError
@@ -49,6 +57,7 @@ def choose(
     available: Sequence[str] | None = None,
     seed: int = 0,
     novelty: bool = False,
+    request: str | None = None,
 ) -> dict[str, Any]:
     """Choose a policy for a user's next time and remember that it was chosen.
 
@@ -69,6 +78,9 @@ def choose(
     novelty : bool
         Whether to compute the probability that no type of the library fits the user. The time grows with the
         number of the user's decisions.
+    request : str, optional
+        Identifier of the request, unique for the user. The same request again gets the decision that it got
+        before, and nothing is stored.
 
     Returns
     -------
@@ -78,7 +90,9 @@ def choose(
         else ``context`` whose prior counts (both None: everybody's), ``belief`` by type,
         ``expected`` outcome by active policy, ``surprise`` of the outcomes so far in nats (the sum of −log
         evidence; it depends on the noise, and is no sign of a new type), ``novelty``: the probability that no
-        type of the library fits the user, as far as it was asked for, else None.
+        type of the library fits the user, as far as it was asked for, else None. With a `request` also
+        ``repeated``: whether it was answered before; then belief, context, features and expected outcomes are
+        those of now.
 
     Raises
     ------
@@ -96,9 +110,19 @@ def choose(
     key, attempt = user_key(study.name, user), 0
     for _ in range(ATTEMPTS):
         known = open_belief(memory, study, key, user, context, numbers)
-        decision, answer = _decided(study, known, attempt, seed, available)
+        made = None if request is None else requested(memory, study.name, key, request)
+        if made is None:
+            decision, answer = _decided(study, known, attempt, seed, available)
+        else:
+            decision, answer = _repeated(memory, study, known, *made)
         answer["novelty"] = novelty_of(memory, study, known) if novelty else None
+        if request is not None:
+            answer["repeated"] = made is not None
+        if made is not None:
+            return answer
         offered = known.history.records_of(decision)
+        if request is not None:
+            offered.append(request_record(study.name, key, request, decision.number, decision.attempt))
         task = {"study": study.name, "policy": decision.policy}
         after = known.state.after(study, [decision], known.state.head)
         state = KeyState(known.name, known.token, after.to_bytes())
@@ -122,23 +146,38 @@ def _decided(
     policy, probability = odds.policies[drawn], float(odds.probs[drawn])
     among = None if available is None else tuple(available)
     decision = Decision(head.number, policy, probability, control, int(time.time()), attempt, available=among)
+    return decision, _answer(study, known, decision, own)
+
+
+def _repeated(
+    memory: Memory, study: Study, known: UserBelief, number: int, attempt: int
+) -> tuple[Decision, dict[str, Any]]:
+    stored = read_decisions(memory, study, known.history.key, number)
+    decision = next((one for one in stored if (one.number, one.attempt) == (number, attempt)), None)
+    if decision is None:
+        raise NotFoundError("the decision of this request was forgotten; give the request another identifier")
+    return decision, _answer(study, known, decision, study.choice_for(known.state.head.task))
+
+
+def _answer(study: Study, known: UserBelief, decision: Decision, own: PolicyLibrary) -> dict[str, Any]:
+    head = known.state.head
+    belief = study.algorithm.belief(head.log_belief)
     expected = expected_utility(belief, own.performance.mean)
     by_features = study.feature_prior is not None and set(known.features or ()) == set(study.feature_prior.names)
-    answer = {
-        "user": user,
-        "policy": policy,
+    return {
+        "user": known.history.user,
+        "policy": decision.policy,
         "decision": known.history.identifier(decision),
-        "number": head.number,
-        "probability": probability,
-        "available": None if available is None else list(available),
-        "control": control,
+        "number": decision.number,
+        "probability": decision.probability,
+        "available": None if decision.available is None else list(decision.available),
+        "control": decision.control,
         "context": known.context if known.context in study.contexts and not by_features else None,
         "features": known.features if by_features else None,
         "belief": dict(zip(study.library.types, belief.tolist(), strict=True)),
         "expected": dict(zip(study.active, expected.tolist(), strict=True)),
         "surprise": head.surprise,
     }
-    return decision, answer
 
 
 def checked_features(study: Study, features: Mapping[str, float]) -> dict[str, float]:

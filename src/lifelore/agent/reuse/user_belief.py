@@ -8,8 +8,10 @@ for histories of an earlier Lifelore.
 
 import hashlib
 import json
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from itertools import chain
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -20,6 +22,7 @@ from lifelore.agent.reuse.past import PastUser, index_name, read_index, read_pas
 from lifelore.agent.reuse.study import Study
 from lifelore.agent.reuse.user_state import Checkpoint, UserState, WorkingBelief, from_bytes
 from lifelore.interaction.beliefs.belief import expected_utility
+from lifelore.interaction.reuse.explanation import Evidence
 from lifelore.memory import Memory
 
 if TYPE_CHECKING:
@@ -176,6 +179,19 @@ def _after_past(
     for policy, outcome in past.outcomes:
         belief.learn(policy, outcome)
     return belief
+
+
+def evidence_of(memory: Memory, study: Study, known: UserBelief, n: int) -> tuple[WorkingBelief, list[Evidence]]:
+    """The belief about a user and the evidence of the last `n` outcomes, by a replay of past and decisions."""
+    key = known.history.key
+    past = read_past_user(memory, study.name, read_index(memory, study.name), key)
+    prior = Checkpoint(0, study.algorithm.start(prior_of(study, known.context, past, known.features)), 0.0)
+    belief, last = WorkingBelief(study, prior), deque[Evidence](maxlen=n)
+    decided = ((one.policy, one.outcome) for one in read_decisions(memory, study, key))
+    for policy, outcome in chain(past.outcomes, decided):
+        if (evidence := belief.learn(policy, outcome)) is not None:
+            last.append(evidence)
+    return belief, list(last)
 
 
 def expected_outcomes(study: Study, history: History, past: PastUser) -> NDArray[np.float64]:

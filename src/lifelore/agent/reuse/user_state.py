@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.interaction.reuse.explanation import surprise_of
+from lifelore.interaction.reuse.explanation import Evidence, surprise_of
 
 if TYPE_CHECKING:
     from lifelore.agent.reuse.history import Decision
@@ -185,8 +185,8 @@ class WorkingBelief:
         self._task = study.task(start.task)
         self._algorithm, self._novelty = study.algorithm_for(self._task), novelty
 
-    def learn(self, policy: str | None, outcome: float | None) -> None:
-        """Learn from an outcome of a policy.
+    def learn(self, policy: str | None, outcome: float | None) -> Evidence | None:
+        """Learn from an outcome of a policy, and return its evidence.
 
         Without an outcome, or with a policy that the library does not know, there is no evidence. The user's type
         may change all the same.
@@ -195,11 +195,13 @@ class WorkingBelief:
             self._algorithm.step_row(self._log_belief)
             if self._novelty is not None:
                 self._novelty.skip()
-            return
+            return None
         index = self._study.library.index_of_policy(policy)
-        self._surprise += surprise_of(self._algorithm.update_row(self._log_belief, index, outcome)[1])
+        evidence = Evidence(index, *self._algorithm.update_row(self._log_belief, index, outcome))
+        self._surprise += surprise_of(evidence.log_evidence)
         if self._novelty is not None:
             self._novelty.add(index, outcome)
+        return evidence
 
     @property
     def belief(self) -> NDArray[np.float64]:

@@ -33,7 +33,7 @@ from lifelore.core.learning.curve import (
     TOTAL,
 )
 from lifelore.core.learning.known_world import DEAD_END, GOAL, LOOKED, NOT_LOOKED, UNKNOWN
-from lifelore.core.learning.search_plan import plan_search
+from lifelore.core.learning.search_plan import OUT_OF_REACH, plan_search
 from lifelore.core.mdp import COLLISION, TERMINAL, Tables
 
 MOST_ACTIONS = np.iinfo(np.int8).max
@@ -83,6 +83,9 @@ class ModelLearner(NamedTuple):
     cursor : (7,) int64, see `curve.EPISODE` and the constants beside it; the number of `news` is ALL_NEW where
         known moves have changed or the list is full
     running : (2,) float64, see `curve.RETURN`
+    tour : (n_states,) int32, the order in which a tour visits places
+    later : (n_states,) bool, whether a place is on the tour
+    tour_at : (2,) int64, index of the tour's next place, and number of its places; 0 without a tour
     """
 
     place: NDArray[np.int8]
@@ -96,6 +99,9 @@ class ModelLearner(NamedTuple):
     own_random: NDArray[np.uint64]
     cursor: NDArray[np.int64]
     running: NDArray[np.float64]
+    tour: NDArray[np.int32]
+    later: NDArray[np.bool_]
+    tour_at: NDArray[np.int64]
 
 
 def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner:
@@ -115,6 +121,9 @@ def new_model_learner(n_states: int, n_actions: int, world, own) -> ModelLearner
         random_state(own),
         np.array([0, 0, 0, 0, 0, 0, ALL_NEW]),
         np.zeros(2),
+        np.zeros(n_states, np.int32),
+        np.zeros(n_states, np.bool_),
+        np.zeros(2, np.int64),
     )
 
 
@@ -128,7 +137,9 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
     target, seen = model
     percept, cost_row, try_cost = state_info
     planned, exhaustive, senses = strategy
-    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running = learner
+    place, tried, plan, queue, parent, parent_action, news, world, own, cursor, running, tour, later, tour_at = (
+        learner
+    )
     returns, rewards, steps, collisions, reached = curve
     n_actions = target.shape[1]
     episode, step = cursor[EPISODE], cursor[STEP]
@@ -150,6 +161,9 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
                 left, n_news = 0, ALL_NEW
         if planned:
             if left == 0:
+                left = OUT_OF_REACH
+            while left == OUT_OF_REACH:
+                wanted = _next_on_tour(tour, tour_at, place) if goals == 0 else -1
                 left = plan_search(
                     state,
                     target,
@@ -158,12 +172,17 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
                     cost_row,
                     try_cost,
                     exhaustive,
+                    wanted,
+                    later,
                     plan,
                     queue,
                     parent,
                     parent_action,
                     own,
                 )
+                if left == OUT_OF_REACH:
+                    later[wanted] = False
+                    tour_at[0] += 1
             if left == 0:
                 _doubt(target, tried)
                 plan[0] = uniform_integer(own, n_actions)
@@ -213,6 +232,14 @@ def explore(tables, model, state_info, strategy, learner, curve, max_steps, disc
     cursor[GOALS], cursor[NEWS] = goals, n_news
     running[RETURN], running[DISCOUNT] = ret, reach
     return done_steps
+
+
+@inlined
+def _next_on_tour(tour, tour_at, place):
+    """The next place of the tour that was not visited in this task; -1 if none is left."""
+    while tour_at[0] < tour_at[1] and place[tour[tour_at[0]]] != NOT_LOOKED:
+        tour_at[0] += 1
+    return np.int64(tour[tour_at[0]]) if tour_at[0] < tour_at[1] else np.int64(-1)
 
 
 @inlined

@@ -12,12 +12,31 @@ Measured on three buildings: the mean search falls from 0.67 to 0.59 of the numb
 least any searcher can need that must enter a place to see whether the goal is there. At most 1 / (moves + 1), so
 that a nearer place always comes first: with more than four moves it is smaller."""
 
+OUT_OF_REACH = -1
+"""Length of a plan if no known path leads to the wanted place."""
+
 
 @kernel(allocates=False)
 def plan_search(
-    start, target, place, goal_known, cost_row, try_cost, exhaustive, plan, queue, parent, parent_action, random
+    start,
+    target,
+    place,
+    goal_known,
+    cost_row,
+    try_cost,
+    exhaustive,
+    wanted,
+    later,
+    plan,
+    queue,
+    parent,
+    parent_action,
+    random,
 ):
     """Breadth-first search for the cheapest unknown or goal; fills `plan`, returns its length or 0.
+
+    Of the places that a tour visits, only the next one, `wanted`, is looked for; those in `later` may be crossed.
+    `wanted` is -1 without a tour. Where no known path leads to it, the length is `OUT_OF_REACH`.
 
     `parent` must be UNKNOWN everywhere, and is so again afterwards: only the states reached are reset, so a search
     near its start costs the same in a world of any size.
@@ -32,7 +51,7 @@ def plan_search(
     head, tail = 0, 1
     queue[0] = start
     parent[start] = start
-    level_end, depth = 1, 1.0
+    level_end, depth, met = 1, 1.0, wanted < 0
     while head < tail and depth <= best_cost:
         s = queue[head]
         head += 1
@@ -47,7 +66,10 @@ def plan_search(
                         goal_state, goal_action = s, a
                 else:
                     cost = depth
-            elif place[t] == NOT_LOOKED and not goal_known:
+            elif t == wanted and place[t] == NOT_LOOKED:
+                cost = depth
+                met = True
+            elif place[t] == NOT_LOOKED and not goal_known and not (wanted >= 0 and later[t]):
                 cost = depth + crumb * _not_looked_around(t, target, place)
             elif place[t] != DEAD_END and parent[t] == UNKNOWN:
                 parent[t] = s
@@ -74,6 +96,8 @@ def plan_search(
             plan[length] = parent_action[s]
             length += 1
             s = parent[s]
+    if head == tail and not met:
+        length = OUT_OF_REACH
     for i in range(tail):
         parent[queue[i]] = UNKNOWN
     return np.int64(length)

@@ -85,7 +85,7 @@ def explore_by_sight(tables, model, state_info, strategy, learner, search, curve
     next_state, reward_of, event_of, _, starts = tables
     target, remembered = model
     planned, exhaustive, _ = strategy
-    place, tried, plan, queue, parent, parent_action, _, world, own, cursor, running = learner
+    place, tried, plan, queue, parent, parent_action, _, world, own, cursor, running, _, _, _ = learner
     returns, rewards, steps, collisions, reached = curve
     stood, found = search.stood, search.found
     episode, step = cursor[EPISODE], cursor[STEP]

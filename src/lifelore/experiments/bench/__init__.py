@@ -32,8 +32,10 @@ BENCHES = {
     "merge": "fleet",
     "capacity": "fleet",
     "large_memory": "fleet",
+    "fleet": "fleet",
     "recognition": "lives",
     "lidar": "lives",
+    "destinations": "lives",
     "worlds": "lives",
     "tabletop_lives": "lives",
     "contexts": "action",
@@ -45,6 +47,7 @@ BENCHES = {
     "novelty": "interaction",
     "log": "interaction",
     "long_lived_worlds": "agent",
+    "serve": "service",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar", "long_lived_worlds")
@@ -60,10 +63,11 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``long_lived_worlds``: lives, half as many outside the factory; for ``recognition``: offices;
-        for ``relations``, ``segmentation``, ``plans`` and ``views``: lots of scenes, judged together; for
-        ``raw_frames``: rooms of each kind; for ``deep``: runs of learning; for ``evaluation``: 60 simulated
-        studies each; for ``novelty``: libraries of each case.
+        lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``
+        and ``views``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``:
+        runs of learning; for ``serve``: at most 5; for ``tabletop_lives``: three lives each; for
+        ``long_lived_worlds``: lives, half as many outside the factory; for ``evaluation``: 60 simulated studies
+        each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -1,13 +1,14 @@
-"""Run claims: cells on threads, finished ones kept, then numbers, verdict, ``result.json`` and ``figure.png``.
+"""Run claims: cells on threads or a cluster, finished ones kept, then numbers, verdict, result file and figure.
 
-Results do not depend on the number of threads, nor on whether a run was stopped and taken up again.
+Results do not depend on the number of threads or workers, nor on whether a run was stopped and taken up again.
 """
 
 import json
 import os
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Generator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from contextlib import closing
 from importlib.metadata import version
 from pathlib import Path
 from time import perf_counter
@@ -23,6 +24,7 @@ from lifelore.experiments.engine.source_key import source_key
 RESULT_KEYS = (
     "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "rows",
 )  # fmt: skip
+ENGINES = ("local", "dask")
 MAX_BYTES = 200_000
 """Largest ``result.json``: results are committed."""
 
@@ -35,6 +37,8 @@ def reproduce(
     out: str | Path = "results",
     seed: int = 0,
     progress: Progress | None = None,
+    engine: str = "local",
+    scheduler: str | None = None,
 ) -> list[dict]:
     """Run claims and write ``<out>/<ID>/result.json`` and ``figure.png``.
 
@@ -56,6 +60,10 @@ def reproduce(
     progress : callable, optional
         ``progress(done, total, label)``, called from this thread as cells finish; both count the cells of all
         claims.
+    engine : {"local", "dask"}
+        Where cells run: on threads here, or on the workers of a dask cluster (extra ``cluster``).
+    scheduler : str, optional
+        Address of the cluster, such as ``tcp://host:8786``.
 
     Returns
     -------
@@ -67,7 +75,9 @@ def reproduce(
     NotFoundError
         An id that is not in the ledger or not built.
     InputError
-        A mode, setting or number of jobs that breaks its rule.
+        A mode, setting or number of jobs that breaks its rule; a cluster that cannot be used.
+    MissingExtraError
+        Engine ``dask`` needs the extra ``cluster``.
     StoreError
         The disk refuses.
     KeyboardInterrupt
@@ -76,13 +86,20 @@ def reproduce(
     jobs = _cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
+    if engine not in ENGINES:
+        raise InputError(f"engine must be one of {', '.join(ENGINES)}, got '{engine}'")
+    if (engine == "dask") != (scheduler is not None):
+        raise InputError(
+            f"engine dask and scheduler belong together, got engine '{engine}' and scheduler {scheduler}; "
+            "give --engine dask --scheduler tcp://HOST:8786, or neither"
+        )
     claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
     chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
     sizes = [len(claim.cells(settings)) for claim, settings in chosen]
     results, before = [], 0
     for (claim, settings), size in zip(chosen, sizes, strict=True):
         shown = _part_of(progress, before, sum(sizes)) if progress else _silent
-        results.append(_run(claim, mode, settings, jobs, Path(out), seed, shown))
+        results.append(_run(claim, mode, settings, jobs, Path(out), seed, shown, scheduler))
         before += size
     return results
 
@@ -97,11 +114,13 @@ def _cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def _run(claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: int, progress) -> dict:
+def _run(
+    claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: int, progress, scheduler: str | None
+) -> dict:
     code = source_key(claim.run_cell.__module__)
     key = {"claim": claim.id, "settings": settings, "seed": seed, "code": code}
     store = CellStore(out / claim.id / "cells", key)
-    kept = _run_cells(claim, settings, seed, store, jobs, progress)
+    kept = _run_cells(claim, settings, seed, store, jobs, progress, scheduler)
     result = finish(claim, mode, settings, seed, kept)
     _write(claim, result, _folder(out / claim.id, mode))
     return result
@@ -118,15 +137,36 @@ def _silent(done: int, total: int, label: str) -> None:
     pass
 
 
-def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: int, progress) -> list[dict]:
+def _run_cells(
+    claim: Claim, settings: dict, seed: int, store: CellStore, jobs: int, progress, scheduler: str | None
+) -> list[dict]:
     """All cells in order, stored ones read, the others run."""
-    from threadpoolctl import threadpool_limits
-
     cells = claim.cells(settings)
     kept = [store.get(cell) for cell in cells]
     missing = [i for i, found in enumerate(kept) if found is None]
     done = len(cells) - len(missing)
     progress(done, len(cells), claim.id)
+
+    wanted = [cells[i] for i in missing]
+    if scheduler is None:
+        finished = _on_threads(claim, settings, wanted, seed, store, jobs)
+    else:
+        finished = _on_cluster(claim, settings, wanted, seed, store, scheduler)
+    with closing(finished):
+        for place, cell in finished:
+            kept[missing[place]] = cell
+            done += 1
+            progress(done, len(cells), claim.id)
+    return kept  # type: ignore[return-value]
+
+
+Finished = Generator[tuple[int, dict], None, None]
+"""Place and content of each finished cell, which is stored already."""
+
+
+def _on_threads(claim: Claim, settings: dict, cells: list, seed: int, store: CellStore, jobs: int) -> Finished:
+    """Run cells on threads; where it is stopped, cells under way are finished and stored first."""
+    from threadpoolctl import threadpool_limits
 
     def run(i: int) -> dict:
         began = perf_counter()
@@ -135,16 +175,24 @@ def _run_cells(claim: Claim, settings: dict, seed: int, store: CellStore, jobs: 
 
     # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
     with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
-        place: dict[Future, int] = {pool.submit(run, i): i for i in missing}
+        place: dict[Future, int] = {pool.submit(run, i): i for i in range(len(cells))}
         try:
             for future in as_completed(place):
-                kept[place[future]] = future.result()
-                done += 1
-                progress(done, len(cells), claim.id)
+                yield place[future], future.result()
         except BaseException:
             pool.shutdown(wait=True, cancel_futures=True)
             raise
-    return kept  # type: ignore[return-value]
+
+
+def _on_cluster(
+    claim: Claim, settings: dict, cells: list, seed: int, store: CellStore, scheduler: str
+) -> Finished:
+    """Run cells on a cluster; where it is stopped, cells under way are dropped."""
+    from lifelore.experiments.engine.cluster import cells_on_cluster
+
+    if cells:
+        for place, result, seconds in cells_on_cluster(scheduler, claim.id, settings, cells, seed):
+            yield place, store.put(cells[place], result, seconds)
 
 
 def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Mapping]) -> dict:

@@ -24,7 +24,25 @@ def _tabletop(seed: int, labelled: bool) -> TaskFamily:
     return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled)
 
 
-FAMILIES: Mapping[str, Callable[[int, bool], TaskFamily]] = MappingProxyType({"tabletop": _tabletop})
+def _factory_customers(seed: int, labelled: bool) -> TaskFamily:
+    from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
+    from lifelore.domains.factory.customer_orders import CUSTOMERS
+
+    return FactoryFamily(TaskStream(tuple(CUSTOMERS), seed=seed), seed)
+
+
+def _building_days(seed: int, labelled: bool) -> TaskFamily:
+    from lifelore.agent.long_lived.families.building_days import BuildingFamily
+    from lifelore.domains.buildings.building_days import DAYS, BuildingDays
+    from lifelore.domains.worlds import WorldSettings, world_from_settings
+
+    world = world_from_settings(WorldSettings("building", seed=seed))
+    return BuildingFamily(BuildingDays(world, TaskStream(tuple(DAYS), seed=seed), seed))
+
+
+FAMILIES: Mapping[str, Callable[[int, bool], TaskFamily]] = MappingProxyType(
+    {"tabletop": _tabletop, "factory-customers": _factory_customers, "building-days": _building_days}
+)
 """Name to a function of seed and `labelled`."""
 
 

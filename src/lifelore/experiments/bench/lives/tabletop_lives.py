@@ -28,7 +28,7 @@ from lifelore.experiments.bench.rounds import at_least, at_most, row
 
 Array = NDArray[np.float64]
 
-LIVES = 5
+LIVES = 3
 """Lives of a round."""
 N_TASKS = 40
 """Tasks of the first part of a life, and of the second on new trays."""
@@ -105,7 +105,7 @@ def n_spills(task: LivedTask) -> int:
 
 
 def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
-    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is five lives on eighty trays of its own.
+    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is three lives on eighty trays of its own.
 
     Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`.
     """

@@ -1,0 +1,94 @@
+"""Where goals were found before: the belief over recurring destinations, and the order in which to try them.
+
+The belief is over types of tasks: the goal is in one of the remembered destinations, or in a place where none was
+found yet. A policy for each remembered destination goes there, one more tours all places. The probability of a new
+place is that of Good and Turing: the share of goals that were found once.
+
+A record of kind "goal_counts" adds the goals found in each cell, counted in the grid of the building's first map.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.live import transitions
+from lifelore.agent.live.transitions import BuildingGrid
+from lifelore.core.planning.destination_order import MOST_EXACT, by_exact_search, by_rate
+from lifelore.core.protocols import Record
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.memory import Memory
+
+KIND, VERSION = "goal_counts", 1
+MOST_TRIED = 64
+"""Remembered destinations, the most frequent first, among which an agent chooses."""
+
+
+@dataclass
+class GoalCounts:
+    """How often the goal was found in each state of a world.
+
+    count : (n_states,) int64
+    """
+
+    world: GridWorld
+    grid: BuildingGrid
+    count: NDArray[np.int64]
+
+    @classmethod
+    def recalled(cls, world: GridWorld, grid: BuildingGrid, memory: Memory) -> "GoalCounts":
+        """The counts that memory holds of this building; cells that the map no longer has are left out."""
+        counts = cls(world, grid, np.zeros(world.n_states, np.int64))
+        record = memory.recall(KIND, counts.key, VERSION)
+        if record is not None:
+            value = dict(zip(record.slots.tolist(), record.values.tolist(), strict=True))
+            counts.count[:] = [value.get(cell, 0) if cell >= 0 else 0 for cell in counts._cells().tolist()]
+        return counts
+
+    @property
+    def key(self) -> str:
+        """Key of the building in memory, or of the frame of a world in no building."""
+        return self.grid.building or self.grid.frame
+
+    def _cells(self) -> NDArray[np.int64]:
+        """The number of each state's cell in the grid of the building's first map, -1 outside of it."""
+        return transitions.cells_in_building(self.world, self.grid.corner)
+
+    def copy(self) -> "GoalCounts":
+        """An independent copy for another agent."""
+        return GoalCounts(self.world, self.grid, self.count.copy())
+
+    def found(self, goal: int) -> Record:
+        """Count a goal that was found; returns the contribution to memory, empty outside the first map's grid."""
+        self.count[goal] += 1
+        cell = self._cells()[[goal]]
+        slots = cell[cell >= 0]
+        about = {"world": self.world.name, "building": self.grid.building}
+        return Record(KIND, self.key, VERSION, "add", slots, np.ones_like(slots), about)
+
+    def belief(self) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
+        """Remembered destinations, the probability of each, and that of a place where no goal was found yet.
+
+        The probabilities sum to 1 with at most `MOST_TRIED` destinations.
+        """
+        total, once = int(self.count.sum()), int((self.count == 1).sum())
+        new = (once + 0.5) / (total + 1)
+        places = np.argsort(-self.count, kind="stable")[: min(MOST_TRIED, int((self.count > 0).sum()))]
+        return places, (1 - new) * self.count[places] / max(total, 1), new
+
+    def order(self, steps: NDArray[np.float64], places: NDArray[np.int64], tour: float) -> NDArray[np.int64]:
+        """The destinations to try before a tour of all places, in order: exact up to `MOST_EXACT` of them.
+
+        Parameters
+        ----------
+        steps : (n + 1, n) float
+            Steps between `places`, the last row from the start; infinite where no way is known.
+        places : (n,) int
+            Destinations of `belief` that were not visited in this task.
+        tour : float
+            Steps of the tour.
+        """
+        known, chance, new = self.belief()
+        among = np.array([int(np.flatnonzero(known == place)[0]) for place in places.tolist()], int)
+        rule = by_exact_search if len(places) <= MOST_EXACT else by_rate
+        return places[rule(steps, chance[among], new, tour)]

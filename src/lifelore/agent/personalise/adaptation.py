@@ -1,0 +1,206 @@
+"""Interface adaptation (BEAT) for users in memory: choose an action set for the next step, learn from moves.
+
+    adapt_library/NAME        the library's file, eight bytes in a value; about: id, bytes, epsilon
+    adapt_user/NAME/USER      slots: step, episode, surprises, and the bits of the log belief by type
+
+The choice follows from the belief, the seed and the number of the step, so that asking twice changes nothing.
+Moves are numbered, so that moves that come twice count once. Thesis: §4.8.4, Alg. 9.
+"""
+
+import hashlib
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from lifelore.agent.reuse.history import user_key
+from lifelore.agent.reuse.log_columns import check_word
+from lifelore.agent.reuse.study import check_study_name
+from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.protocols import Record
+from lifelore.core.streams import stream
+from lifelore.interaction.adaptation.beat import Beat, epsilon_of
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
+from lifelore.memory import Memory
+
+LIBRARY, USER, VERSION = "adapt_library", "adapt_user", 1
+_HEADER = 3
+ATTEMPTS = 100
+Epsilon = float | str
+
+
+@dataclass(frozen=True, eq=False)
+class Adaptation:
+    """A registered library of action sets.
+
+    Parameters
+    ----------
+    name : str
+    library : PolicyLibrary
+        Its policies are the action sets, its signal is a move.
+    epsilon : float or str
+        See `beat.Exploration`.
+    id : str
+        Changes with each other library of this name; a user's belief holds for one of them.
+    """
+
+    name: str
+    library: PolicyLibrary
+    epsilon: Epsilon
+    id: str
+
+
+def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsilon: Epsilon = 0.0) -> Adaptation:
+    """Store a library of action sets; with another library, users start from the prior again.
+
+    Raises
+    ------
+    InputError
+        A name or ε breaks its rule.
+    """
+    check_study_name(name)
+    epsilon_of(epsilon)
+    content = library.to_bytes()
+    digest = hashlib.sha256(content + repr(epsilon).encode()).hexdigest()[:32]
+    earlier = memory.recall_state(LIBRARY, name, VERSION)
+    if earlier is not None and earlier.about["digest"] == digest:
+        return open_adaptation(memory, name)
+    values = np.frombuffer(content + bytes(-len(content) % 8), "<i8").astype(np.int64)
+    about = {"bytes": len(content), "epsilon": epsilon, "digest": digest, "id": f"{digest[:8]}-{time.time_ns()}"}
+    record = Record(LIBRARY, name, VERSION, "newest", np.arange(len(values)), values, about)
+    robot = f"adapt {name}"
+    seq = memory.tasks(robot)
+    while not memory.contribute(robot, [record], process="library", seq=seq, task={"adaptation": name}):
+        seq += 1
+    return open_adaptation(memory, name)
+
+
+def open_adaptation(memory: Memory, name: str) -> Adaptation:
+    """The adaptation of that name; NotFoundError where there is none."""
+    check_study_name(name)
+    record = memory.recall(LIBRARY, name, VERSION)
+    if record is None:
+        known = ", ".join(key for key, version, _ in memory.keys(LIBRARY) if version == VERSION)
+        raise NotFoundError(f"no adaptation '{name}'; known: {known or 'none'}; register its library first")
+    about: Mapping[str, Any] = record.about
+    # Cells beyond the content are those of an earlier, larger library.
+    content = record.values[: -(-about["bytes"] // 8)].astype("<i8").tobytes()[: about["bytes"]]
+    try:
+        library = PolicyLibrary.from_bytes(content, f"adaptation '{name}'")
+    except InputError as error:
+        raise StoreError(f"{error}; register the library again") from None
+    return Adaptation(name, library, about["epsilon"], about["id"])
+
+
+def select(memory: Memory, adaptation: Adaptation, user: str, seed: int = 0) -> dict[str, Any]:
+    """The action set for a user's next step; nothing is stored.
+
+    Returns
+    -------
+    dict
+        ``user``, ``action_set``, its ``probability``, ``step`` (number of moves so far), ``episode``,
+        ``surprises`` (moves that no type explains), ``belief`` and ``expected`` value of each action set.
+    """
+    beat = _beat(memory, adaptation, user)
+    library, rule = adaptation.library, EpsilonGreedy(epsilon_of(adaptation.epsilon)(beat.step, beat.episode))
+    probs = rule.probabilities(library, beat.belief)
+    generator = stream(seed, "adapt", adaptation.name, adaptation.id, user, beat.step)
+    chosen = int(generator.choice(len(probs), p=probs))
+    expected = beat.belief @ library.performance.mean
+    return {
+        "user": user,
+        "action_set": library.policies[chosen],
+        "probability": float(probs[chosen]),
+        **_state(adaptation, beat),
+        "expected": dict(zip(library.policies, expected.tolist(), strict=True)),
+    }
+
+
+def learn_moves(
+    memory: Memory,
+    adaptation: Adaptation,
+    user: str,
+    step: int,
+    moves: Sequence[tuple[str, Any]],
+    *,
+    ends_episode: bool = False,
+) -> dict[str, Any]:
+    """Learn from moves of a user, in one transaction.
+
+    Parameters
+    ----------
+    step : int
+        Number of the first of the moves, from 0.
+    moves : sequence of (action set, signal)
+    ends_episode : bool
+        Whether the last of the moves ends an episode.
+
+    Returns
+    -------
+    dict
+        ``user``; ``taken``: False where the moves were stored before; and the state as in `select`.
+
+    Raises
+    ------
+    InputError
+        Moves before `step` are missing, some of the moves are stored and others are not, there is no move, or a
+        signal breaks its rule; nothing is stored.
+    NotFoundError
+        There is no such action set.
+    """
+    if not moves:
+        raise InputError("moves must hold at least one move, got none")
+    for _ in range(ATTEMPTS):
+        beat = _beat(memory, adaptation, user)
+        if step + len(moves) <= beat.step:
+            return {"user": user, "taken": False, **_state(adaptation, beat)}
+        if step != beat.step:
+            raise InputError(
+                f"step must be {beat.step}, the number of moves so far, got {step}; give the moves from there"
+            )
+        for action_set, signal in moves:
+            beat.update(action_set, signal)
+        if ends_episode:
+            beat.end_episode()
+        record = _record(adaptation, user, beat)
+        robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+        task = {"adaptation": adaptation.name, "moves": len(moves)}
+        if memory.contribute(robot, [record], process=adaptation.id, seq=step, task=task):
+            return {"user": user, "taken": True, **_state(adaptation, beat)}
+    raise StoreError(f"memory {memory.location}: too many programs move for one user at once; try again")
+
+
+def forget_adaptation(memory: Memory, adaptation: Adaptation, user: str) -> int:
+    """Forget a user; the number of contributions removed. NotFoundError where nothing is stored."""
+    check_word("user", user)
+    robot = f"adapt {adaptation.name}: {user_key(adaptation.name, user)}"
+    if not memory.tasks(robot):
+        raise NotFoundError(f"nothing is stored of user '{user}' in adaptation '{adaptation.name}'")
+    return memory.forget(robot)
+
+
+def _beat(memory: Memory, adaptation: Adaptation, user: str) -> Beat:
+    """The learner as the user's stored moves leave it."""
+    check_word("user", user)
+    beat = Beat(adaptation.library, epsilon=adaptation.epsilon)
+    key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
+    record = memory.recall(USER, key, VERSION)
+    if record is not None and record.slots.size and record.about["id"] == adaptation.id:
+        beat.step, beat.episode, beat.surprises = record.values[:_HEADER].tolist()
+        beat.log_belief = record.values[_HEADER : _HEADER + adaptation.library.n_types].view(np.float64).copy()
+    return beat
+
+
+def _record(adaptation: Adaptation, user: str, beat: Beat) -> Record:
+    values = np.concatenate([[beat.step, beat.episode, beat.surprises], beat.log_belief.view(np.int64)])
+    key = f"{adaptation.name}/{user_key(adaptation.name, user)}"
+    about = {"adaptation": adaptation.name, "user": user, "id": adaptation.id}
+    return Record(USER, key, VERSION, "newest", np.arange(len(values)), values.astype(np.int64), about)
+
+
+def _state(adaptation: Adaptation, beat: Beat) -> dict[str, Any]:
+    belief = dict(zip(adaptation.library.types, beat.belief.tolist(), strict=True))
+    return {"step": beat.step, "episode": beat.episode, "surprises": beat.surprises, "belief": belief}

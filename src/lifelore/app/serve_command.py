@@ -1,0 +1,73 @@
+"""`lifelore serve`: the HTTP service over a memory."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+Option = typer.Option
+
+
+def serve(
+    host: Annotated[str, Option(help="Address to listen on; other than this machine's needs --token-file.")] = (
+        "127.0.0.1"
+    ),
+    port: Annotated[int, Option(help="Port; 0: any free port.")] = 8321,
+    where: Annotated[str | None, Option("--memory", metavar="FILE|URL", help="Memory; default: your own.")] = None,
+    token_file: Annotated[
+        str | None, Option(metavar="FILE", help="Hashed tokens; with it every request needs a token.")
+    ] = None,
+    add_token: Annotated[
+        str | None,
+        Option(metavar="NAME", help="Add a token to --token-file, print it once, and do not serve."),
+    ] = None,
+    scopes: Annotated[str, Option(help="Scopes of the new token: read, write, or read,write.")] = "read,write",
+    body: Annotated[float, Option(help="Size of the largest request in MiB.")] = 64.0,
+    rate: Annotated[float, Option(help="Requests per second of a client; 0: no limit.")] = 1000.0,
+    seconds: Annotated[float, Option(help="Longest time that a request may take.")] = 60.0,
+    map: Annotated[
+        list[str] | None, Option(metavar="NAME=YAML", help="A ROS map for advice; may be repeated.")
+    ] = None,
+    seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
+    as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
+) -> None:
+    """Serve personalisation, perception, advice and memory over HTTP.
+
+    Use it when programs in other languages or on other machines need the memory. Ctrl-C stops it: every answered
+    request is stored. The addresses are listed under /openapi.json.
+    """
+    from lifelore.app.console import print_json_line
+    from lifelore.core.errors import InputError, MissingExtraError
+
+    if add_token is not None:
+        from lifelore.app.service.tokens import add_token as added
+
+        if token_file is None:
+            raise InputError("add-token needs the file to add it to; give --token-file FILE")
+        token = added(token_file, add_token, scopes.split(","))
+        print(json.dumps({"name": add_token, "token": token}) if as_json else token)
+        return
+    try:
+        import fastapi  # noqa: F401
+        import prometheus_client  # noqa: F401
+        import uvicorn  # noqa: F401
+    except ImportError as error:
+        raise MissingExtraError(
+            f"serve needs {error.name}, which is not installed; pip install 'lifelore[web]'"
+        ) from None
+    from lifelore.app.service.server import serve as served
+    from lifelore.app.service.settings import ServiceSettings
+
+    maps: dict[str, str] = {}
+    for part in map or ():
+        name, _, file = part.partition("=")
+        maps[name] = file
+        if not name or not Path(file).is_file():
+            raise InputError(f"map must be NAME=YAML with a file that exists, got '{part}'")
+    settings = ServiceSettings(where, token_file, seed, int(body * (1 << 20)), rate, seconds, maps)
+
+    def ready(url: str) -> None:
+        print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)
+
+    served(settings, host, port, ready)

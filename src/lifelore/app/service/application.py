@@ -1,0 +1,109 @@
+"""The factory of the application: routes over one open memory, behind the gate.
+
+Pages can be mounted to the application that `create_app` returns; they pass the same gate.
+"""
+
+from collections.abc import AsyncIterator
+from contextlib import asynccontextmanager
+from typing import Any
+
+from fastapi import FastAPI, Request, Response
+from fastapi.exceptions import RequestValidationError
+from starlette.exceptions import HTTPException
+
+from lifelore import __version__
+from lifelore.app.service.error_documents import (
+    ErrorDocument,
+    error_body,
+    status_of,
+    validation_message,
+    without_places,
+)
+from lifelore.app.service.gate import Gate
+from lifelore.app.service.service_state import Service
+from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.tokens import TokenFile, read_tokens
+from lifelore.core.errors import LifeloreError
+from lifelore.memory import open_memory
+
+DESCRIPTION = """Personalise, perceive, advise and remember over HTTP; the memory is that of the command line."""
+ERRORS: dict[int | str, dict[str, Any]] = {
+    "4XX": {"model": ErrorDocument, "description": "The request breaks a rule."},
+    "5XX": {"model": ErrorDocument, "description": "The service cannot answer now."},
+}
+
+
+def create_app(settings: ServiceSettings) -> FastAPI:
+    """The application over the memory of the settings, which it opens now and closes when it stops.
+
+    Raises
+    ------
+    StoreError, InputError, NotFoundError
+        The memory or the token file cannot be opened.
+    """
+    from lifelore.app.service import (
+        adaptation_routes,
+        advice_routes,
+        health_routes,
+        log_routes,
+        memory_routes,
+        panel_routes,
+        perceive_routes,
+        study_routes,
+        user_routes,
+    )
+
+    tokens: TokenFile | None = None if settings.token_file is None else read_tokens(settings.token_file)
+    service = Service(settings, open_memory(settings.memory, durable=True))
+
+    @asynccontextmanager
+    async def lifespan(app: FastAPI) -> AsyncIterator[None]:
+        yield
+        service.worker.stop()
+        service.writer.stop()
+        service.memory.close()
+
+    app = FastAPI(
+        title="Lifelore", version=__version__, description=DESCRIPTION, lifespan=lifespan, responses=ERRORS,
+        docs_url=None, redoc_url=None, separate_input_output_schemas=False,
+    )  # fmt: skip
+    app.state.service = service
+    _answer_errors(app, service)
+    for routes in (
+        health_routes,
+        study_routes,
+        user_routes,
+        panel_routes,
+        adaptation_routes,
+        log_routes,
+        perceive_routes,
+        advice_routes,
+        memory_routes,
+    ):
+        app.include_router(routes.router(service))
+    app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics)
+    return app
+
+
+def _answer_errors(app: FastAPI, service: Service) -> None:
+    def answer(request: Request, status: int, message: str, headers: Any = None) -> Response:
+        body = error_body(status, without_places(message, service.memory.location), request.state.request)
+        return Response(body, status, headers, "application/json")
+
+    @app.exception_handler(LifeloreError)
+    def refused(request: Request, error: LifeloreError) -> Response:
+        return answer(request, status_of(error), str(error))
+
+    @app.exception_handler(RequestValidationError)
+    def invalid(request: Request, error: RequestValidationError) -> Response:
+        return answer(request, 422, validation_message(error.errors()))
+
+    @app.exception_handler(HTTPException)
+    def http(request: Request, error: HTTPException) -> Response:
+        messages = {
+            404: "there is no such address; /openapi.json lists all",
+            405: "the address does not take this method; /openapi.json lists all",
+        }
+        return answer(
+            request, error.status_code, messages.get(error.status_code, str(error.detail)), error.headers
+        )

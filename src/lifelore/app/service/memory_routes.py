@@ -1,0 +1,68 @@
+"""Routes of the memory: show, export, merge, forget."""
+
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Annotated, Any
+
+from fastapi import APIRouter, Query, Request, Response
+from starlette.concurrency import run_in_threadpool
+
+from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
+from lifelore.app.service.perceive_routes import BODY
+from lifelore.app.service.service_state import Service
+from lifelore.core.errors import InputError, StoreError
+
+Text = Annotated[str, Query(min_length=1, max_length=200)]
+FILE = "application/vnd.sqlite3"
+_FILE: dict[int | str, dict[str, Any]] = {
+    200: {"content": {FILE: {"schema": {"type": "string", "format": "binary"}}}}
+}
+
+
+def router(service: Service) -> APIRouter:
+    """The routes of the memory."""
+    routes = APIRouter(prefix="/v1/memory", tags=["memory"])
+    memory = service.memory
+
+    @routes.get("", summary="Robots, buildings and records of the memory")
+    def show() -> dict[str, Any]:
+        document = {name: value for name, value in memory.show().items() if name != "location"}
+        return document | {"buildings": buildings_in(memory)}
+
+    @routes.get(
+        "/export", summary="All contributions as one portable file", response_class=Response, responses=_FILE
+    )
+    def export() -> Response:
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "export.db"
+            memory.export_to(path)
+            return Response(path.read_bytes(), media_type=FILE)
+
+    def merged(content: bytes) -> dict[str, int]:
+        with TemporaryDirectory() as folder:
+            path = Path(folder) / "upload.db"
+            path.write_bytes(content)
+            try:
+                return memory.merge_from(path)
+            except StoreError as error:
+                if str(path) not in str(error):
+                    raise
+                raise InputError(str(error).replace(f"memory {path}", "the upload")) from None
+
+    @routes.post("/merge", summary="Add an exported file, all or none", openapi_extra=BODY)
+    async def merge(request: Request) -> dict[str, int]:
+        counts = await run_in_threadpool(merged, await request.body())
+        service.read_again()
+        return counts
+
+    @routes.delete("/robots", summary="Forget all contributions of a robot, for ever")
+    def forget_robot(robot: Text) -> dict[str, Any]:
+        count = memory.forget(robot)
+        service.read_again()
+        return {"robot": robot, "forgotten": count}
+
+    @routes.delete("/buildings", summary="Forget the map and the transitions of a building, for ever")
+    def forget_map(building: Text) -> dict[str, Any]:
+        return forget_building(memory, building)
+
+    return routes

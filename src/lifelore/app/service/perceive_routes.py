@@ -1,0 +1,103 @@
+"""Routes of perception: a cloud or a depth image in; scene, contact networks, warnings and PDDL out."""
+
+import base64
+import binascii
+import json
+from typing import Annotated, Any, Literal
+
+from fastapi import APIRouter, Query, Request
+from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
+from starlette.concurrency import run_in_threadpool
+
+from lifelore.agent.perceive.perceive_upload import perceive_upload
+from lifelore.app.service.service_state import Service
+from lifelore.core.errors import InputError
+
+SHARE = 0.9
+"""Share of the time limit of a request that perception may take."""
+BODY = {
+    "requestBody": {
+        "required": True,
+        "content": {"application/octet-stream": {"schema": {"type": "string", "format": "binary"}}},
+    }
+}
+"""OpenAPI of a request whose body is a file."""
+
+
+class SceneOptions(BaseModel):
+    """How a scene is read."""
+
+    model_config = ConfigDict(extra="forbid")
+    up: Literal["table", "z"] = Field("table", description="Upward direction: the table's normal, or +z.")
+    min_confidence: FiniteFloat | None = Field(None, description="Least probability of facts, in [0, 1].")
+    goal: str | None = Field(None, max_length=1000, description="Goal of the planning problem, such as on(1,2).")
+
+
+class CloudOptions(SceneOptions):
+    """How a cloud is read."""
+
+    format: Literal["pcd", "ply", "npz", "npy"] = Field("pcd", description="Kind of the file.")
+    units: Literal["m", "mm"] = Field("m", description="Unit of the coordinates.")
+    labels: Literal["auto", "plain", "parts"] = Field("auto", description="How labels become objects.")
+
+
+class Intrinsics(BaseModel):
+    """Focal lengths and centre of a pinhole camera, in pixels."""
+
+    model_config = ConfigDict(extra="forbid")
+    fx: FiniteFloat
+    fy: FiniteFloat
+    cx: FiniteFloat
+    cy: FiniteFloat
+    width: int = Field(ge=1, le=20_000, description="Pixels of a row.")
+    height: int = Field(ge=1, le=20_000, description="Number of rows.")
+
+
+class DepthImage(SceneOptions):
+    """A depth image with its camera; images in base64."""
+
+    model_config = ConfigDict(
+        extra="forbid",
+        json_schema_extra={
+            "example": {
+                "depth": "iVBORw0KGgo=", "depth_scale": 0.001,
+                "intrinsics": {"fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5, "width": 640, "height": 480},
+            }
+        },
+    )  # fmt: skip
+    depth: str = Field(description="PNG of 16 bits, or an npy file.")
+    colour: str | None = Field(None, description="PNG or JPEG of the same size.")
+    intrinsics: Intrinsics
+    depth_scale: FiniteFloat | None = Field(None, description="Metres for each unit of depth.")
+
+
+def router(service: Service) -> APIRouter:
+    """The routes of perception."""
+    routes = APIRouter(prefix="/v1/perceive", tags=["perceive"])
+
+    def perceived(*arguments: Any) -> dict[str, Any]:
+        return service.worker.call(perceive_upload, arguments, SHARE * service.settings.seconds)
+
+    @routes.post("/cloud", summary="Perceive the scene of a point cloud", openapi_extra=BODY)
+    async def cloud(request: Request, options: Annotated[CloudOptions, Query()]) -> dict[str, Any]:
+        content = await request.body()
+        given = options.model_dump(exclude={"format"}, exclude_none=True)
+        return await run_in_threadpool(perceived, options.format, {"cloud": content}, given)
+
+    @routes.post("/depth", summary="Perceive the scene of a depth image")
+    def depth(document: DepthImage) -> dict[str, Any]:
+        parts = {"depth": _decoded("depth", document.depth)}
+        parts["intrinsics"] = json.dumps(document.intrinsics.model_dump()).encode()
+        if document.colour is not None:
+            parts["colour"] = _decoded("colour", document.colour)
+        given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
+        return perceived("depth", parts, given, document.depth_scale)
+
+    return routes
+
+
+def _decoded(name: str, text: str) -> bytes:
+    try:
+        return base64.b64decode(text, validate=True)
+    except (binascii.Error, ValueError):
+        raise InputError(f"{name} must be an image in base64, got {text[:40]!r}") from None

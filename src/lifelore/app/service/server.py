@@ -1,0 +1,64 @@
+"""Runs the application with uvicorn until a signal stops it; requests in progress are answered first."""
+
+import signal
+import socket
+from collections.abc import Callable
+
+from lifelore.app.service.settings import ServiceSettings, is_loopback
+from lifelore.app.service.telemetry import log_to_stderr
+from lifelore.core.errors import InputError, StoreError
+
+GRACE = 10
+"""Seconds for requests in progress after a signal."""
+
+
+def serve(settings: ServiceSettings, host: str, port: int, ready: Callable[[str], None]) -> None:
+    """Serve until SIGINT or SIGTERM.
+
+    Parameters
+    ----------
+    host, port : str, int
+        Port 0: any free port.
+    ready : callable
+        Called with the URL once connections are accepted.
+
+    Raises
+    ------
+    InputError
+        A host that others reach needs a token file.
+    StoreError
+        The port is taken, or the memory cannot be opened.
+    """
+    import uvicorn
+
+    from lifelore.app.service.application import create_app
+
+    if settings.token_file is None and not is_loopback(host):
+        raise InputError(
+            f"host must be 127.0.0.1 without tokens, got '{host}'; add a token: --add-token NAME --token-file FILE"
+        )
+    app = create_app(settings)
+    listening = _listening(host, port)
+    name = f"[{host}]" if ":" in host else host
+    log_to_stderr()
+    config = uvicorn.Config(
+        app, log_config=None, access_log=False, server_header=False, timeout_graceful_shutdown=GRACE, ws="none"
+    )
+    # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then.
+    signal.signal(signal.SIGTERM, lambda number, frame: None)
+    ready(f"http://{name}:{listening.getsockname()[1]}")
+    uvicorn.Server(config).run(sockets=[listening])
+
+
+def _listening(host: str, port: int) -> socket.socket:
+    family = socket.AF_INET6 if ":" in host else socket.AF_INET
+    listening = socket.socket(family, socket.SOCK_STREAM)
+    try:
+        listening.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+        listening.bind((host, port))
+        listening.listen(2048)
+    except (OSError, OverflowError) as error:
+        listening.close()
+        reason = getattr(error, "strerror", None) or str(error)
+        raise StoreError(f"port {port} of {host} cannot be used: {reason}; choose another with --port") from None
+    return listening

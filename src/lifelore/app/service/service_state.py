@@ -1,0 +1,44 @@
+"""The state that all routes share: the open memory, open studies, settings and metrics."""
+
+from dataclasses import dataclass, field
+
+from lifelore.agent.advise.advice_desk import AdviceDesk
+from lifelore.agent.personalise.open_panels import OpenPanels
+from lifelore.agent.personalise.open_studies import OpenStudies
+from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.telemetry import Metrics
+from lifelore.app.service.worker_process import WorkerProcess
+from lifelore.app.service.writer import Writer
+from lifelore.memory import Memory
+
+
+@dataclass
+class Service:
+    """The state of one application.
+
+    Parameters
+    ----------
+    settings : ServiceSettings
+    memory : Memory
+        Open until the application stops.
+    """
+
+    settings: ServiceSettings
+    memory: Memory
+    metrics: Metrics = field(default_factory=Metrics)
+    worker: WorkerProcess = field(default_factory=WorkerProcess)
+    writer: Writer = field(init=False)
+    studies: OpenStudies = field(init=False)
+    panels: OpenPanels = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.desks: dict[str, AdviceDesk] = {}
+        self.studies = OpenStudies(self.memory)
+        self.panels = OpenPanels(self.memory, self.studies, self.settings.seed)
+        self.writer = Writer(self.memory, self.read_again)
+
+    def read_again(self) -> None:
+        """Read studies, panels and desks again at their next use."""
+        self.studies.drop_all()
+        self.panels.drop_all()
+        self.desks.clear()

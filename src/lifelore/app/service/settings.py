@@ -1,0 +1,59 @@
+"""Settings of the service: its memory, tokens and limits."""
+
+import ipaddress
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from lifelore.core.errors import InputError
+
+LOOPBACK_NAMES = ("localhost", "127.0.0.1", "[::1]", "::1")
+MEBIBYTE = 1 << 20
+
+
+@dataclass(frozen=True)
+class ServiceSettings:
+    """What the service serves and how much it accepts.
+
+    Parameters
+    ----------
+    memory : str, optional
+        A file or a ``postgresql://`` URL; default: the user's own memory.
+    token_file : str, optional
+        File of hashed tokens, see `tokens`. Without it the service answers requests from this machine only.
+    seed : int
+        Draws the choices.
+    largest_body : int
+        Bytes of the largest request.
+    rate : float
+        Requests per second of a client, over ten seconds; 0: no limit.
+    seconds : float
+        Longest time that a request may take.
+    maps : mapping of str to str
+        Files of ROS maps by the name that advice desks give them.
+    """
+
+    memory: str | None = None
+    token_file: str | None = None
+    seed: int = 0
+    largest_body: int = 64 * MEBIBYTE
+    rate: float = 1000.0
+    seconds: float = 60.0
+    maps: Mapping[str, str] = field(default_factory=dict)
+
+    def __post_init__(self) -> None:
+        if self.largest_body < 1:
+            raise InputError(f"largest_body must be at least 1 byte, got {self.largest_body}")
+        if not 0 <= self.rate < float("inf"):
+            raise InputError(f"rate must be at least 0 requests per second, got {self.rate}")
+        if not 0 < self.seconds < float("inf"):
+            raise InputError(f"seconds must be above 0, got {self.seconds}")
+
+
+def is_loopback(host: str) -> bool:
+    """Whether a host is this machine's loopback interface."""
+    if host in LOOPBACK_NAMES:
+        return True
+    try:
+        return ipaddress.ip_address(host.strip("[]")).is_loopback
+    except ValueError:
+        return False

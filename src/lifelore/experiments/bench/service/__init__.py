@@ -1,0 +1,1 @@
+"""Benchmark of the HTTP service under load, beside a bare FastAPI route."""

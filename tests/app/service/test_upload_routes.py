@@ -1,0 +1,190 @@
+"""Perception and memory over HTTP: as the functions themselves, and no upload stops or crashes the service."""
+
+import base64
+import io
+import os
+import random
+import signal
+import sqlite3
+import time
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from lifelore.agent.perceive.perceive import perceive
+from lifelore.app.service.worker_process import WorkerProcess
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Record
+from lifelore.memory import open_memory
+
+SQUARE = np.stack(np.meshgrid(np.arange(40), np.arange(40)), -1).reshape(-1, 2)
+
+
+def box(low, size, label):
+    """Points on the top and the four sides of a box, 2.5 mm apart, (n, 4)."""
+    plane = SQUARE / 39
+    faces = [np.column_stack([plane, np.ones(len(plane))])]
+    for axis in (0, 1):
+        for side in (0.0, 1.0):
+            face = np.empty((len(plane), 3))
+            face[:, axis], face[:, 1 - axis], face[:, 2] = side, plane[:, 0], plane[:, 1]
+            faces.append(face)
+    points = np.concatenate(faces) * size + low
+    return np.column_stack([points, np.full(len(points), label)])
+
+
+@pytest.fixture(scope="module")
+def cloud():
+    """A box on a box on a table, labelled, as the bytes of an npy file; and the array."""
+    table = np.column_stack([SQUARE * 0.02 - 0.4, np.zeros((len(SQUARE), 2))])
+    scene = np.concatenate([table, box([0, 0, 0], [0.1, 0.1, 0.1], 1), box([0.01, 0, 0.1], [0.08, 0.08, 0.06], 2)])
+    file = io.BytesIO()
+    np.save(file, scene)
+    return file.getvalue(), scene
+
+
+def ask(client, content, **options):
+    return client.post(
+        "/v1/perceive/cloud", content=content, params={"up": "z", **options},
+        headers={"Content-Type": "application/octet-stream"},
+    )  # fmt: skip
+
+
+def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
+    content, _ = cloud
+    answer = ask(serve(), content, format="npy")
+    assert answer.status_code == 200, answer.text
+    document = answer.json()
+    (tmp_path / "cloud.npy").write_bytes(content)
+    from lifelore.agent.perceive.perceive import PerceiveSettings
+
+    own = perceive(str(tmp_path / "cloud.npy"), PerceiveSettings(up="z"))
+    for key in own.keys() - {"seconds", "source"}:
+        assert document[key] == own[key], key
+    assert "(define (problem" in document["pddl"]["problem"]
+    assert "(define (domain" in document["pddl"]["domain"]
+    assert document["dot"].startswith("digraph")
+
+
+def test_a_depth_image_becomes_a_scene(serve):
+    depth = np.full((120, 160), 1000, np.uint16)
+    depth[40:80, 60:100] = 900
+    file = io.BytesIO()
+    Image.fromarray(depth).save(file, "PNG")
+    document = {
+        "depth": base64.b64encode(file.getvalue()).decode(), "depth_scale": 0.001,
+        "intrinsics": {"fx": 130.0, "fy": 130.0, "cx": 79.5, "cy": 59.5, "width": 160, "height": 120},
+    }  # fmt: skip
+    answer = serve().post("/v1/perceive/depth", json=document)
+    assert answer.status_code == 200, answer.text
+    assert len(answer.json()["objects"]) == 1
+    assert serve().post("/v1/perceive/depth", json=document | {"depth": "no base64!"}).status_code == 422
+
+
+def test_damaged_clouds_are_refused_in_one_line(serve, cloud, tmp_path):
+    """Bytes changed, cut and made up at random, in every format: 4xx in the library's words, no path, no crash."""
+    client, draw = serve(), random.Random(7)
+    content = cloud[0]
+    for number in range(60):
+        damaged = bytearray(content[:128] if number % 2 else content)
+        for _ in range(draw.randrange(1, 20)):
+            damaged[draw.randrange(min(len(damaged), 200))] = draw.randrange(256)
+        answer = ask(
+            client,
+            bytes(damaged[: draw.randrange(len(damaged))]),
+            format=draw.choice(["npy", "npz", "pcd", "ply"]),
+        )
+        assert answer.status_code in (200, 422), answer.text
+        assert str(tmp_path.parents[2]) not in answer.text
+        assert "/tmp" not in answer.text
+    assert ask(client, content, format="npy").status_code == 200
+
+
+@pytest.mark.parametrize(
+    ("name", "value"),
+    [("format", "/etc/passwd"), ("up", "../x"), ("units", "/"), ("goal", "/etc/passwd"), ("model", "/etc/passwd")],
+)
+def test_no_parameter_names_a_file(serve, cloud, name, value):
+    answer = ask(serve(), cloud[0], **({"format": "npy"} | {name: value}))
+    assert answer.status_code == 422
+    assert "root:" not in answer.text
+
+
+def test_a_worker_that_hangs_or_dies_is_replaced():
+    worker = WorkerProcess()
+    try:
+        assert worker.call(max, (2, 3), 60) == 3
+        began = time.monotonic()
+        with pytest.raises(InputError, match=r"longer than 0\.5 s"):
+            worker.call(time.sleep, (60,), 0.5)
+        assert time.monotonic() - began < 20
+        with pytest.raises(InputError, match="crashed"):
+            worker.call(os._exit, (3,), 60)
+        with pytest.raises(InputError, match="crashed"):
+            worker.call(os.kill, (worker_pid(worker), signal.SIGSEGV), 60)
+        with pytest.raises(RuntimeError, match="ZeroDivisionError"):
+            worker.call(divmod, (1, 0), 60)
+        assert worker.call(max, (2, 3), 60) == 3
+    finally:
+        worker.stop()
+
+
+def worker_pid(worker):
+    return worker.call(os.getpid, (), 60)
+
+
+def contribute(memory, robot):
+    record = Record("action_prior", "k", 1, "add", slots=np.array([1]), values=np.array([2]))
+    memory.contribute(robot, [record], process="p", seq=0, task={})
+
+
+def test_memories_travel_as_exports(serve, where, tmp_path):
+    with open_memory(where) as memory:
+        contribute(memory, "rosie")
+    first, second = serve(where), serve()
+    exported = first.get("/v1/memory/export")
+    assert exported.headers["content-type"] == "application/vnd.sqlite3"
+    assert second.post("/v1/memory/merge", content=exported.content).json() == {
+        "added": 1, "already_there": 0, "forgotten": 0,
+    }  # fmt: skip
+    shown = second.get("/v1/memory").json()
+    assert [one["robot"] for one in shown["robots"]] == ["rosie"]
+    assert "location" not in shown
+    assert second.delete("/v1/memory/robots", params={"robot": "rosie"}).json()["forgotten"] == 1
+    assert second.delete("/v1/memory/robots", params={"robot": "rosie"}).status_code == 404
+    assert second.post("/v1/memory/merge", content=exported.content).json()["forgotten"] == 1
+    assert first.delete("/v1/memory/buildings", params={"building": "nowhere"}).status_code == 404
+
+
+def test_uploads_that_are_no_exports_change_nothing(serve, tmp_path):
+    client = serve()
+    with open_memory(tmp_path / "own.db") as memory:
+        contribute(memory, "rosie")
+        memory.export_to(tmp_path / "export.db")
+    good = (tmp_path / "export.db").read_bytes()
+    with sqlite3.connect(tmp_path / "export.db") as conn:
+        conn.execute(
+            "CREATE VIEW endless AS WITH RECURSIVE c(x) AS (SELECT 1 UNION ALL SELECT x FROM c) SELECT x FROM c"
+        )
+    conn.close()
+    hostile = (tmp_path / "export.db").read_bytes()
+    draw = random.Random(11)
+    damaged = [good[: draw.randrange(len(good))] for _ in range(10)]
+    for content in (b"", b"SQLite format 3\0", b"x" * 5000, hostile, *damaged):
+        answer = client.post("/v1/memory/merge", content=content)
+        assert answer.status_code == 422, answer.text
+        assert "/tmp" not in answer.text
+    assert client.get("/v1/memory").json()["robots"] == []
+    assert client.post("/v1/memory/merge", content=good).json()["added"] == 1
+
+
+@settings(max_examples=30)
+@given(content=st.binary(max_size=400))
+def test_a_library_file_of_any_bytes_is_refused(content):
+    from lifelore.agent.personalise.library_document import library_of
+
+    with pytest.raises(InputError, match="library"):
+        library_of({"file": base64.b64encode(content).decode()})
