@@ -12,13 +12,16 @@ def bench(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
             "perceive, reuse, long_user, serve, log. Benefit: fleet, courier, recognition, lidar, destinations, "
             "tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, pictures, deep, "
-            "deep_layouts, novelty, changing_types, bands. Statistics: evaluation."
+            "deep_layouts, novelty, changing_types, bands, long_lived_worlds. Statistics: evaluation."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,
     map: Annotated[
         str | None,
-        typer.Option(metavar="YAML", help="courier, recognition, lidar: a ROS map; default: generated offices."),
+        typer.Option(
+            metavar="YAML",
+            help="courier, recognition, lidar, long_lived_worlds: a ROS map; default: generated offices.",
+        ),
     ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:

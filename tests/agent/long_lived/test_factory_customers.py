@@ -37,7 +37,7 @@ def certain_laws(*customers):
 
 def played(order, acts_of):
     """Return of an episode of acts chosen from the task's state."""
-    task = OrderTask(order)
+    task = OrderTask(order, TABLE)
     total, ended = 0.0, False
     while not ended:
         step = task.act(acts_of(task))
@@ -81,7 +81,7 @@ def test_the_best_tour_of_two_components_by_brute_force():
 def test_a_behaviour_is_worth_what_it_gets(truth):
     laws = certain_laws("bicycles", "carts", "lamps")
     order = CustomerOrder(LAYOUT, truth)
-    values = plan(OrderTask(order), laws).values[("bicycles", "carts", "lamps").index(truth)]
+    values = plan(OrderTask(order, TABLE), laws).values[("bicycles", "carts", "lamps").index(truth)]
     for behaviour in range(3):
         found = played(order, lambda task, j=behaviour: plan(task, laws).acts[j])
         assert found <= order.best_return + 1e-9
@@ -94,7 +94,7 @@ def test_a_behaviour_is_worth_what_it_gets(truth):
 
 def test_returns_of_tours_are_those_of_the_world():
     order = CustomerOrder(LAYOUT, "chairs")  # wants 4, 6, 7, 8
-    now = OrderTask(order).state
+    now = OrderTask(order, TABLE).state
     planned = np.isin(np.arange(9), (4, 1, 6))[None]
     rest = np.array([0, 8, 2, 7, 3, 1, 4, 5, 6])
     truth = np.isin(np.arange(9), CUSTOMERS["chairs"]).astype(int)
@@ -129,7 +129,7 @@ def test_the_sets_agree_with_what_is_known():
 
 
 def test_answers_are_news_once_and_the_end_tells_the_rest():
-    task = OrderTask(CustomerOrder(LAYOUT, "lamps"))  # wants 2, 3, 6, 7
+    task = OrderTask(CustomerOrder(LAYOUT, "lamps"), TABLE)  # wants 2, 3, 6, 7
     assert [task.act(act).effects for act in (2, 0, 3)] == [((2, PAID),), ((0, REFUSED),), ((3, PAID),)]
     assert task.describe() == "procured [2, 3], assembled nothing"
     for act in (6, 7, 11, 12, 15):
@@ -145,7 +145,7 @@ def test_answers_are_news_once_and_the_end_tells_the_rest():
 
 
 def test_the_hidden_list_is_not_read():
-    alike = [OrderTask(CustomerOrder(LAYOUT, name)) for name in ("bicycles", "carts")]
+    alike = [OrderTask(CustomerOrder(LAYOUT, name), TABLE) for name in ("bicycles", "carts")]
     laws = certain_laws("bicycles", "tables")
     first, second = (plan(task, laws) for task in alike)
     assert np.array_equal(first.values, second.values)

@@ -11,7 +11,6 @@ episodes of a task, so only new answers are effects, and what was found in this 
 """
 
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +18,7 @@ from scipy import sparse
 from scipy.sparse import csgraph
 
 from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
-from lifelore.domains.buildings import building_days as world
+from lifelore.domains.buildings import building_days as days
 from lifelore.domains.buildings.building_days import BuildingDays, BuildingWay
 from lifelore.domains.task_stream import DrawnTask
 
@@ -41,7 +40,7 @@ SURE = (0.98, 0.01, 0.01)
 MOST_BEHAVIOURS = 257
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(eq=False)
 class BuildingFamily:
     """Ways through one building.
 
@@ -58,45 +57,23 @@ class BuildingFamily:
     n_effects = len(EFFECTS)
     n_results = 1
 
-    @property
-    def n_cells(self) -> int:
+    def __post_init__(self) -> None:
+        world = self.days.world
+        self.n_cells = world.n_states
         """Number of cells; the causes of regions follow those of cells."""
-        return self.days.world.n_states
-
-    @cached_property
-    def region_of(self) -> NDArray[np.int64]:
+        row, column = (world.cells // REGION).T.astype(np.int64)
+        self.region_of = np.unique(row * (column.max() + 1) + column, return_inverse=True)[1]
         """(n_cells,) number of each cell's region."""
-        row, column = (self.days.world.cells // REGION).T.astype(np.int64)
-        return np.unique(row * (column.max() + 1) + column, return_inverse=True)[1]
-
-    @cached_property
-    def n_causes(self) -> int:
-        """Number of cells and regions."""
-        return self.n_cells + int(self.region_of.max()) + 1
-
-    @cached_property
-    def possible(self) -> Array:
-        """The map is mostly right."""
-        return np.tile(SURE, (self.n_causes, 1))
-
-    @cached_property
-    def groups(self) -> NDArray[np.int64]:
-        """The cells of a region are alike, and regions are alike."""
-        n_regions = self.n_causes - self.n_cells
-        return np.concatenate([self.region_of, np.full(n_regions, n_regions)])
-
-    @cached_property
-    def judges(self) -> NDArray[np.bool_]:
-        """Regions alone tell types apart."""
-        return np.arange(self.n_causes) >= self.n_cells
-
-    @cached_property
-    def entries(self) -> sparse.csr_matrix:
+        n_regions = int(self.region_of.max()) + 1
+        self.n_causes = self.n_cells + n_regions
+        self.possible = np.tile(SURE, (self.n_causes, 1))
+        # The cells of a region are alike, and regions are alike.
+        self.groups = np.concatenate([self.region_of, np.full(n_regions, n_regions)])
+        self.judges = np.arange(self.n_causes) >= self.n_cells
+        start, move = np.nonzero(world.neighbour >= 0)
+        end, shape = world.neighbour[start, move], (self.n_cells, self.n_cells)
+        self.entries = sparse.csr_matrix((np.ones(len(end)), (end, start)), shape=shape)
         """(n_cells, n_cells) of ones: from a cell to those from which the map lets it be entered."""
-        neighbour = self.days.world.neighbour
-        start, move = np.nonzero(neighbour >= 0)
-        end = neighbour[start, move]
-        return sparse.csr_matrix((np.ones(len(end)), (end, start)), shape=(len(neighbour), len(neighbour)))
 
     def smoothed(self, counts: Array) -> Array:
         """A cell without effects has those of its neighbours, with less weight: crowds cover several cells."""
@@ -172,13 +149,13 @@ class WayTask:
             move = int(np.flatnonzero(neighbour[self.cell] == target)[0])
             seen, reward, ended = self.way.step(move)
             gained, self.cell = gained + reward, seen.cell
-            effect = REFUSED if seen.refused else CROWDED if reward == world.CROWD else FREE
+            effect = REFUSED if seen.refused else CROWDED if reward == days.CROWD else FREE
             if self.found[target] == UNKNOWN:
                 self.found[target] = effect
                 news.append((target, effect))
             region = int(self.family.region_of[target])
             worst[region] = max(worst.get(region, FREE), effect)
-            if ended or effect != self._expected[act, target]:
+            if ended or seen.refused or effect != self._expected[act, target]:
                 break
         return Step(gained, (*news, *self._news_of_regions(worst)), ended)
 
@@ -193,8 +170,8 @@ class WayTask:
     def plan(self, laws: Array, tried: NDArray[np.bool_], new: int | None, shared: SharedKnowledge) -> Plan:
         """The shortest way of each type under its expected costs, and its cost under all."""
         cells = laws[:, : self.family.n_cells]
-        cost = cells @ np.array([-world.MOVE, -world.CROWD, DETOUR - world.REFUSED])
-        for effect, price in ((FREE, -world.MOVE), (CROWDED, -world.CROWD), (REFUSED, CLOSED)):
+        cost = cells @ np.array([-days.MOVE, -days.CROWD, DETOUR - days.REFUSED])
+        for effect, price in ((FREE, -days.MOVE), (CROWDED, -days.CROWD), (REFUSED, CLOSED)):
             cost[:, self.found == effect] = price
         self._expected = np.where(self.found == UNKNOWN, cells.argmax(axis=2), self.found)
         self._ways = [self._shortest_way(own) for own in cost]

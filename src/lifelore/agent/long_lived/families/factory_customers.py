@@ -6,7 +6,7 @@ is paid or refused. An order answers the same act alike in all its episodes, so 
 when an order ends, all components that it did not ask for are known to be unwanted.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,10 +41,13 @@ class FactoryFamily:
         Its types are keys of `customer_orders.CUSTOMERS`.
     seed : int
         Of the layouts.
+    tables : dict, optional
+        Best acts by number of the order, which agents share.
     """
 
     stream: TaskStream
     seed: int = 0
+    tables: dict[int, OrderTable] = field(default_factory=dict)
 
     name = "factory-customers"
     acts = ACTS
@@ -62,7 +65,9 @@ class FactoryFamily:
     def meet(self, number: int, abilities: Abilities) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
         drawn, order = self.order(number)
-        return drawn, OrderTask(order)
+        if number not in self.tables:
+            self.tables[number] = OrderTable.of(order.factory)
+        return drawn, OrderTask(order, self.tables[number])
 
     def best_return(self, number: int) -> float:
         """The best discounted return."""
@@ -88,14 +93,15 @@ class OrderTask:
     ----------
     order : CustomerOrder
         Of its hidden list nothing is read.
+    table : OrderTable
+        Of the order's factory.
     """
 
     context = 0
     moved: tuple[int, int] | None = None
 
-    def __init__(self, order: CustomerOrder) -> None:
-        self.order = order
-        self.table = OrderTable.of(order.factory)
+    def __init__(self, order: CustomerOrder, table: OrderTable) -> None:
+        self.order, self.table = order, table
         self.known = np.full(order.factory.n_components, UNKNOWN)
         self.begin()
 
