@@ -114,7 +114,8 @@ def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> d
     done: list[list[dict[str, LifeResult]]] = []
     progress(0, repeats, "rounds")
     work = (delayed(lived_round)(seed, True) for seed in range(repeats))
-    for lives in Parallel(n_jobs=min(2, repeats), return_as="generator")(work):  # type: ignore[union-attr]
+    found: Iterable[Any] = Parallel(n_jobs=min(2, repeats), return_as="generator")(work)  # type: ignore[assignment]
+    for lives in found:
         done.append(lives)
         progress(len(done), repeats, "rounds")
     lives = [life for found in done for life in found]
@@ -160,7 +161,9 @@ def _row(name: str, estimate: Estimate, unit: str) -> dict[str, Any]:
     return row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
 
 
-def curve(lives: Iterable[Mapping[str, LifeResult]], agent: str, width: int = 10) -> tuple[Array, Array]:
+def curve(
+    lives: Iterable[Mapping[str, LifeResult]], agent: str, width: int = 10
+) -> tuple[NDArray[np.int64], Array]:
     """Task numbers and share of the best possible return, over `width` tasks up to each, of all lives together."""
     first = np.sum([life[agent].first for life in lives], axis=0)
     best = np.sum([life[agent].best for life in lives], axis=0)

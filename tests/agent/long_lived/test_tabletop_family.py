@@ -1,0 +1,117 @@
+"""Tabletop jobs as tasks of the long-lived agent: features of trays by hand, causes and effects, plans."""
+
+import numpy as np
+import pytest
+
+from lifelore.domains.tabletop.layout import stand
+from lifelore.domains.tabletop.shapes import box
+from lifelore.domains.tabletop_job.job_types import job_type_named
+
+pytest.importorskip("mujoco", reason="needs the extra sim")
+pytestmark = pytest.mark.sim
+
+from lifelore.agent.long_lived.families.tabletop import (  # noqa: E402
+    ACTS,
+    BRISKLY,
+    DONE,
+    END,
+    GENTLY,
+    GIVE_UP,
+    N_SITUATED,
+    PICK_TARGET,
+    TabletopFamily,
+    TabletopTask,
+    available_acts,
+    reward_bin,
+)
+from lifelore.agent.long_lived.families.tray_features import look_with_labels  # noqa: E402
+from lifelore.agent.long_lived.knowledge import Knowledge  # noqa: E402
+from lifelore.agent.long_lived.live_task import LivingSettings, live_task  # noqa: E402
+from lifelore.agent.long_lived.task_family import AGENTS  # noqa: E402
+from lifelore.domains.tabletop_job.best_return import OutcomeTree  # noqa: E402
+from lifelore.domains.tabletop_job.job import TabletopJob  # noqa: E402
+from lifelore.domains.tabletop_job.job_replay import JobReplay  # noqa: E402
+from lifelore.domains.tabletop_job.tray import sample_tray, tray_of  # noqa: E402
+from lifelore.domains.task_stream import TaskStream  # noqa: E402
+
+KIND = job_type_named("patient/firm")
+
+
+@pytest.fixture(scope="module")
+def family():
+    return TabletopFamily(TaskStream(("patient/firm", "hurried/wide"), n_contexts=1), seed=3)
+
+
+def test_a_replay_is_the_job():
+    tray = sample_tray(3, 0)
+    job, replay = TabletopJob(tray, KIND), JobReplay(OutcomeTree(tray, KIND.gripper), KIND.user)
+    for _ in range(2):
+        assert replay.reset().held is job.reset().held is None
+        for action in (tray.target, 3 * job.n_objects + tray.target):
+            if job.ended or not job.available()[action]:
+                break
+            assert np.array_equal(job.available(), replay.available())
+            ours, theirs = job.step(action), replay.step(action)
+            assert ours[1:] == theirs[1:]
+            assert (ours[0].held, ours[0].gone) == (theirs[0].held, theirs[0].gone)
+    assert len(replay.tree) <= 4
+
+
+def test_features_name_the_target_that_the_user_points_at(family):
+    for number in range(3):
+        tray = sample_tray(3, number)
+        seen = look_with_labels(TabletopJob(tray, KIND))
+        assert seen is not None
+        assert seen.target == tray.target
+        assert seen.top != tray.target
+        assert seen.neighbour != tray.target
+        assert (seen.above > 0) == (seen.top is not None)
+
+
+def test_acts_have_causes_and_effects(family):
+    _, task = family.meet(0, AGENTS["no-perception"])
+    first = task.act(PICK_TARGET)
+    (cause, result), (reward_cause, found) = first.effects
+    assert family.cause_name(cause).startswith(ACTS[PICK_TARGET])
+    assert reward_cause >= N_SITUATED
+    assert found == reward_bin(first.reward)
+    if result == DONE:
+        done = task.act(GENTLY)
+        assert done.ended == (task.moved is not None and task.moved[1] == END)
+    task.begin()
+    assert task.act(GIVE_UP).ended
+
+
+def test_acts_that_need_an_empty_hand_are_not_offered_to_a_full_one():
+    empty, full = available_acts(np.array([0, 2]))
+    assert empty[[PICK_TARGET, GENTLY, GIVE_UP]].tolist() == [True, False, True]
+    assert full[[PICK_TARGET, GENTLY, BRISKLY, GIVE_UP]].tolist() == [False, True, True, True]
+
+
+def test_a_single_box_is_brought_and_the_second_time_at_once():
+    """The plan of known effects is the best sequence that the search finds."""
+    tree = OutcomeTree(tray_of([stand(box(0.1, 0.06, 0.05))], 0), KIND.gripper)
+    family = TabletopFamily(TaskStream(("patient/firm",), n_contexts=1))
+    knowledge, returns = Knowledge.empty(family), []
+    for number in range(3):
+        drawn = family.stream.draw(number)
+        task = TabletopTask(JobReplay(tree, KIND.user), perception=False)
+        lived, _ = live_task(knowledge, drawn, task, AGENTS["full"], LivingSettings(n_episodes=6), f"r.{number}")
+        returns.append(lived.returns)
+    best = tree.best(KIND.user).value
+    assert returns[0][0] < best
+    assert returns[-1][0] > best - 0.5
+
+
+def test_the_hidden_type_is_not_read():
+    """Before the first act, tasks of different users and grippers look alike and are planned alike."""
+    tray, shared = sample_tray(3, 1), Knowledge.empty(TabletopFamily(TaskStream(("patient/firm",)))).shared
+    found = []
+    for name in ("patient/firm", "hurried/wide"):
+        kind = job_type_named(name)
+        task = TabletopTask(JobReplay(OutcomeTree(tray, kind.gripper), kind.user))
+        family = TabletopFamily(TaskStream(("patient/firm",)))
+        laws = np.repeat(family.possible[None], 2, axis=0)
+        found.append((task.context, task.describe(), task.plan(laws, np.ones(family.n_causes, bool), 1, shared)))
+    assert found[0][:2] == found[1][:2]
+    np.testing.assert_array_equal(found[0][2].values, found[1][2].values)
