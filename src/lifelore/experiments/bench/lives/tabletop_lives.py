@@ -9,7 +9,7 @@ the simulator; it knows the true scene and the hidden type.
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -114,8 +114,8 @@ def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> d
     done: list[list[dict[str, LifeResult]]] = []
     progress(0, repeats, "rounds")
     work = (delayed(lived_round)(seed, True) for seed in range(repeats))
-    found: Iterable[Any] = Parallel(n_jobs=min(2, repeats), return_as="generator")(work)  # type: ignore[assignment]
-    for lives in found:
+    rounds = cast(Iterable[Any], Parallel(n_jobs=min(2, repeats), return_as="generator")(work))
+    for lives in rounds:
         done.append(lives)
         progress(len(done), repeats, "rounds")
     lives = [life for found in done for life in found]

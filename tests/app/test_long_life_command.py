@@ -1,0 +1,67 @@
+"""`lifelore live` in domains of jobs with hidden types, and `lifelore explain`: documents, words, and refusals."""
+
+import pytest
+
+from lifelore.memory import open_memory
+
+TASK = {
+    "task", "context", "hidden_type", "best_return", "returns", "prior", "alarm", "alarm_score", "learnt",
+    "new_type", "first_episode", "last_episode",
+}  # fmt: skip
+
+
+@pytest.fixture
+def where(tmp_path):
+    return str(tmp_path / "memory.db")
+
+
+def live(ask, where, *more, tasks=4):
+    fixed = ("live", "--domain", "factory-customers", "--memory", where, "--episodes", "2", "--json")
+    run = ask(*fixed, "--tasks", str(tasks), *more)
+    assert run.status == 0, run.err
+    return run.document
+
+
+def test_a_life_goes_on_where_it_ended(ask, where):
+    first, second = live(ask, where), live(ask, where)
+    assert [set(task) for task in first["tasks"]] == [TASK] * 4
+    assert [task["task"] for task in first["tasks"] + second["tasks"]] == list(range(8))
+    assert first["tasks"][0]["prior"] == {}
+    assert second["tasks"][0]["prior"]
+    whole = live(ask, where.replace("memory", "whole"), tasks=8)
+    assert whole["tasks"] == first["tasks"] + second["tasks"]
+
+
+def test_an_ablation_teaches_nobody(ask, where):
+    live(ask, where, "--agent", "scratch", "--robot", "bob")
+    with open_memory(where) as memory:
+        assert memory.tasks("bob") == 4
+        assert memory.keys("action_prior") == []
+
+
+def test_explain_says_why(ask, where):
+    live(ask, where)
+    run = ask("explain", "3", "--memory", where)
+    assert run.status == 0
+    assert run.out.startswith("task 3, context")
+    assert "first episode, return" in run.out
+    assert "as for" in run.out
+    document = ask("explain", "3", "--memory", where, "--json").document
+    assert set(document) == TASK | {"domain"}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (["live", "--domain", "factory-customers", "--map", "a.yaml"], "--map does not apply to domain"),
+        (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
+        (["live", "--domain", "building-days", "--tasks", "0"], "tasks must be at least 1"),
+        (["explain", "9"], "has no task 9"),
+    ],
+)
+def test_mistakes_are_one_line(ask, where, arguments, words):
+    if arguments[0] == "explain":
+        live(ask, where, tasks=1)
+    run = ask(*arguments, "--memory", where)
+    assert run.status == 2
+    assert words in run.refusal

@@ -1,0 +1,56 @@
+"""`bench tabletop_lives`: shares, differences and goals by hand, the figure, and one short round."""
+
+import numpy as np
+import pytest
+
+from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.experiments.bench.lives import tabletop_lives
+from lifelore.experiments.bench.lives.tabletop_lives import N_TASKS, LifeResult, curve, lived_round, report
+
+
+def result(first, spills=0.0, n_types=3):
+    n = 2 * N_TASKS
+    best = np.full(n, 8.0)
+    return LifeResult(np.full(n, first), np.full(n, 8.0), best, np.full(n, spills), np.zeros(n), n_types)
+
+
+def lives(n=4):
+    firsts = {"full": 7.0, "no-perception": 4.0, "no-prior": 6.0, "no-reuse": 5.0, "scratch": 0.0}
+    return [
+        {agent: result(firsts[agent] + 0.1 * i, float(agent == "scratch")) for agent in AGENTS} for i in range(n)
+    ]
+
+
+def test_shares_differences_and_goals_by_hand():
+    found = report(lives())
+    rows = {row["name"]: row for row in found["rows"]}
+    assert rows["full: first episodes on new trays"]["value"] == pytest.approx((7.0 + 0.15) / 8)
+    assert rows["full less no-reuse: first episodes on new trays"]["value"] == pytest.approx(2 / 8)
+    assert rows["scratch: spills in first episodes on new trays"]["value"] == 1
+    good, spilled = found["goals"]
+    assert (good["met"], spilled["met"], spilled["measured"]) == (False, True, 0.0)
+
+
+def test_the_curve_is_a_mean_over_ten_tasks():
+    tasks, shares = curve(lives(2), "full")
+    assert (tasks[0], tasks[-1]) == (10, 2 * N_TASKS)
+    assert shares == pytest.approx((7.0 + 0.05) / 8)
+
+
+def test_the_figure_is_drawn(tmp_path):
+    tabletop_lives._draw(lives(), tmp_path)
+    assert (tmp_path / "bench_tabletop_lives.png").read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.slow
+@pytest.mark.sim
+def test_a_short_round(monkeypatch):
+    pytest.importorskip("mujoco", reason="needs the extra sim")
+    monkeypatch.setattr(tabletop_lives, "AGENTS", {name: AGENTS[name] for name in ("full", "scratch")})
+    (life,) = lived_round(5, True, n_tasks=2, lives=1)
+    again = lived_round(5, True, n_tasks=2, lives=1)[0]
+    assert sorted(life) == ["full", "scratch"]
+    for agent, found in life.items():
+        assert len(found.first) == 4
+        assert (found.first <= found.best + 1e-9).all()
+        np.testing.assert_array_equal(found.first, again[agent].first)
