@@ -4,15 +4,15 @@ from typing import Any
 
 import numpy as np
 
-from lifelore.agent.long_lived.live_task import Decision, LivedTask
 from lifelore.agent.long_lived.task_family import TaskFamily
+from lifelore.agent.long_lived.task_log import Decision, TaskLog
 
 UNKNOWN = "an unknown type"
 SHOWN_TYPES = 3
 """Types that an explanation names, the most probable ones."""
 
 
-def task_document(lived: LivedTask, family: TaskFamily, best: float) -> dict[str, Any]:
+def task_document(lived: TaskLog, family: TaskFamily, best: float) -> dict[str, Any]:
     """A lived task as JSON data, with the decisions of its first and last episode.
 
     ``best_return`` and ``hidden_type`` are for scoring; the agent knows neither.

@@ -12,26 +12,18 @@ an alarm, or effects that tell the task from its type: a new type; else as belie
 count the effects, the best acts, and the belief in this context                       remember
 """
 
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
-from lifelore.agent.long_lived.novelty_alarm import calibrated_alarm
+from lifelore.agent.long_lived.recognition import Recognition
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan
+from lifelore.agent.long_lived.task_log import Decision, TaskLog
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask
-from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
-from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
-from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
-
-Array = NDArray[np.float64]
-
-ALARMED = 0.99
-"""Least belief in an unknown type after an alarm; the known types then hardly count."""
 
 
 @dataclass(frozen=True)
@@ -46,129 +38,23 @@ class LivingSettings:
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
+
+    Raises
+    ------
+    InputError
+        A setting is out of its range.
     """
 
     n_episodes: int = 8
     false_alarm: float = 0.05
     unknown: float = 0.05
 
-
-@dataclass
-class Decision:
-    """Why the agent did an act.
-
-    act : int
-    behaviour : int
-        Number of the type whose behaviour was followed; the last stands for an unknown type.
-    belief : (n_types + 1,) float64
-        In the known types and, last, in an unknown one, before the act.
-    expected : (n_types + 1,) float64
-        Expected return of each behaviour under the belief.
-    scene : str
-    reward : float
-    effects : tuple of (int, int)
-    """
-
-    act: int
-    behaviour: int
-    belief: Array
-    expected: Array
-    scene: str
-    reward: float = 0.0
-    effects: tuple[tuple[int, int], ...] = ()
-
-
-@dataclass
-class LivedTask:
-    """What happened in a task.
-
-    drawn : DrawnTask
-    returns : list of float
-        Of the episodes.
-    decisions : list of list of Decision
-        Of each episode.
-    prior : (n_types,) float64
-        Over the types that were known before the task.
-    types : list of str
-        Their names.
-    alarm : bool
-        Whether no known type fitted.
-    alarm_score : float
-        Largest score of the detector, in deviations of known tasks.
-    learnt : str
-        Name of the type that learnt most from the task.
-    """
-
-    drawn: DrawnTask
-    returns: list[float] = field(default_factory=list)
-    decisions: list[list[Decision]] = field(default_factory=list)
-    prior: Array = field(default_factory=lambda: np.zeros(0))
-    types: list[str] = field(default_factory=list)
-    alarm: bool = False
-    alarm_score: float = 0.0
-    learnt: str = ""
-
-    def to_dict(self) -> dict[str, Any]:
-        """The task as JSON data, without its decisions."""
-        return {
-            "task": self.drawn.number,
-            "context": self.drawn.context,
-            "returns": [round(value, 4) for value in self.returns],
-            "known_types": len(self.types),
-            "alarm": self.alarm,
-            "learnt": self.learnt,
-        }
-
-
-class Recognition:
-    """The belief over types in one task, and the alarm that none fits."""
-
-    def __init__(self, knowledge: Knowledge, prior: Array, settings: LivingSettings, seed: int) -> None:
-        self.known = knowledge.known_types()
-        self.own = np.zeros((knowledge.family.n_causes, knowledge.family.n_effects))
-        self.agent: BayesianPolicyReuse | None = None
-        self.alarm: NoveltyDetector | None = None
-        self.highest = 0.0
-        self._judged: set[int] = set()
-        if len(self.known):
-            library, judged = self.known.library(prior), self.known.judged
-            self._place = {int(cause): place for place, cause in enumerate(judged)}
-            self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static())
-            frequency = knowledge.shared.causes.counts(judged)[:, 0]
-            self.alarm = calibrated_alarm(
-                library,
-                np.maximum(frequency, 0.5),
-                max(1, round(frequency.sum() / max(knowledge.n_tasks, 1))),
-                settings.false_alarm,
-                stream(seed, "long-lived", "alarm", knowledge.n_tasks),
-                settings.unknown,
-            )
-
-    @property
-    def belief(self) -> Array:
-        """In the known types and, last, in an unknown one, (n_types + 1,)."""
-        if self.agent is None or self.alarm is None:
-            return np.ones(1)
-        unknown = max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0)
-        return np.append((1 - unknown) * self.agent.belief, unknown)
-
-    def observe(self, effects: tuple[tuple[int, int], ...]) -> None:
-        """Take in the effects of an act; a cause counts for the alarm at its first effect alone."""
-        for cause, effect in effects:
-            self.own[cause, effect] += 1
-            if self.agent is None or self.alarm is None or cause not in self._place:
-                continue
-            place, belief = self._place[cause], self.agent.belief
-            self.agent.update(place, effect)
-            if cause not in self._judged:
-                self._judged.add(cause)
-                self.alarm.observe(belief, place, effect)
-                self.highest = max(self.highest, self.alarm.score)
-
-    @property
-    def alarmed(self) -> bool:
-        """Whether the alarm was raised, or no type is known."""
-        return self.alarm is None or self.alarm.alarm
+    def __post_init__(self) -> None:
+        if self.n_episodes < 1:
+            raise InputError(f"episodes must be at least 1, got {self.n_episodes}")
+        for name in ("false_alarm", "unknown"):
+            if not 0 < getattr(self, name) < 1:
+                raise InputError(f"{name} must lie between 0 and 1, got {getattr(self, name)}")
 
 
 def live_task(
@@ -179,7 +65,7 @@ def live_task(
     settings: LivingSettings,
     name: str,
     seed: int = 0,
-) -> tuple[LivedTask, list[Record]]:
+) -> tuple[TaskLog, list[Record]]:
     """Live through a task; `knowledge` learns from it.
 
     Parameters
@@ -196,17 +82,17 @@ def live_task(
 
     Returns
     -------
-    (LivedTask, list of Record)
+    (TaskLog, list of Record)
         What happened, and the records by which memory adds what was learnt.
     """
     known, shared = knowledge.known_types(), knowledge.shared
-    lived = LivedTask(drawn, types=[one.name for one in known.types])
+    lived = TaskLog(drawn, types=[one.name for one in known.types])
 
     # Recognise: which types does this context usually have?
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
-    recognition = Recognition(knowledge, lived.prior, settings, seed)
+    recognition = Recognition(knowledge, lived.prior, settings.false_alarm, settings.unknown, seed)
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.

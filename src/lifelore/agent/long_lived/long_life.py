@@ -12,8 +12,9 @@ from lifelore.action.priors.action_prior import KIND
 from lifelore.agent.long_lived.explanation import task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivedTask, LivingSettings, live_task
+from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS, TaskFamily
+from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress, Record
 from lifelore.memory import Memory, open_memory
@@ -144,7 +145,7 @@ def _store(
     )
 
 
-def _headline(lived: LivedTask, best: float) -> str:
+def _headline(lived: TaskLog, best: float) -> str:
     new = ", a new type" if lived.alarm else ""
     return f"{lived.returns[0]:.1f} at first, best {best:.1f}{new}"
 

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.families.by_name import TABLETOP_TYPES
 from lifelore.agent.long_lived.families.tabletop import N_SITUATED, SPILLED, TabletopFamily
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.live_task import LivedTask, LivingSettings, live_task
+from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
@@ -81,7 +82,7 @@ def _life(
 
 def _lived(family: TabletopFamily, agent: str, n_tasks: int, seed: int) -> LifeResult:
     abilities, knowledge = AGENTS[agent], Knowledge.empty(family)
-    tasks: list[LivedTask] = []
+    tasks: list[TaskLog] = []
     for number in range(n_tasks):
         if not abilities.memory:
             knowledge = Knowledge.empty(family)
@@ -98,7 +99,7 @@ def _lived(family: TabletopFamily, agent: str, n_tasks: int, seed: int) -> LifeR
     )
 
 
-def n_spills(task: LivedTask) -> int:
+def n_spills(task: TaskLog) -> int:
     """Acts of the first episode that spilled an object."""
     effects = [effect for decision in task.decisions[0] for effect in decision.effects]
     return sum(cause < N_SITUATED and effect == SPILLED for cause, effect in effects)

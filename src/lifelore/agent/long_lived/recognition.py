@@ -1,0 +1,85 @@
+"""Which type a task has: the belief over the known types, and the alarm that none fits."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.novelty_alarm import calibrated_alarm
+from lifelore.core.streams import stream
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+
+Array = NDArray[np.float64]
+
+ALARMED = 0.99
+"""Least belief in an unknown type after an alarm; the known types then hardly count."""
+
+
+class Recognition:
+    """The belief over types in one task.
+
+    Parameters
+    ----------
+    knowledge : Knowledge
+        Read once; what it learns later does not count.
+    prior : (n_types,) float
+        Over `Knowledge.known_types`.
+    false_alarm, unknown : float
+        As in `LivingSettings`.
+    seed : int
+
+    Attributes
+    ----------
+    own : (n_causes, n_effects) float64
+        What the task has shown.
+    highest : float
+        Largest score of the alarm's detector so far.
+    """
+
+    def __init__(self, knowledge: Knowledge, prior: Array, false_alarm: float, unknown: float, seed: int) -> None:
+        self.known = knowledge.known_types()
+        self.own = np.zeros((knowledge.family.n_causes, knowledge.family.n_effects))
+        self.agent: BayesianPolicyReuse | None = None
+        self.alarm: NoveltyDetector | None = None
+        self.highest = 0.0
+        self._judged: set[int] = set()
+        if len(self.known):
+            library, judged = self.known.library(prior), self.known.judged
+            self._place = {int(cause): place for place, cause in enumerate(judged)}
+            self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static())
+            frequency = knowledge.shared.causes.counts(judged)[:, 0]
+            self.alarm = calibrated_alarm(
+                library,
+                np.maximum(frequency, 0.5),
+                max(1, round(frequency.sum() / max(knowledge.n_tasks, 1))),
+                false_alarm,
+                stream(seed, "long-lived", "alarm", knowledge.n_tasks),
+                unknown,
+            )
+
+    @property
+    def belief(self) -> Array:
+        """In the known types and, last, in an unknown one, (n_types + 1,)."""
+        if self.agent is None or self.alarm is None:
+            return np.ones(1)
+        unknown = max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0)
+        return np.append((1 - unknown) * self.agent.belief, unknown)
+
+    def observe(self, effects: tuple[tuple[int, int], ...]) -> None:
+        """Take in the effects of an act; a cause counts for the alarm at its first effect alone."""
+        for cause, effect in effects:
+            self.own[cause, effect] += 1
+            if self.agent is None or self.alarm is None or cause not in self._place:
+                continue
+            place, belief = self._place[cause], self.agent.belief
+            self.agent.update(place, effect)
+            if cause not in self._judged:
+                self._judged.add(cause)
+                self.alarm.observe(belief, place, effect)
+                self.highest = max(self.highest, self.alarm.score)
+
+    @property
+    def alarmed(self) -> bool:
+        """Whether the alarm was raised, or no type is known."""
+        return self.alarm is None or self.alarm.alarm
