@@ -41,6 +41,7 @@ EXPECTED = {
         '"advise": false',
         '"advise": true',
     ],
+    "long_lived": ["points below the best possible return", "task 3, context", "believed in"],
     "fleet": ["karl", "rosie", "contributions: 2 added", "contributions: 0 added"],
     "policy_reuse": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
 }
@@ -52,6 +53,7 @@ NOT_RUN = {
     "lifelore perceive depth.png": "needs a depth image",
     "lifelore perceive organised.pcd": "needs a cloud and masks",
     "lifelore perceive left.pcd": "needs two views",
+    "lifelore live --domain tabletop": "takes minutes",
     "dask ": "needs a cluster",
     "lifelore reproduce C3.2 --full --engine": "needs a cluster",
     "make ": "installs from the network",
