@@ -107,6 +107,8 @@ def test_the_contract_names_these_commands():
         "reproduce",
         "bench",
         "doctor",
+        "explain",
+        "serve",
         "version",
     }
     verbs |= {f"memory {verb}" for verb in ("show", "export", "import", "merge", "forget")}

@@ -47,7 +47,7 @@ def understand(command, arguments: list[str], name: str, typed: bool) -> list[st
 
 @pytest.mark.parametrize(("path", "line"), FOUND, ids=[f"{path.name}: {line}" for path, line in FOUND])
 def test_what_is_written_can_be_typed(path, line):
-    whole = re.split(r"\|| [<>] ", line)[0].replace("…", "").replace("...", "")
+    whole = re.split(r"\|| [<>] | &$", line)[0].replace("…", "").replace("...", "")
     arguments = shlex.split(whole, comments=True)[1:]
     span = path.suffix == ".md" and f"`{line}`" in path.read_text(encoding="utf-8")
     understand(typer.main.get_command(app), arguments, "lifelore", typed=not span)

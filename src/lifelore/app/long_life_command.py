@@ -77,7 +77,7 @@ def explain(
     ] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Say why the agent acted as it did in a task of jobs with hidden types.
+    """Say why the agent acted as it did in a task.
 
     The words are those of the agent: the scene, its belief, the return that it expected, and what it noticed.
     """

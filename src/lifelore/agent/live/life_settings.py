@@ -133,6 +133,8 @@ class PriorSettings:
         _check_choice("ties", self.ties, TIES)
         _check_magnitude("alpha0", self.alpha0, MOST_REWARD)
         _check_magnitude("weight", self.weight, MOST_REWARD)
+        if self.weight < 0:
+            raise InputError(f"weight must be at least 0, got {self.weight}")
 
 
 @dataclass(frozen=True)
@@ -294,8 +296,8 @@ def _check_world(world: WorldSettings) -> None:
     _check_magnitude("goal_reward", world.goal_reward, MOST_REWARD)
     _check_magnitude("wall_reward", world.wall_reward, MOST_REWARD)
     _check_magnitude("density", world.density, 1.0)
-    if world.discount is not None and not 0 <= world.discount < 1:
-        raise InputError(f"discount must lie in [0, 1), got {world.discount}")
+    if world.discount is not None and not 0 < world.discount < 1:
+        raise InputError(f"discount must lie in (0, 1), got {world.discount}")
     if world.goal_reward is not None and world.goal_reward <= 0:
         raise InputError(f"goal_reward must be positive, got {world.goal_reward}")
     if world.wall_reward is not None and world.wall_reward > 0:
