@@ -32,7 +32,7 @@ def serve(
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Serve personalisation, perception, advice and memory over HTTP.
+    """Answer over HTTP from the memory of the command line.
 
     Use it when programs in other languages or on other machines need the memory. Ctrl-C stops it: every answered
     request is stored. The addresses are listed under /openapi.json.
