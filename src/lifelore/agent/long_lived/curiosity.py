@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.agent.long_lived.knowledge import MOST_CONTEXTS, Knowledge
+from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.core.metrics import entropy
 
 
@@ -65,17 +65,13 @@ class CuriousType:
 
 def curious_contexts(knowledge: Knowledge) -> list[CuriousContext]:
     """Contexts by interest, the most interesting first."""
-    known = knowledge.known_types()
-    beliefs: dict[int, dict[int, np.ndarray]] = {}
-    for number, one in enumerate(known.types):
-        codes = one.sightings.contexts
-        for code, value in zip(codes.tolist(), one.sightings.counts(codes)[:, 0], strict=True):
-            date, context = divmod(code, MOST_CONTEXTS)
-            beliefs.setdefault(context, {}).setdefault(date, np.zeros(len(known)))[number] += value
-    total = sum(len(dates) for dates in beliefs.values())
+    beliefs: dict[int, list[np.ndarray]] = {}
+    for (_, context), belief in knowledge.sighted().items():
+        beliefs.setdefault(context, []).append(belief)
+    total = sum(len(tasks) for tasks in beliefs.values())
     found = []
-    for context, dates in beliefs.items():
-        rows = np.array(list(dates.values()))
+    for context, tasks in beliefs.items():
+        rows = np.array(tasks)
         rows /= rows.sum(axis=1, keepdims=True)
         all_of_it = float(entropy(rows.mean(axis=0)[None])[0])
         unsure = float(entropy(rows).mean())

@@ -86,16 +86,21 @@ class Knowledge:
 
     def type_prior(self) -> TypePrior:
         """The prior over `known_types` by context and date, learnt from the sightings."""
+        n_types = len(self.known_types())
+        prior = TypePrior(np.full(n_types, 1 / n_types))
+        for (date, context), belief in self.sighted().items():
+            prior.count(context, belief, date)
+        return prior
+
+    def sighted(self) -> dict[tuple[int, int], Array]:
+        """Belief in each of `known_types` at the end of tasks, (n_types,), by date and context in their order."""
         known = self.known_types()
-        prior = TypePrior(np.full(len(known), 1 / len(known)))
         rows: dict[tuple[int, int], Array] = {}
         for number, one in enumerate(known.types):
             codes = one.sightings.contexts
             for code, count in zip(codes.tolist(), one.sightings.counts(codes)[:, 0], strict=True):
                 rows.setdefault(divmod(code, MOST_CONTEXTS), np.zeros(len(known)))[number] += count
-        for (date, context), row in sorted(rows.items()):
-            prior.count(context, row, date)
-        return prior
+        return {key: rows[key] for key in sorted(rows)}
 
     # ---- learning ----------------------------------------------------------------------------------
 

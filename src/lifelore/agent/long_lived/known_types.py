@@ -153,10 +153,6 @@ class KnownTypes:
         signal = CategorySignal(rows / count[:, :, None], count=count)
         return PolicyLibrary(performance, signal, tuple(known.name for known in self.types), prior=prior)
 
-    def named(self, name: str) -> KnownType:
-        """The type that a name belongs to, alone or joined with others."""
-        return next(known for known in self.types if name in known.members)
-
     def forget_laws(self) -> None:
         """Compute the laws again: counts have changed."""
         for name in ("counts", "pooled", "judged"):
