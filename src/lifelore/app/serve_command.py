@@ -32,10 +32,10 @@ def serve(
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Answer over HTTP from the memory of the command line.
+    """Answer over HTTP from the memory of the command line, and show pages in a browser.
 
-    Use it when programs in other languages or on other machines need the memory. Ctrl-C stops it: every answered
-    request is stored. The addresses are listed under /openapi.json.
+    Use it when programs in other languages or on other machines need the memory, or to play, teach, walk and see
+    in a browser. Ctrl-C stops it: every answered request is stored. The addresses are listed under /openapi.json.
     """
     from lifelore.app.console import print_json_line
     from lifelore.core.errors import InputError, MissingExtraError
@@ -52,10 +52,12 @@ def serve(
         import fastapi  # noqa: F401
         import prometheus_client  # noqa: F401
         import uvicorn  # noqa: F401
+        import websockets  # noqa: F401
     except ImportError as error:
         raise MissingExtraError(
             f"serve needs {error.name}, which is not installed; pip install 'lifelore[web]'"
         ) from None
+    from lifelore.app.pages.mount import app_with_pages
     from lifelore.app.service.server import serve as served
     from lifelore.app.service.settings import ServiceSettings
 
@@ -70,4 +72,4 @@ def serve(
     def ready(url: str) -> None:
         print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)
 
-    served(settings, host, port, ready)
+    served(settings, host, port, ready, app_with_pages)

@@ -1,9 +1,9 @@
 """The factory of the application: routes over one open memory, behind the gate.
 
-Pages can be mounted to the application that `create_app` returns; they pass the same gate.
+Pages are mounted on the application that `create_app` returns; they pass the same gate.
 """
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Collection
 from contextlib import asynccontextmanager
 from typing import Any
 
@@ -33,8 +33,10 @@ ERRORS: dict[int | str, dict[str, Any]] = {
 }
 
 
-def create_app(settings: ServiceSettings) -> FastAPI:
+def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> FastAPI:
     """The application over the memory of the settings, which it opens now and closes when it stops.
+
+    `open_paths` need no token. Routes find the shared state as ``app.state.service``.
 
     Raises
     ------
@@ -81,7 +83,7 @@ def create_app(settings: ServiceSettings) -> FastAPI:
         memory_routes,
     ):
         app.include_router(routes.router(service))
-    app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics)
+    app.add_middleware(Gate, settings=settings, tokens=tokens, metrics=service.metrics, open_paths=open_paths)
     return app
 
 

@@ -4,6 +4,7 @@ import asyncio
 import re
 import secrets
 import time
+from collections.abc import Collection
 from typing import Any
 
 from lifelore.app.service.error_documents import error_body
@@ -14,6 +15,8 @@ from lifelore.app.service.tokens import TokenFile
 
 OPEN_PATHS = ("/healthz", "/openapi.json")
 """Paths that need no token: they tell nothing about the memory."""
+OPEN_PREFIX = "/static/"
+"""Beginning of the paths of scripts and style sheets, which need no token."""
 READING_POSTS = ("/v1/perceive", "/v1/evaluate")
 """Beginnings of paths whose POST stores nothing and needs the scope read only."""
 _IDENTIFIER = re.compile(rb"[A-Za-z0-9_.:-]{1,100}")
@@ -36,13 +39,26 @@ class Gate:
     tokens : TokenFile, optional
         Without it only requests that name this machine as their host pass.
     metrics : Metrics
+    open_paths : collection of str
+        Further paths that need no token; those below ``/static/`` never do.
     """
 
-    def __init__(self, app: Any, settings: ServiceSettings, tokens: TokenFile | None, metrics: Metrics) -> None:
+    def __init__(
+        self,
+        app: Any,
+        settings: ServiceSettings,
+        tokens: TokenFile | None,
+        metrics: Metrics,
+        open_paths: Collection[str] = (),
+    ) -> None:
         self._app, self._settings, self._tokens, self._metrics = app, settings, tokens, metrics
+        self._open = {*OPEN_PATHS, *open_paths}
         self._rate = RateLimit(settings.rate)
 
     async def __call__(self, scope: Any, receive: Any, send: Any) -> None:
+        if scope["type"] == "websocket":
+            await self._pass_socket(scope, receive, send)
+            return
         if scope["type"] != "http":
             await self._app(scope, receive, send)
             return
@@ -82,13 +98,27 @@ class Gate:
             self._metrics.running.dec()
             self._note(scope, identifier, client, status, time.perf_counter() - began, defect)
 
+    async def _pass_socket(self, scope: Any, receive: Any, send: Any) -> None:
+        """A web socket has no headers of its own: its token is a subprotocol ``bearer.TOKEN``."""
+        headers = dict(scope["headers"])
+        protocols = [name.strip() for name in headers.get(b"sec-websocket-protocol", b"").split(b",")]
+        token = next((name[7:] for name in protocols if name.startswith(b"bearer.")), None)
+        if token is not None:
+            headers[b"authorization"] = b"Bearer " + token
+        try:
+            self._admit(scope | {"method": "POST"}, headers)
+        except _Refused:
+            await send({"type": "websocket.close", "code": 1008})  # refused with 403 before it opens
+            return
+        await self._app(scope, receive, send)
+
     def _admit(self, scope: Any, headers: dict[bytes, bytes]) -> str:
         """The name of the client; `_Refused` where it may not do this."""
         path = scope["path"]
         client = scope["client"][0] if scope.get("client") else "unknown"
         if self._tokens is None:
             _refuse_strangers(headers)
-        elif path not in OPEN_PATHS:
+        elif path not in self._open and not path.startswith(OPEN_PREFIX):
             client = self._token_of(scope["method"], path, headers)
         if (wait := self._rate.wait_for(client)) > 0:
             message = (

@@ -4,6 +4,9 @@ import signal
 import socket
 from collections.abc import Callable
 
+from fastapi import FastAPI
+
+from lifelore.app.service.application import create_app
 from lifelore.app.service.settings import ServiceSettings, is_loopback
 from lifelore.app.service.telemetry import log_to_stderr
 from lifelore.core.errors import InputError, StoreError
@@ -12,15 +15,24 @@ GRACE = 10
 """Seconds for requests in progress after a signal."""
 
 
-def serve(settings: ServiceSettings, host: str, port: int, ready: Callable[[str], None]) -> None:
+def serve(
+    settings: ServiceSettings,
+    host: str,
+    port: int,
+    ready: Callable[[str], None],
+    create: Callable[[ServiceSettings], FastAPI] = create_app,
+) -> None:
     """Serve until SIGINT or SIGTERM.
 
     Parameters
     ----------
+    settings : ServiceSettings
     host, port : str, int
         Port 0: any free port.
     ready : callable
         Called with the URL once connections are accepted.
+    create : callable
+        Makes the application; by default without pages.
 
     Raises
     ------
@@ -31,18 +43,21 @@ def serve(settings: ServiceSettings, host: str, port: int, ready: Callable[[str]
     """
     import uvicorn
 
-    from lifelore.app.service.application import create_app
-
     if settings.token_file is None and not is_loopback(host):
         raise InputError(
             f"host must be 127.0.0.1 without tokens, got '{host}'; add a token: --add-token NAME --token-file FILE"
         )
-    app = create_app(settings)
+    app = create(settings)
     listening = _listening(host, port)
     name = f"[{host}]" if ":" in host else host
     log_to_stderr()
     config = uvicorn.Config(
-        app, log_config=None, access_log=False, server_header=False, timeout_graceful_shutdown=GRACE, ws="none"
+        app,
+        log_config=None,
+        access_log=False,
+        server_header=False,
+        timeout_graceful_shutdown=GRACE,
+        ws_max_size=settings.largest_body,
     )
     # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then.
     signal.signal(signal.SIGTERM, lambda number, frame: None)
