@@ -249,10 +249,8 @@ class GripperTray(Tabletop):
 
     def grip_force(self) -> float:
         """Newtons between hand and held object."""
-        data = self._data
-        rows = (data.efc_type == self._mujoco.mjtConstraint.mjCNSTR_EQUALITY) & (data.efc_id == 0)
-        # The first three rows of a weld are its force, the others its torque; joints add no equality rows.
-        return float(np.linalg.norm(data.efc_force[rows][:3]))
+        # The weld is the only equality, and equalities are the first rows: three of force, three of torque.
+        return float(np.linalg.norm(self._data.efc_force[:3])) if self._data.ne else 0.0
 
     def push(self, number: int, force: NDArray[np.float64]) -> None:
         """Act on an object's middle with a force ``(3,)`` in newtons until the next call."""

@@ -8,6 +8,7 @@ scene.
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import asdict
+from functools import cache
 from pathlib import Path
 from typing import Any, Self
 
@@ -346,4 +347,9 @@ class RelationClassifier(Estimator):
 
 def shipped_model() -> RelationClassifier:
     """The classifier that comes with the package, trained on simulated tabletop scenes alone."""
-    return RelationClassifier.load(SHIPPED)
+    return RelationClassifier.from_model(_shipped())
+
+
+@cache
+def _shipped() -> RelationModel:
+    return read_model(SHIPPED)

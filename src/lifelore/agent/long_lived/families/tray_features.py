@@ -115,8 +115,9 @@ def tray_features(
     kind = 0 if above == 0 else 1 if sure < SURE else 2 if above == 1 else 3
     below = [b for a, b, _ in rests if a == target and b in parts]
     tree = KDTree(parts[target]) if target in parts else None
+    # Beyond `NEAR` a gap is infinite: how large it is does not matter.
     gaps = {
-        label: float(tree.query(points)[0].min())
+        label: float(tree.query(points, distance_upper_bound=NEAR)[0].min())
         for label, points in parts.items()
         if tree is not None and label not in (*chain, *below)
     }
