@@ -50,7 +50,7 @@ def test_list_names_all_claims_built_or_not():
     assert set(listed[0]) == {"claim", "where", "reports", "built"}
 
 
-@pytest.mark.parametrize(("claim_id", "rule"), [("C9.9", "not in the ledger"), ("C5.5", "not built yet")])
+@pytest.mark.parametrize(("claim_id", "rule"), [("C9.9", "not in the ledger"), ("C4.14", "not built yet")])
 def test_claims_that_cannot_be_run(claim_id, rule):
     with pytest.raises(NotFoundError, match=rule):
         claim_of(claim_id)

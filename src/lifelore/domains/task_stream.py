@@ -118,11 +118,20 @@ class TaskStream:
         deals = [rng.permutation(len(born)) for _ in range(-(-self.n_contexts // len(born)))]
         return born[int(np.concatenate(deals)[context])]
 
-    def draw(self, number: int) -> DrawnTask:
-        """Task `number`, from 0."""
+    def draw(self, number: int, context: int | None = None) -> DrawnTask:
+        """Task `number`, from 0; in a given context, if one is chosen in place of drawn.
+
+        Raises
+        ------
+        InputError
+            There is no such context.
+        """
+        if context is not None and not 0 <= context < self.n_contexts:
+            raise InputError(f"context must be from 0 to {self.n_contexts - 1}, got {context}")
         rng = stream(self.seed, "task stream", "task", number)
         weights = np.arange(1, self.n_contexts + 1) ** -float(self.zipf)
-        context = int(rng.choice(self.n_contexts, p=weights / weights.sum()))
+        drawn_context = int(rng.choice(self.n_contexts, p=weights / weights.sum()))
+        context = drawn_context if context is None else context
         present, loyal = self.present(number), rng.random() < self.loyalty
         drawn = present[int(rng.integers(len(present)))]
         arriving = next((name for name, first in self.arrivals.items() if first == number), None)

@@ -1,9 +1,11 @@
 """What the agent would rather learn next: contexts by entropy × frequency, types by what is unknown of them.
 
-High entropy of the types in a context has two causes (thesis §3.3.2, §5.2): tasks of the context disagree, or
-their types were never made out. The first stays however much is seen, the second falls with more episodes:
+High entropy of the types in a context has several causes (thesis §3.3.2, §5.2):
 
-    H[P(τ | c)] = mean H of the tasks' beliefs (never made out) + mutual information (tasks disagree)
+    H[P(τ | c)] = mutual information (tasks disagree) + mean H of the tasks' beliefs (types never made out)
+                + what is left of the prior's own doubt (too few tasks were seen there)
+
+Tasks that disagree stay so however much is seen; the other two fall with more episodes.
 """
 
 from dataclasses import dataclass
@@ -11,6 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.core.errors import InputError
 from lifelore.core.metrics import entropy
 
 
@@ -22,7 +25,7 @@ class CuriousContext:
     ----------
     context : int
     entropy : float
-        Of the prior over types, nats.
+        Of the prior over types for the next task there, nats.
     frequency : float
         Share of all tasks.
     disagreement : float
@@ -44,6 +47,11 @@ class CuriousContext:
         """Part of the entropy that more episodes or better features would remove, nats."""
         return max(0.0, self.entropy - self.disagreement)
 
+    @property
+    def learnable(self) -> float:
+        """Unsure part × frequency."""
+        return self.unsure * self.frequency
+
 
 @dataclass(frozen=True)
 class CuriousType:
@@ -64,19 +72,37 @@ class CuriousType:
 
 
 def curious_contexts(knowledge: Knowledge) -> list[CuriousContext]:
-    """Contexts by interest, the most interesting first."""
+    """Contexts that were met, the most interesting first."""
+    sighted = knowledge.sighted()
+    if not sighted:
+        return []
     beliefs: dict[int, list[np.ndarray]] = {}
-    for (_, context), belief in knowledge.sighted().items():
+    for (_, context), belief in sighted.items():
         beliefs.setdefault(context, []).append(belief)
-    total = sum(len(tasks) for tasks in beliefs.values())
-    found = []
+    prior, today, found = knowledge.type_prior(), max(date for date, _ in sighted) + 1, []
     for context, tasks in beliefs.items():
         rows = np.array(tasks)
         rows /= rows.sum(axis=1, keepdims=True)
-        all_of_it = float(entropy(rows.mean(axis=0)[None])[0])
-        unsure = float(entropy(rows).mean())
-        found.append(CuriousContext(context, all_of_it, len(rows) / total, max(0.0, all_of_it - unsure)))
+        doubt = float(entropy(prior.prior(context, today)[None])[0])
+        shared = float(entropy(rows.mean(axis=0)[None])[0] - entropy(rows).mean())
+        found.append(CuriousContext(context, doubt, len(rows) / len(sighted), min(doubt, max(0.0, shared))))
     return sorted(found, key=lambda one: (-one.interest, one.context))
+
+
+def context_to_practise(knowledge: Knowledge, generator: np.random.Generator) -> int:
+    """A context for a task in spare time, drawn in proportion to its interest.
+
+    Raises
+    ------
+    InputError
+        No context was met yet.
+    """
+    found = curious_contexts(knowledge)
+    if not found:
+        raise InputError("a context to practise needs tasks that were lived; live through some first")
+    # Where nothing is in doubt, often met contexts are practised.
+    weights = np.array([one.interest + 1e-9 * one.frequency for one in found])
+    return found[int(generator.choice(len(found), p=weights / weights.sum()))].context
 
 
 def curious_types(knowledge: Knowledge) -> list[CuriousType]:

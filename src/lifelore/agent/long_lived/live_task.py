@@ -85,6 +85,20 @@ def live_task(
     (TaskLog, list of Record)
         What happened, and the records by which memory adds what was learnt.
     """
+    lived, news = attempt_task(knowledge, drawn, task, abilities, settings, name, seed)
+    return lived, knowledge.learn(news)
+
+
+def attempt_task(
+    knowledge: Knowledge,
+    drawn: DrawnTask,
+    task: AgentTask,
+    abilities: Abilities,
+    settings: LivingSettings,
+    name: str,
+    seed: int = 0,
+) -> tuple[TaskLog, TaskNews]:
+    """`live_task` without its last step: what happened, and what `Knowledge.learn` would take in."""
     known, shared = knowledge.known_types(), knowledge.shared
     lived = TaskLog(drawn, types=[one.name for one in known.types])
 
@@ -129,7 +143,7 @@ def live_task(
 
     # Learn and remember: types learn the effects as far as they are believed, contexts their best acts and types.
     contexts, best = task.best_acts(known.laws(recognition.own)[row], shared)
-    return lived, knowledge.learn(TaskNews(drawn.context, drawn.number, belief, effects, moves, contexts, best))
+    return lived, TaskNews(drawn.context, drawn.number, belief, effects, moves, contexts, best)
 
 
 def decide(

@@ -196,11 +196,11 @@ class TaskFamily(Protocol):
         """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
         ...
 
-    def meet(self, number: int, abilities: Abilities) -> tuple[DrawnTask, AgentTask]:
-        """Task `number`, drawn and met."""
+    def meet(self, number: int, abilities: Abilities, context: int | None = None) -> tuple[DrawnTask, AgentTask]:
+        """Task `number`, drawn and met; in a given context, if the agent chooses one in its spare time."""
         ...
 
-    def best_return(self, number: int) -> float:
+    def best_return(self, number: int, context: int | None = None) -> float:
         """The best possible return of task `number`, for scoring; the agent never asks."""
         ...
 

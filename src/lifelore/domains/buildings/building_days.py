@@ -215,9 +215,9 @@ class BuildingDays:
     def _days(self) -> dict[str, Day]:
         return {name: day_in(self.world, name, self.seed) for name in self.stream.types}
 
-    def task(self, number: int) -> tuple[DrawnTask, BuildingWay]:
-        """Task `number` and its world; the same for the same number."""
-        drawn, days = self.stream.draw(number), self._days
+    def task(self, number: int, context: int | None = None) -> tuple[DrawnTask, BuildingWay]:
+        """Task `number` and its world, in a chosen context if given; the same for the same number."""
+        drawn, days = self.stream.draw(number, context), self._days
         # Destinations are open on every day, so that days cannot be told apart by them.
         always = np.logical_and.reduce([day.open for day in days.values()])
         places = stream(self.seed, "building days", "destinations").permutation(np.flatnonzero(always))

@@ -84,14 +84,14 @@ class BuildingFamily:
             into[: self.n_cells][untried] = SPREAD * (self.entries[untried] @ own)
         return found
 
-    def meet(self, number: int, abilities: Abilities) -> "tuple[DrawnTask, WayTask]":
+    def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, WayTask]":
         """Way `number`, drawn and met; there are no relations to perceive."""
-        drawn, way = self.days.task(number)
+        drawn, way = self.days.task(number, context)
         return drawn, WayTask(self, way)
 
-    def best_return(self, number: int) -> float:
+    def best_return(self, number: int, context: int | None = None) -> float:
         """Points of the best way for who knows the day."""
-        return self.days.task(number)[1].best_return
+        return self.days.task(number, context)[1].best_return
 
     def cause_name(self, cause: int) -> str:
         """A cause in words."""

@@ -58,20 +58,20 @@ class FactoryFamily:
     groups = np.arange(len(ACTS)) // N_COMPONENTS
     judges = np.ones(len(ACTS), np.bool_)
 
-    def order(self, number: int) -> tuple[DrawnTask, CustomerOrder]:
+    def order(self, number: int, context: int | None = None) -> tuple[DrawnTask, CustomerOrder]:
         """Order `number`, drawn and as the world has it."""
-        return FactoryCustomers(self.stream, self.seed).task(number)
+        return FactoryCustomers(self.stream, self.seed).task(number, context)
 
-    def meet(self, number: int, abilities: Abilities) -> "tuple[DrawnTask, OrderTask]":
+    def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
-        drawn, order = self.order(number)
+        drawn, order = self.order(number, context)
         if number not in self.tables:
             self.tables[number] = OrderTable.of(order.factory)
         return drawn, OrderTask(order, self.tables[number])
 
-    def best_return(self, number: int) -> float:
+    def best_return(self, number: int, context: int | None = None) -> float:
         """The best discounted return."""
-        return self.order(number)[1].best_return
+        return self.order(number, context)[1].best_return
 
     def smoothed(self, counts: Array) -> Array:
         """The counts: being paid and being refused are not similar."""

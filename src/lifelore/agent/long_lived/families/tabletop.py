@@ -141,9 +141,9 @@ class TabletopFamily:
         found[:, N_SITUATED:, :-1] += 0.25 * rewards[:, :, 1:]
         return found
 
-    def job(self, number: int) -> tuple[DrawnTask, JobReplay]:
+    def job(self, number: int, context: int | None = None) -> tuple[DrawnTask, JobReplay]:
         """Job `number`, with outcomes that equal actions share."""
-        drawn = self.stream.draw(number)
+        drawn = self.stream.draw(number, context)
         kind: JobType = job_type_named(drawn.hidden_type)
         tray = number if self.tray_numbers is None else self.tray_numbers[number]
         return drawn, JobReplay(self._tree(tray, kind.gripper), kind.user)
@@ -154,14 +154,16 @@ class TabletopFamily:
             self.trees[key] = OutcomeTree(sample_tray(self.seed, tray, TabletopSettings()), gripper)
         return self.trees[key]
 
-    def meet(self, number: int, abilities: Abilities) -> "tuple[DrawnTask, TabletopTask]":
+    def meet(
+        self, number: int, abilities: Abilities, context: int | None = None
+    ) -> "tuple[DrawnTask, TabletopTask]":
         """Task `number`, drawn and met."""
-        drawn, job = self.job(number)
+        drawn, job = self.job(number, context)
         return drawn, TabletopTask(job, abilities.perception, self.labelled)
 
-    def best_return(self, number: int) -> float:
+    def best_return(self, number: int, context: int | None = None) -> float:
         """The best possible return, from a search in the simulator."""
-        _, job = self.job(number)
+        _, job = self.job(number, context)
         return job.tree.best(job.user, MOST_SEARCHED).value
 
     def cause_name(self, cause: int) -> str:
