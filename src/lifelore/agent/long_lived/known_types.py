@@ -4,7 +4,8 @@ The law of a cause under type i, after the counts c of the present task:
 
     group(e)  ∝ Σ_j n_j(e), over all causes of the group, + α₀ p₀(e)
     pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
-    P_i(e)    ∝ n_i(e) + κ pooled(e) + w c(e)
+    type_i(e) ∝ n_i(e) + κ pooled(e)
+    P_i(e)    ∝ s type_i(e) + c(e)
 
 An unknown type has n = 0 and, instead of pooled, (1 − η) pooled + η p₀: it mostly behaves as types usually do,
 until its own task shows otherwise.
@@ -35,8 +36,8 @@ TELLING = 2.5
 """Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
 NEW = 0.3
 """Share of what a family calls possible in the law of an unknown type: it may differ from all known ones."""
-OWN = 3.0
-"""Weight w of an observation of the present task: it is about this very scene."""
+SCENE = 0.5
+"""Weight s of the type's law beside observations of the present task; the same scene mostly answers alike."""
 
 
 def effect_counts(family: TaskFamily, effects: Effects, weight: float = 1.0) -> ActionPrior:
@@ -128,9 +129,13 @@ class KnownTypes:
         """
         unknown = POOLED * NEW * (self.family.possible - self.pooled)
         rows = np.concatenate([self.counts, unknown[None]])
-        rows += POOLED * self.pooled + OWN * self.family.smoothed(own[None])
+        rows += POOLED * self.pooled
         if generator is not None:
-            rows = generator.standard_gamma(rows) + 1e-12 * rows
+            rows = _drawn(rows, generator)
+        rows *= SCENE / rows.sum(axis=2, keepdims=True)
+        rows += self.family.smoothed(own[None])
+        if generator is not None:
+            rows = _drawn(rows, generator)
         return rows / rows.sum(axis=2, keepdims=True)
 
     def differs(self, number: int, effects: Effects) -> bool:
@@ -157,6 +162,11 @@ class KnownTypes:
         """Compute the laws again: counts have changed."""
         for name in ("counts", "pooled", "judged"):
             self.__dict__.pop(name, None)
+
+
+def _drawn(counts: Array, generator: np.random.Generator) -> Array:
+    """Gammas of the counts; a row in proportion is a draw of its Dirichlet law."""
+    return generator.standard_gamma(counts) + 1e-12 * counts
 
 
 def evidence_for_two(first: Array, second: Array, pooled: Array) -> float:

@@ -67,17 +67,21 @@ class Recognition:
         return np.append((1 - unknown) * self.agent.belief, unknown)
 
     def observe(self, effects: tuple[tuple[int, int], ...]) -> None:
-        """Take in the effects of an act; a cause counts for the alarm at its first effect alone."""
+        """Take in the effects of an act; a cause tells of the type at its first effect alone.
+
+        The same scene answers the same act alike: repeats are no news of the type.
+        """
         for cause, effect in effects:
             self.own[cause, effect] += 1
             if self.agent is None or self.alarm is None or cause not in self._place:
                 continue
+            if cause in self._judged:
+                continue
+            self._judged.add(cause)
             place, belief = self._place[cause], self.agent.belief
             self.agent.update(place, effect)
-            if cause not in self._judged:
-                self._judged.add(cause)
-                self.alarm.observe(belief, place, effect)
-                self.highest = max(self.highest, self.alarm.score)
+            self.alarm.observe(belief, place, effect)
+            self.highest = max(self.highest, self.alarm.score)
 
     @property
     def alarmed(self) -> bool:

@@ -23,7 +23,6 @@ from lifelore.agent.long_lived.families.tray_features import (
     look_with_labels,
     look_without_relations,
 )
-from lifelore.agent.long_lived.known_types import OWN
 from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
@@ -74,6 +73,8 @@ N_SITUATED = N_SITUATIONS * GIVE_UP
 """Causes of results: an act in a situation; the causes of rewards follow."""
 MOST_SEARCHED = 150
 """Sequences that the search for the best possible return looks at; where it ends before, the best known counts."""
+OWN = 3.0
+"""Weight of a move of the present task beside those of earlier tasks: it is about this very scene."""
 BIN = 0.5
 """Width of a bin of rewards, points."""
 LOWEST, N_BINS = -10.0, 43
