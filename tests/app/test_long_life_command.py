@@ -6,7 +6,7 @@ from lifelore.memory import open_memory
 
 TASK = {
     "task", "context", "hidden_type", "best_return", "returns", "prior", "alarm", "alarm_score", "learnt",
-    "new_type", "first_episode", "last_episode",
+    "new_type", "first_episode", "last_episode", "spare",
 }  # fmt: skip
 
 
@@ -30,6 +30,26 @@ def test_a_life_goes_on_where_it_ended(ask, where):
     assert second["tasks"][0]["prior"]
     whole = live(ask, where.replace("memory", "whole"), tasks=8)
     assert whole["tasks"] == first["tasks"] + second["tasks"]
+
+
+def test_spare_time_goes_to_contexts_that_were_met(ask, where):
+    document = live(ask, where, "--spare", "3")
+    assert [task["spare"] for task in document["tasks"]] == [False] * 4 + [True] * 3
+    met = {task["context"] for task in document["tasks"][:4]}
+    assert {task["context"] for task in document["tasks"][4:]} <= met
+    for more, rule in (
+        (["--spare", "-1"], "at least 0"),
+        (["--spare", "1", "--agent", "scratch"], "must be full"),
+    ):
+        refused = ask("live", "--domain", "factory-customers", "--memory", where, *more)
+        assert refused.status == 2
+        assert rule in refused.err
+
+
+def test_spare_time_is_for_jobs_with_hidden_types(ask, where):
+    refused = ask("live", "--domain", "rooms", "--memory", where, "--spare", "2")
+    assert refused.status == 2
+    assert "applies to jobs with hidden types alone" in refused.err
 
 
 def test_an_ablation_teaches_nobody(ask, where):

@@ -108,6 +108,10 @@ def live(
     labels: Annotated[
         bool, Option("--labels", help="tabletop: the points of the pictures carry the objects' labels.")
     ] = False,
+    spare: Annotated[
+        int,
+        Option(help="Jobs with hidden types: further tasks, in contexts that the agent is curious about."),
+    ] = 0,
     episodes: Annotated[
         int | None,
         Option(
@@ -150,11 +154,17 @@ def live(
     one.
     """
     from lifelore.agent.long_lived.families.by_name import FAMILIES
+    from lifelore.core.errors import InputError
 
     if domain in FAMILIES:
         from lifelore.app.long_life_command import live_long_life
 
         return live_long_life(context)
+    if labels or spare:
+        name = "--labels" if labels else "--spare"
+        raise InputError(
+            f"{name} applies to jobs with hidden types alone ({', '.join(FAMILIES)}), not to {domain}"
+        )
     from contextlib import nullcontext
 
     from lifelore.agent.live.life import live as live_through

@@ -6,7 +6,7 @@ import typer
 
 Option = typer.Option
 
-APPLY = {"domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "as_json"}
+APPLY = {"domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "spare", "as_json"}
 """Options of `lifelore live` that apply to these domains."""
 
 
@@ -33,6 +33,7 @@ def live_long_life(context: typer.Context) -> int:
         given["memory"],
         living,
         given["labels"],
+        given["spare"],
     )
     with stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(settings, progress, stop)
@@ -40,7 +41,7 @@ def live_long_life(context: typer.Context) -> int:
         print_json(report)
     else:
         _print_report(report, settings.robot)
-    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks else 0
+    return INTERRUPTED if len(report["tasks"]) < settings.n_tasks + settings.n_spare else 0
 
 
 def _print_report(report: dict[str, Any], robot: str) -> None:
@@ -52,7 +53,7 @@ def _print_report(report: dict[str, Any], robot: str) -> None:
     table = Table("task", "context", "first return", "last return", "best possible", "learnt by", "")
     for task in report["tasks"]:
         returns = [f"{task[name]:.2f}" for name in ("best_return",)]
-        new = "a new type" if task["new_type"] else ""
+        new = ", ".join(["spare time"] * task["spare"] + ["a new type"] * task["new_type"])
         row = (str(task["task"]), str(task["context"]), f"{task['returns'][0]:.2f}", f"{task['returns'][-1]:.2f}")
         table.add_row(*row, *returns, task["learnt"], new)
     console.print(table)

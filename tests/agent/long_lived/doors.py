@@ -36,11 +36,11 @@ class Doors:
     def smoothed(self, counts):
         return counts
 
-    def meet(self, number, abilities):
-        drawn = self.stream.draw(number)
+    def meet(self, number, abilities, context=None):
+        drawn = self.stream.draw(number, context)
         return drawn, DoorTask(drawn)
 
-    def best_return(self, number):
+    def best_return(self, number, context=None):
         return 10 * 0.99 + COST * 1.1
 
     def cause_name(self, cause):

@@ -4,11 +4,12 @@ import numpy as np
 import pytest
 from tests.agent.long_lived.doors import Doors
 
-from lifelore.agent.long_lived.curiosity import curious_contexts, curious_types
+from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
 from lifelore.agent.long_lived.explanation import explained, task_document
-from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import TaskStream
 
@@ -124,6 +125,17 @@ def test_the_explanation_names_belief_act_and_novelty(settled):
     assert "the agent knew no type yet" in "\n".join(explained(task_document(tasks[0], family, 8.8)))
 
 
+def test_spare_time_goes_where_the_type_is_in_doubt():
+    family = Doors(TaskStream(("0", "1"), n_contexts=2, loyalty=1.0, zipf=0.0))
+    knowledge = lived(family, 30)[0]
+    with pytest.raises(InputError, match="live through some first"):
+        context_to_practise(Knowledge.empty(family), np.random.default_rng(0))
+    drawn = [context_to_practise(knowledge, np.random.default_rng(seed)) for seed in range(60)]
+    first, second = curious_contexts(knowledge)
+    share = first.interest / (first.interest + second.interest)
+    assert abs(drawn.count(first.context) / 60 - share) < 0.2
+
+
 def test_curiosity_tells_disagreement_from_ignorance():
     mixed = Doors(TaskStream(("0", "1"), n_contexts=1, loyalty=0.0))
     sure = Doors(TaskStream(("0", "1"), n_contexts=1, loyalty=1.0))
@@ -131,6 +143,21 @@ def test_curiosity_tells_disagreement_from_ignorance():
     (clear,) = curious_contexts(lived(sure, 30)[0])
     assert torn.interest > 2 * clear.interest
     assert torn.disagreement > torn.unsure
+    assert torn.learnable == torn.unsure * torn.frequency
     types = curious_types(lived(mixed, 30)[0])
     assert all(0 <= one.untried <= 1 for one in types)
     assert [one.untried for one in types] == sorted((one.untried for one in types), reverse=True)
+
+
+def test_few_tasks_are_a_cause_of_doubt_of_their_own():
+    """A context that was met once may have any of the known types; met often, it has its own."""
+    family = Doors(TaskStream(("0", "1"), n_contexts=2, loyalty=1.0, zipf=0.0))
+    knowledge = lived(family, 30)[0]
+    often = min(one.unsure for one in curious_contexts(knowledge))
+    kind = knowledge.known_types().types[0].members[0]
+    seldom = {kind: 1.0}
+    nothing = np.zeros((0, 4), np.bool_)
+    knowledge.learn(TaskNews(7, 31, seldom, [], [], np.zeros(0, np.int64), nothing))
+    (once,) = [one for one in curious_contexts(knowledge) if one.context == 7]
+    assert once.disagreement == 0
+    assert once.unsure > 2 * often

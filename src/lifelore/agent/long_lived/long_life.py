@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.action.priors.action_prior import KIND
+from lifelore.agent.long_lived.curiosity import context_to_practise
 from lifelore.agent.long_lived.explanation import task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
@@ -17,6 +18,7 @@ from lifelore.agent.long_lived.task_family import AGENTS, TaskFamily
 from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress, Record
+from lifelore.core.streams import stream
 from lifelore.memory import Memory, open_memory
 
 
@@ -41,6 +43,8 @@ class LongLifeSettings:
     living : LivingSettings
     labelled : bool
         tabletop: whether the points of the pictures carry the objects' labels.
+    n_spare : int
+        Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
 
     Raises
     ------
@@ -56,12 +60,19 @@ class LongLifeSettings:
     memory: str | None = None
     living: LivingSettings = field(default_factory=LivingSettings)
     labelled: bool = False
+    n_spare: int = 0
 
     def __post_init__(self) -> None:
         if self.agent not in AGENTS:
             raise NotFoundError(f"agent must be one of {', '.join(AGENTS)} in {self.domain}, got {self.agent!r}")
         if self.n_tasks < 1:
             raise InputError(f"tasks must be at least 1, got {self.n_tasks}")
+        if self.n_spare < 0:
+            raise InputError(f"spare must be at least 0, got {self.n_spare}")
+        if self.n_spare and self.agent != "full":
+            raise InputError(
+                f"spare tasks are chosen by what memory holds; the agent must be full, got {self.agent}"
+            )
 
     def family(self) -> TaskFamily:
         """The family of tasks."""
@@ -99,23 +110,27 @@ def live_long(
     documents: list[dict[str, Any]] = []
     with open_memory(settings.memory) as memory:
         knowledge = recalled(family, memory) if settings.agent == "full" else Knowledge.empty(family)
+        n_tasks = settings.n_tasks + settings.n_spare
         if progress:
-            progress(0, settings.n_tasks, "")
-        for done in range(settings.n_tasks):
+            progress(0, n_tasks, "")
+        for done in range(n_tasks):
             if stop is not None and stop.is_set():
                 break
             with memory.taken_task(settings.robot, process=process) as number:
                 if not abilities.memory:
                     knowledge = Knowledge.empty(family)
-                drawn, task = family.meet(number, abilities)
+                context = None
+                if done >= settings.n_tasks:
+                    context = context_to_practise(knowledge, stream(settings.seed, "spare time", number))
+                drawn, task = family.meet(number, abilities, context)
                 name = f"{settings.robot}.{number}"
                 lived, records = live_task(knowledge, drawn, task, abilities, settings.living, name, settings.seed)
-                best = family.best_return(number)
-                document = task_document(lived, family, best)
+                best = family.best_return(number, context)
+                document = task_document(lived, family, best) | {"spare": context is not None}
                 _store(memory, settings, records, process, done, number, document)
             documents.append(document)
             if progress:
-                progress(done + 1, settings.n_tasks, f"task {number}: {_headline(lived, best)}")
+                progress(done + 1, n_tasks, f"task {number}: {_headline(lived, best)}")
     return {
         "domain": settings.domain,
         "agent": settings.agent,
