@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
-from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.experiments.bench.lives import tabletop_lives
-from lifelore.experiments.bench.lives.tabletop_lives import N_TASKS, LifeResult, curve, lived_round, report
+from lifelore.experiments.bench.lives.tabletop_lives import (
+    LIVING_AGENTS,
+    N_TASKS,
+    RAW,
+    LifeResult,
+    curve,
+    lived_round,
+    report,
+)
+from lifelore.experiments.engine.cell_store import CellStore
 
 
 def result(first, spills=0.0, n_types=3):
@@ -15,9 +23,10 @@ def result(first, spills=0.0, n_types=3):
 
 
 def lives(n=4):
-    firsts = {"full": 7.0, "no-perception": 4.0, "no-prior": 6.0, "no-reuse": 5.0, "scratch": 0.0}
+    firsts = {"full": 7.0, "no-perception": 4.0, "no-prior": 6.0, "no-reuse": 5.0, "scratch": 0.0, RAW: 6.5}
     return [
-        {agent: result(firsts[agent] + 0.1 * i, float(agent == "scratch")) for agent in AGENTS} for i in range(n)
+        {agent: result(firsts[agent] + 0.1 * i, float(agent == "scratch")) for agent in LIVING_AGENTS}
+        for i in range(n)
     ]
 
 
@@ -44,13 +53,19 @@ def test_the_figure_is_drawn(tmp_path):
 
 @pytest.mark.slow
 @pytest.mark.sim
-def test_a_short_round(monkeypatch):
+def test_a_short_round(monkeypatch, tmp_path):
     pytest.importorskip("mujoco", reason="needs the extra sim")
-    monkeypatch.setattr(tabletop_lives, "AGENTS", {name: AGENTS[name] for name in ("full", "scratch")})
-    (life,) = lived_round(5, True, n_tasks=2, lives=1)
-    again = lived_round(5, True, n_tasks=2, lives=1)[0]
-    assert sorted(life) == ["full", "scratch"]
-    for agent, found in life.items():
+    agents = {name: LIVING_AGENTS[name] for name in ("full", "scratch", RAW)}
+    monkeypatch.setattr(tabletop_lives, "LIVING_AGENTS", agents)
+    store = CellStore(tmp_path, {"code": "as now"})
+    (life,) = lived_round(5, n_tasks=2, lives=1, store=store)
+    assert list(life) == ["full", "scratch", RAW]
+    for found in life.values():
         assert len(found.first) == 4
         assert (found.first <= found.best + 1e-9).all()
-        np.testing.assert_array_equal(found.first, again[agent].first)
+    # A round that was stopped does not live a finished life again.
+    monkeypatch.setattr(tabletop_lives, "_life", None)
+    (again,) = lived_round(5, n_tasks=2, lives=1, store=store)
+    for agent, found in life.items():
+        np.testing.assert_allclose(found.first, again[agent].first, atol=1e-6)
+        assert found.n_types == again[agent].n_types

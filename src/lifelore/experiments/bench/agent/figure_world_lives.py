@@ -48,6 +48,7 @@ def draw_world_lives(panels: Mapping[str, tuple[Sequence[float], Mapping[str, Se
                     )
             axes.set(title=world, xlabel="task of the life", ylabel="points missed, first episode")
             axes.set_ylim(bottom=0)
+            axes.xaxis.get_major_locator().set_params(integer=True)
             axes.legend(loc="lower left", frameon=False, fontsize=7)
             if outside:
                 axes.text(

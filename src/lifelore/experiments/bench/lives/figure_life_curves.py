@@ -3,12 +3,19 @@
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, VERMILION, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, SKY, VERMILION, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-COLOURS = {"full": BLUE, "no-perception": ORANGE, "no-prior": GREEN, "no-reuse": VERMILION, "scratch": GREY}
+COLOURS = {
+    "full": BLUE,
+    "full, raw clouds": SKY,
+    "no-perception": ORANGE,
+    "no-prior": GREEN,
+    "no-reuse": VERMILION,
+    "scratch": GREY,
+}
 
 
 def draw_life_curves(curves: Mapping[str, tuple[Any, Any]], new_from: int, n_lives: int) -> "Figure":

@@ -6,10 +6,11 @@ lives each life from the start, so that all differences are paired. The best pos
 the simulator; it knows the true scene and the hidden type.
 """
 
+import time
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import Any, Self, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +19,7 @@ from lifelore.agent.long_lived.families.by_name import TABLETOP_TYPES
 from lifelore.agent.long_lived.families.tabletop import N_SITUATED, SPILLED, TabletopFamily
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
-from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.agent.long_lived.task_family import AGENTS, Abilities
 from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
@@ -26,6 +27,8 @@ from lifelore.core.streams import stream
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
 from lifelore.domains.task_stream import TaskStream
 from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.engine.cell_store import CellStore
+from lifelore.experiments.engine.source_key import source_key
 
 Array = NDArray[np.float64]
 
@@ -33,6 +36,9 @@ LIVES = 3
 """Lives of a round."""
 N_TASKS = 40
 """Tasks of the first part of a life, and of the second on new trays."""
+RAW = "full, raw clouds"
+LIVING_AGENTS = AGENTS | {RAW: AGENTS["full"]}
+"""The agent and its ablations see points with labels; one sees raw clouds."""
 LIVING = LivingSettings(n_episodes=5)
 OUT = Path("results")
 
@@ -54,6 +60,16 @@ class LifeResult:
     alarms: Array
     n_types: int
 
+    def to_dict(self) -> dict[str, Any]:
+        """As JSON data."""
+        return {name: np.round(value, 6).tolist() for name, value in vars(self).items()}
+
+    @classmethod
+    def from_dict(cls, plain: Mapping[str, Any]) -> Self:
+        """From `to_dict`."""
+        arrays = {name: np.array(value) for name, value in plain.items() if name != "n_types"}
+        return cls(**arrays, n_types=plain["n_types"])
+
     def share(self, part: slice, episode: str = "first") -> float:
         """Share of the best possible return over some tasks."""
         return float(getattr(self, episode)[part].sum() / self.best[part].sum())
@@ -63,25 +79,47 @@ NEW = slice(N_TASKS, None)
 
 
 def lived_round(
-    seed: int, labelled: bool, n_tasks: int = N_TASKS, lives: int = LIVES
+    seed: int, n_tasks: int = N_TASKS, lives: int = LIVES, store: CellStore | None = None
 ) -> list[dict[str, LifeResult]]:
-    """The lives of a round, each by agent."""
+    """The lives of a round, each by agent; they share trays, and so the outcomes of equal actions on them.
+
+    A finished life is kept in the store, and a round that was stopped goes on with the next.
+    """
     trees: dict[tuple[int, str], OutcomeTree] = {}
-    return [_life(seed, number, labelled, n_tasks, trees) for number in range(lives)]
+    found = []
+    for number in range(lives):
+        cell = {"round": seed, "life": number}
+        kept = store.get(cell) if store else None
+        if kept is None:
+            began = time.perf_counter()
+            life = _life(seed, number, n_tasks, trees)
+            if store:
+                plain = {agent: one.to_dict() for agent, one in life.items()}
+                store.put(cell, plain, round(time.perf_counter() - began, 1))
+        else:
+            life = {agent: LifeResult.from_dict(one) for agent, one in kept["result"].items()}
+        found.append(life)
+    return found
 
 
 def _life(
-    seed: int, number: int, labelled: bool, n_tasks: int, trees: dict[tuple[int, str], OutcomeTree]
+    seed: int, number: int, n_tasks: int, trees: dict[tuple[int, str], OutcomeTree]
 ) -> dict[str, LifeResult]:
     rng = stream(seed, "tabletop lives", "trays", number)
     trays = [*rng.permutation(n_tasks).tolist(), *(n_tasks + rng.permutation(n_tasks)).tolist()]
     types = TaskStream(TABLETOP_TYPES, seed=1000 * seed + number)
-    family = TabletopFamily(types, seed, labelled, trees, tuple(trays))
-    return {agent: _lived(family, agent, 2 * n_tasks, seed) for agent in AGENTS}
+    families = {raw: TabletopFamily(types, seed, not raw, trees, tuple(trays)) for raw in (False, True)}
+    lived = {
+        name: _lived(families[name == RAW], agent, 2 * n_tasks, seed) for name, agent in LIVING_AGENTS.items()
+    }
+    # After all agents have lived: what one of them found is possible for all.
+    best = np.array([families[False].best_return(task) for task in range(2 * n_tasks)])
+    return {name: _result(tasks, best, n_types) for name, (tasks, n_types) in lived.items()}
 
 
-def _lived(family: TabletopFamily, agent: str, n_tasks: int, seed: int) -> LifeResult:
-    abilities, knowledge = AGENTS[agent], Knowledge.empty(family)
+def _lived(family: TabletopFamily, abilities: Abilities, n_tasks: int, seed: int) -> tuple[list[TaskLog], int]:
+    """The tasks of a life, and the number of types that are known at its end."""
+    knowledge = Knowledge.empty(family)
     tasks: list[TaskLog] = []
     for number in range(n_tasks):
         if not abilities.memory:
@@ -89,13 +127,17 @@ def _lived(family: TabletopFamily, agent: str, n_tasks: int, seed: int) -> LifeR
         drawn, task = family.meet(number, abilities)
         lived, _ = live_task(knowledge, drawn, task, abilities, LIVING, f"robot.{number}", seed)
         tasks.append(lived)
+    return tasks, len(knowledge.known_types())
+
+
+def _result(tasks: list[TaskLog], best: Array, n_types: int) -> LifeResult:
     return LifeResult(
         np.array([task.returns[0] for task in tasks]),
         np.array([task.returns[-1] for task in tasks]),
-        np.array([family.best_return(number) for number in range(n_tasks)]),
+        best,
         np.array([n_spills(task) for task in tasks], np.float64),
         np.array([task.alarm for task in tasks], np.float64),
-        len(knowledge.known_types()),
+        n_types,
     )
 
 
@@ -108,13 +150,15 @@ def n_spills(task: TaskLog) -> int:
 def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
     """Rows and goals; see `lifelore.experiments.bench.bench`. A round is three lives on eighty trays of its own.
 
-    Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`.
+    Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`. A bench that
+    was stopped goes on with the life that it was in.
     """
     from joblib import Parallel, delayed
 
+    store = CellStore(out / "cells" / "tabletop_lives", {"code": source_key(__name__)})
     done: list[list[dict[str, LifeResult]]] = []
     progress(0, repeats, "rounds")
-    work = (delayed(lived_round)(seed, True) for seed in range(repeats))
+    work = (delayed(lived_round)(seed, store=store) for seed in range(repeats))
     rounds = cast(Iterable[Any], Parallel(n_jobs=min(2, repeats), return_as="generator")(work))
     for lives in rounds:
         done.append(lives)
@@ -127,10 +171,10 @@ def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> d
 
 def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
     """Rows and goals of some lives."""
-    shares = {agent: np.array([life[agent].share(NEW) for life in lives]) for agent in AGENTS}
-    spills = {agent: np.array([life[agent].spills[NEW].mean() for life in lives]) for agent in AGENTS}
+    shares = {agent: np.array([life[agent].share(NEW) for life in lives]) for agent in LIVING_AGENTS}
+    spills = {agent: np.array([life[agent].spills[NEW].mean() for life in lives]) for agent in LIVING_AGENTS}
     rows = []
-    for agent in AGENTS:
+    for agent in LIVING_AGENTS:
         early = [life[agent].share(slice(0, N_TASKS)) for life in lives]
         last = [life[agent].share(NEW, "last") for life in lives]
         rows += [
@@ -179,5 +223,5 @@ def _draw(lives: Sequence[Mapping[str, LifeResult]], out: Path) -> None:
     from lifelore.figures.style import save_figure
 
     out.mkdir(parents=True, exist_ok=True)
-    curves = {agent: curve(lives, agent) for agent in AGENTS}
+    curves = {agent: curve(lives, agent) for agent in LIVING_AGENTS}
     save_figure(draw_life_curves(curves, N_TASKS, len(lives)), out / "bench_tabletop_lives.png")
