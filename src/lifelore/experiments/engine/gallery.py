@@ -103,12 +103,13 @@ def _claim_figures(docs: Path) -> Iterator[Figure]:
 
 def _table(figures: Sequence[Figure], docs: Path) -> list[str]:
     """Two figures a row, their words beneath."""
-    lines = ["| | |", "|---|---|"]
-    for first in range(0, len(figures), 2):
-        pair = figures[first : first + 2]
-        shown = [f"![{_plain(figure.words)}]({_link(figure.file, docs)})" for figure in pair]
-        for cells in (shown, [figure.words for figure in pair]):
-            lines.append("| " + " | ".join([*cells, ""][:2]).rstrip() + " |")
+    width = min(2, len(figures))
+    lines = ["|" + " |" * width, "|" + "---|" * width]
+    for first in range(0, len(figures), width):
+        row = figures[first : first + width]
+        shown = [f"![{_plain(figure.words)}]({_link(figure.file, docs)})" for figure in row]
+        for cells in (shown, [figure.words for figure in row]):
+            lines.append("| " + " | ".join(cells) + " |" * (1 + width - len(row)))
     return lines
 
 
