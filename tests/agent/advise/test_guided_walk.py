@@ -141,8 +141,8 @@ def test_mistakes_are_named_and_change_nothing(maze, desk):
     take_step(maze, desk, "ada", 1, state, "north")
     with pytest.raises(InputError, match="walk must be new"):
         begin_walk(maze, desk, "ada")
-    for name in ("../map.yaml", "/etc/passwd", "attic"):
-        with pytest.raises(NotFoundError):
+    for name in ("../map.yaml", "/etc/passwd", "attic", "building:77"):
+        with pytest.raises(NotFoundError, match=r"building must be one of building:0, .*serve a map"):
             walk_building(name, {})
 
 

@@ -17,6 +17,7 @@ from lifelore.agent.advise.advice_desk import AdviceDesk
 from lifelore.agent.advise.walk_building import WalkBuilding, walk_building
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.tokens import add_token
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import open_memory
 
@@ -42,6 +43,11 @@ class Walker:
 
     def ready(self) -> None:
         expect(self.page.locator("#errand")).to_have_text(re.compile(r"^Find the .* · 0 steps"), timeout=60_000)
+
+    def begin(self, building: str) -> None:
+        self.page.get_by_role("combobox", name="Building").select_option(building)
+        self.page.get_by_role("button", name="New start").click()
+        self.ready()
 
     def press(self, move: str) -> None:
         self.page.keyboard.press(KEYS[move])
@@ -71,8 +77,8 @@ def test_a_person_gets_lost_is_advised_and_finds_the_place(
 ):
     page = open_page(serve_pages() + "/walk")
     walker = Walker(page)
-    page.get_by_role("combobox", name="Building").select_option(MAZE)
-    walker.ready()
+    walker.begin(MAZE)
+    expect(page.locator("#map")).to_be_focused()
     expect(page.locator("#map")).to_have_attribute("role", "img")
 
     wall = closed_move(page)
@@ -113,10 +119,8 @@ def test_without_advice_there_are_no_arrows_and_the_curve_goes_on(
 ):
     page = open_page(serve_pages() + "/walk", PHONE)
     walker = Walker(page)
-    page.get_by_role("combobox", name="Building").select_option(MAZE)
-    walker.ready()
     page.get_by_label("Advice when I seem lost").uncheck()
-    walker.ready()
+    walker.begin(MAZE)
     expect(page.locator("#counsel")).to_contain_text("Advice is off. P(M | H) 0.20")
     wall = closed_move(page)
     for _ in range(24):
@@ -137,6 +141,11 @@ def test_a_map_of_the_person_comes_first(serve_pages: Callable[..., str], open_p
     page.get_by_role("combobox", name="Building").focus()
     page.keyboard.press("ArrowDown")
     expect(page.get_by_role("combobox", name="Building")).to_have_value("building:0")
+    expect(page.locator("#errand")).to_contain_text("· 1 step ")
+    page.keyboard.press("Tab")
+    walker.press("south")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
     walker.ready()
 
 
@@ -168,8 +177,32 @@ def test_routes_check_what_they_are_given(tmp_path: Path):
             answer = client.post("/v1/walks/ada/steps", json=step | wrong)
             assert answer.status_code == 422, wrong
             assert answer.json()["error"]["message"]
-        for name in ("../map.yaml", "/etc/passwd", "attic", "advice:3/.."):
+        for name in ("../map.yaml", "/etc/passwd", "attic", "advice:3/..", "building:77"):
             answer = client.put("/v1/walks/ben", json={"building": name})
             assert answer.status_code == 404
-            assert answer.json()["error"]["message"].startswith("world must be a map")
+            assert answer.json()["error"]["message"].startswith("building must be one of")
         assert client.put("/v1/walks/ada", json={"building": MAZE}).status_code == 422
+
+
+def test_routes_answer_as_documented(tmp_path: Path):
+    schemathesis = pytest.importorskip("schemathesis", reason="needs the extra test")
+    from hypothesis import HealthCheck, given, settings
+    from schemathesis.specs.openapi.checks import positive_data_acceptance
+
+    # With a token file, requests for any host name pass.
+    token = add_token(str(tmp_path / "tokens"), "schemathesis", ["read", "write"])
+    app = app_with_pages(ServiceSettings(str(tmp_path / "m.db"), token_file=str(tmp_path / "tokens"), rate=0.0))
+    with TestClient(app):
+        routes = schemathesis.openapi.from_asgi("/openapi.json", app).include(path_regex="^/v1/walks")
+        found = list(routes.get_all_operations())
+        assert len(found) == 3
+        for operation in found:
+
+            @given(case=operation.ok().as_strategy())
+            @settings(max_examples=15, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+            def answers(case):
+                case.call_and_validate(
+                    headers={"Authorization": f"Bearer {token}"}, excluded_checks=[positive_data_acceptance]
+                )
+
+            answers()

@@ -184,7 +184,7 @@ def _session(document: Mapping[str, Any], maps: Mapping[str, str]) -> AdviceSess
     cell = options.get("cell")
     if cell is not None and not SMALLEST_CELL <= cell <= LARGEST_CELL:
         raise InputError(f"cell must lie in [{SMALLEST_CELL}, {LARGEST_CELL}] metres, got {cell:g}")
-    options["world"] = served_world(options["world"], maps)
+    options["world"] = _world(options["world"], maps)
     with TemporaryDirectory() as folder:
         options["experts"] = _lines(folder, "experts", document["experts"])
         if document.get("goals"):
@@ -192,14 +192,7 @@ def _session(document: Mapping[str, Any], maps: Mapping[str, str]) -> AdviceSess
         return AdviceSession(AdviseSettings(**options))
 
 
-def served_world(name: str, maps: Mapping[str, str]) -> str:
-    """The file of a map that is served, or NAME:SEED of a world.
-
-    Raises
-    ------
-    NotFoundError
-        The name is neither.
-    """
+def _world(name: str, maps: Mapping[str, str]) -> str:
     if name in maps:
         return maps[name]
     # A name with other characters could be a path.

@@ -8,9 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from lifelore.agent.advise.advice_desk import served_world
 from lifelore.agent.advise.advise import AdviseSettings, world_settings
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.core.streams import stream
 from lifelore.domains.buildings.floor import floor_of, floor_of_cells
@@ -93,16 +92,19 @@ def walk_buildings(maps: Mapping[str, str]) -> list[dict[str, str]]:
 
 
 def walk_building(name: str, maps: Mapping[str, str]) -> WalkBuilding:
-    """The building of a served map, or of a name and seed such as ``building:0``.
+    """One of the `walk_buildings`.
 
     Raises
     ------
     NotFoundError
-        There is no such map or world.
+        No building has this name.
     InputError, StoreError
         The map breaks a rule or cannot be read, or the building is too large.
     """
-    settings = world_settings(AdviseSettings(served_world(name, maps), ""))
+    known = [found["name"] for found in walk_buildings(maps)]
+    if name not in known:
+        raise NotFoundError(f"building must be one of {', '.join(known)}, got '{name}'; serve a map to add it")
+    settings = world_settings(AdviseSettings(maps.get(name, name), ""))
     occupancy = map_from_settings(settings) if settings.domain == "building" else None
     world = world_from_settings(settings, occupancy)
     if world.n_states > MOST_STATES:

@@ -20,9 +20,8 @@ async function main() {
   at("controls").addEventListener("submit", (event) => {
     event.preventDefault();
     renew();
+    at("map").focus();
   });
-  at("building").addEventListener("change", renew);
-  at("advice").addEventListener("change", renew);
   document.addEventListener("keydown", onKey);
   for (const button of document.querySelectorAll("#moves button")) {
     button.addEventListener("click", () => guarded(() => move(button.dataset.move)));
@@ -33,8 +32,7 @@ async function main() {
 
 function onKey(event) {
   const direction = KEYS[event.key];
-  const inField = event.target.closest("select, input");
-  if (!direction || inField || event.ctrlKey || event.altKey || event.metaKey || !walk || walk.reached) return;
+  if (!direction || event.target.closest("select") || event.ctrlKey || event.altKey || event.metaKey || !walk || walk.reached) return;
   event.preventDefault();
   guarded(() => move(direction));
 }
