@@ -46,12 +46,13 @@ def made(root: Path, figures: dict[str, str], page: str) -> Path:
 def test_a_figure_stands_under_its_page_with_the_words_of_the_page(tmp_path):
     figures = dict.fromkeys(["docs/pictures/hall.png", "results/bench_doors.png", "results/bench_floors.png"], "")
     root = made(
-        tmp_path, figures, "# The hall\n![A hall](pictures/hall.png) [floors](../results/bench_floors.png)\n"
+        tmp_path, figures, "# The hall\n![A hall](pictures/hall.png) [figure](../results/bench_floors.png)\n"
     )
     text = write_gallery(root).read_text(encoding="utf-8")
     page, benchmarks = text.split("## Benchmarks that no page shows")
     assert "## [The hall](hall.md)" in page
-    assert "| ![A hall](pictures/hall.png) | ![floors](../results/bench_floors.png) |\n| A hall | floors |" in page
+    shown = "| ![A hall](pictures/hall.png) | ![lifelore bench floors](../results/bench_floors.png) |"
+    assert f"{shown}\n| A hall | `lifelore bench floors` |" in page
     assert "![lifelore bench doors](../results/bench_doors.png)" in benchmarks
     assert "| `lifelore bench doors` |" in benchmarks
 

@@ -79,16 +79,20 @@ def _shown_figures(docs: Path) -> Iterator[Figure]:
         for words, target in _SHOWN.findall(text):
             file = left.pop((page.parent / target).resolve(), None)
             if file is not None:
-                yield Figure(file, f"[{titles[name]}]({name})", words)
+                yield Figure(file, f"[{titles[name]}]({name})", words if words != "figure" else _command(file))
     for file in sorted(left.values()):
-        found = re.fullmatch(r"bench_(\w+)", file.stem)
-        if found:
-            yield Figure(file, BENCHMARKS, f"`lifelore bench {found.group(1)}`")
+        if file.stem.startswith("bench_"):
+            yield Figure(file, BENCHMARKS, _command(file))
         elif file.parent.name in NAMED:
             name, words = NAMED[file.parent.name]
             yield Figure(file, f"[{titles[name]}]({name})", words.format(stem=file.stem))
         else:
             raise NotFoundError(f"figure {file} has no words; show it on a page under docs, or delete it")
+
+
+def _command(file: Path) -> str:
+    """The command that draws the figure of a benchmark."""
+    return f"`lifelore bench {file.stem.removeprefix('bench_')}`"
 
 
 def _claim_figures(docs: Path) -> Iterator[Figure]:
