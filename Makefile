@@ -92,8 +92,9 @@ bench: setup-test ## Speed beside peers, side by side in one process
 soak: setup-test ## Long runs: 200 kills of lives, 50 of the service under load, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
-reproduction-pages: setup-test ## The pages of docs/reproduction from the committed results
+reproduction-pages: setup-test ## The pages of docs/reproduction and the gallery from the committed results
 	$(BIN)/python -m lifelore.experiments.engine.report
+	$(BIN)/python -m lifelore.experiments.engine.gallery
 
 docs: reproduction-pages $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
 	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs

@@ -152,8 +152,8 @@ def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
 def test_every_page_with_commands_is_walked():
     names = {path.relative_to(DOCS).with_suffix("").as_posix() for path in DOCS.rglob("*.md")}
     with_commands = {name for name in names if any(language == "sh" and code for language, code in blocks(name))}
-    # The pages of the shop, whose log comes with a package, and of the service have tests of their own.
-    assert with_commands <= {*EXPECTED, "install", "index", "fashion_shop", "service"}
+    # The shop, whose log comes with a package, the service, its pages and ROS 2 have tests of their own.
+    assert with_commands <= {*EXPECTED, "install", "index", "fashion_shop", "service", "pages", "ros2"}
     assert {name for name in names if name.startswith("start/")} <= set(EXPECTED)
 
 

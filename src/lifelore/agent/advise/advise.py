@@ -45,6 +45,8 @@ class AdviseSettings:
         Largest share of an agent's steps that are advised; default 0.4, and no limit for ``thesis``.
     cell, robot_radius : float, optional
         Metres, for maps: 0.5 and 0.2.
+    burst : float, optional
+        With a share below 1: number of saved steps at which advice begins; default 120.
     """
 
     world: str
@@ -56,6 +58,7 @@ class AdviseSettings:
     share: float | None = None
     cell: float | None = None
     robot_radius: float | None = None
+    burst: float | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
@@ -132,16 +135,25 @@ def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") 
 
 def world_of(settings: AdviseSettings) -> GridWorld:
     """The world of a map, or of a world's name and seed."""
+    return world_from_settings(world_settings(settings))
+
+
+def world_settings(settings: AdviseSettings) -> WorldSettings:
+    """The settings of the world of a map, or of a world's name and seed.
+
+    Raises
+    ------
+    InputError, NotFoundError
+        The seed is no number, or no world has this name.
+    """
     if settings.world.endswith((".yaml", ".yml")) or os.sep in settings.world:
-        return world_from_settings(WorldSettings("building", settings.world, settings.cell, settings.robot_radius))
+        return WorldSettings("building", settings.world, settings.cell, settings.robot_radius)
     domain, _, seed = settings.world.partition(":")
     if not seed.isdecimal() and ":" in settings.world:
         raise InputError(f"world must be a map's YAML, or NAME:SEED with a whole number, got '{settings.world}'")
     if domain not in domain_names():
         raise NotFoundError(f"world must be a map's YAML or one of {', '.join(domain_names())}, got '{domain}'")
-    return world_from_settings(
-        WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
-    )
+    return WorldSettings(domain, None, settings.cell, settings.robot_radius, seed=int(seed or 0))
 
 
 def _lines_of(path: str) -> Iterator[str]:
@@ -169,13 +181,14 @@ def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) 
 
 
 def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int], world: GridWorld) -> Advisor:
+    base = BETTER if settings.method == "better" else AdviceSettings()
+    chosen = replace(base, kappa=settings.kappa, window=settings.window)
+    if settings.share is not None:
+        chosen = replace(chosen, share=settings.share)
+    if settings.burst is not None:
+        chosen = replace(chosen, burst=settings.burst)
     if settings.method == "thesis":
-        chosen = AdviceSettings(
-            settings.kappa, settings.window, share=1.0 if settings.share is None else settings.share
-        )
         return Advisor([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
-    share = BETTER.share if settings.share is None else settings.share
-    chosen = replace(BETTER, kappa=settings.kappa, window=settings.window, share=share)
     models = extend_goal_models(goal_models(walks, goals, world), world.neighbour)
     return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
 

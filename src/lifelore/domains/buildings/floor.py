@@ -141,3 +141,10 @@ def floor_of(occupancy: OccupancyMap, world: GridWorld) -> Floor:
         about["robot_radius"],
         world.n_states,
     )
+
+
+def floor_of_cells(world: GridWorld) -> Floor:
+    """The floor of a grid world without a map: a pixel for each cell, solid where there is no state."""
+    free = world.state_of >= 0
+    occupancy = OccupancyMap(np.where(free, FREE, OCCUPIED).astype(np.uint8), world.frame.cell, world.frame.origin)
+    return Floor(occupancy, world.state_of, ~free, 0.0, world.n_states)

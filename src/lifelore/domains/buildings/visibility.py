@@ -43,7 +43,7 @@ def visible_places(floor: Floor, world: GridWorld, reach: float) -> sparse.csr_a
     n, anchors = world.n_states, np.ascontiguousarray(floor.anchors)
     pixels = reach / floor.occupancy.resolution
     # Anchors lie anywhere in their cells, so two of them may be nearer than their cells by almost one cell.
-    window = int(np.ceil(reach / world.about["cell"])) + 1
+    window = int(np.ceil(reach / world.frame.cell)) + 1
     block = max(1, _BLOCK // (2 * window + 1) ** 2)
     buffer = np.empty((min(n, block) * (2 * window + 1) ** 2, 2), np.int32)
     found, total = [], 0

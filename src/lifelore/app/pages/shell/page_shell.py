@@ -35,7 +35,9 @@ class Page:
         return f"/{self.name}"
 
 
-PAGES: tuple[Page, ...] = ()
+PAGES: tuple[Page, ...] = (
+    Page("walk", "Walk", "Find a place in a building that you do not know, with and without advice.", live=True),
+)
 HOME = Page("", "Lifelore", "Choose a page.")
 
 

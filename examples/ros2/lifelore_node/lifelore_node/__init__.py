@@ -1,0 +1,1 @@
+"""A ROS 2 node beside `lifelore serve`: exports out, point clouds in, relations out."""

@@ -1,0 +1,115 @@
+"""Fields of ROS 2 messages from the files and answers of Lifelore, as plain data. Needs no ROS.
+
+A message is a dict of its fields, as `rosidl_runtime_py.set_message.set_message_fields` takes it.
+"""
+
+import csv
+import io
+import json
+import math
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+from urllib.error import HTTPError
+from urllib.request import Request, urlopen
+
+import numpy as np
+import yaml
+from PIL import Image
+
+FLOAT32 = 7
+"""`sensor_msgs/PointField.FLOAT32`."""
+HIGHEST = 100
+"""Largest occupancy; larger grey values of a raw map are unknown, -1 in a message."""
+
+
+def occupancy_grid(path: str | Path) -> dict[str, Any]:
+    """Fields of `nav_msgs/OccupancyGrid` from a map of mode raw, such as `costs.yaml` and `keepout.yaml`.
+
+    A message has the lowest row first; a picture has the highest row first.
+    """
+    path = Path(path)
+    settings = yaml.safe_load(path.read_text(encoding="utf-8"))
+    if settings.get("mode") != "raw":
+        raise ValueError(
+            f"{path} must have mode raw, got {settings.get('mode')}; give a mask that Lifelore exported"
+        )
+    grey = np.asarray(Image.open(path.parent / settings["image"]), np.int16)
+    x, y, yaw = settings["origin"]
+    return {
+        "info": {
+            "resolution": float(settings["resolution"]),
+            "width": grey.shape[1],
+            "height": grey.shape[0],
+            "origin": pose(x, y, yaw),
+        },
+        "data": np.where(grey <= HIGHEST, grey, -1)[::-1].ravel().astype(np.int8).tolist(),
+    }
+
+
+def path_poses(path: str | Path, frame: str = "map") -> dict[str, Any]:
+    """Fields of `nav_msgs/Path` from the first path of the last task in `paths.csv`; each pose faces the next."""
+    rows = list(csv.DictReader(Path(path).read_text(encoding="utf-8").splitlines()))
+    if not rows:
+        raise ValueError(f"{path} must hold a path, got none; live through more tasks")
+    last = max(int(row["task"]) for row in rows)
+    points = [(float(row["x"]), float(row["y"])) for row in rows if (int(row["task"]), row["path"]) == (last, "0")]
+    steps = [(b[0] - a[0], b[1] - a[1]) for a, b in pairwise(points)]
+    headings = [math.atan2(dy, dx) for dx, dy in steps]
+    headings.append(headings[-1] if headings else 0.0)
+    header = {"frame_id": frame}
+    poses = [{"header": header, "pose": pose(x, y, yaw)} for (x, y), yaw in zip(points, headings, strict=True)]
+    return {"header": header, "poses": poses}
+
+
+def pose(x: float, y: float, yaw: float) -> dict[str, Any]:
+    """Fields of `geometry_msgs/Pose` on the floor."""
+    turned = {"x": 0.0, "y": 0.0, "z": math.sin(yaw / 2), "w": math.cos(yaw / 2)}
+    return {"position": {"x": float(x), "y": float(y), "z": 0.0}, "orientation": turned}
+
+
+def cloud_points(message: Any) -> np.ndarray:
+    """Points (n, 3) in metres of a `sensor_msgs/PointCloud2`; points that are not finite are left out."""
+    offsets = {field.name: field.offset for field in message.fields if field.datatype == FLOAT32}
+    missing = [name for name in "xyz" if name not in offsets]
+    if missing:
+        raise ValueError(f"the cloud must have the fields x, y and z of 32 bits, {missing[0]} is missing")
+    order = ">" if message.is_bigendian else "<"
+    layout = np.dtype({
+        "names": list("xyz"), "formats": [order + "f4"] * 3, "offsets": [offsets[name] for name in "xyz"],
+        "itemsize": message.point_step,
+    })  # fmt: skip
+    rows = np.frombuffer(bytes(message.data), np.uint8).reshape(message.height, message.row_step)
+    used = np.ascontiguousarray(rows[:, : message.width * message.point_step])
+    cloud = used.reshape(-1).view(layout)
+    points = np.column_stack([cloud[name] for name in "xyz"]).astype(np.float32)
+    return points[np.isfinite(points).all(axis=1)]
+
+
+def perceived(url: str, points: np.ndarray, token: str = "", seconds: float = 60.0) -> dict[str, Any]:
+    """The scene of a cloud as `POST /v1/perceive/cloud` of `lifelore serve` answers it.
+
+    Raises ValueError with the words of the service where it refuses, and OSError where it does not answer.
+    """
+    file = io.BytesIO()
+    np.save(file, points)
+    headers = {"Content-Type": "application/octet-stream"}
+    if token:
+        headers["Authorization"] = f"Bearer {token}"
+    request = Request(f"{url}/v1/perceive/cloud?format=npy", file.getvalue(), headers)
+    try:
+        with urlopen(request, timeout=seconds) as answer:
+            return json.load(answer)
+    except HTTPError as error:
+        raise ValueError(json.load(error)["error"]["message"]) from None
+
+
+def relations_text(scene: dict[str, Any]) -> dict[str, str]:
+    """Fields of `std_msgs/String`: stated relations, facts and warnings of a scene as JSON."""
+    keys = ("a", "b", "relation", "confidence")
+    stated = [
+        {key: found[key] for key in keys}
+        for found in scene["relations"]
+        if found["stated"] and found["relation"] != "none"
+    ]
+    return {"data": json.dumps({"relations": stated, "facts": scene["facts"], "warnings": scene["warnings"]})}

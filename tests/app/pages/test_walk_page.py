@@ -1,0 +1,208 @@
+"""The page `/walk` as a person uses it: lost, advised, at the goal, without advice, on a served map."""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("fastapi", reason="needs the extra web")
+pytest.importorskip("playwright", reason="needs the extra browser")
+
+from fastapi.testclient import TestClient
+from playwright.sync_api import Browser, Page, expect
+
+from lifelore.agent.advise.advice_desk import AdviceDesk
+from lifelore.agent.advise.walk_building import WalkBuilding, walk_building
+from lifelore.app.pages.mount import app_with_pages
+from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.tokens import add_token
+from lifelore.domains.grids.grid_world import MOVE_NAMES
+from lifelore.memory import open_memory
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+PHONE = {"width": 390, "height": 844}
+MAZE = "advice:3"
+OFFICE = Path(__file__).parents[3] / "examples" / "data" / "office.yaml"
+KEYS = {"north": "ArrowUp", "south": "ArrowDown", "east": "ArrowRight", "west": "ArrowLeft"}
+
+
+class Walker:
+    """A person at the page, who knows the name of the walk from its address."""
+
+    def __init__(self, page: Page) -> None:
+        self.page, self.steps, self.walk = page, 0, ""
+        page.on("request", self._note)
+
+    def _note(self, request) -> None:
+        found = re.search(r"/v1/walks/(walk-[0-9-]+)$", request.url)
+        if found:
+            self.walk, self.steps = found.group(1), 0
+
+    def ready(self) -> None:
+        expect(self.page.locator("#errand")).to_have_text(re.compile(r"^Find the .* · 0 steps"), timeout=60_000)
+
+    def begin(self, building: str) -> None:
+        self.page.get_by_role("combobox", name="Building").select_option(building)
+        self.page.get_by_role("button", name="New start").click()
+        self.ready()
+
+    def press(self, move: str) -> None:
+        self.page.keyboard.press(KEYS[move])
+        self.steps += 1
+        expect(self.page.locator("#errand")).to_contain_text(f"· {self.steps} step")
+
+
+def way(building: WalkBuilding, walk: str) -> list[str]:
+    """Moves of a shortest way of a walk's errand."""
+    state, place = building.errand(walk)
+    moves = []
+    while building.distance[place, state]:
+        target = building.world.neighbour[state]
+        left = np.where(target >= 0, building.distance[place, target], np.iinfo(np.int32).max)
+        moves.append(MOVE_NAMES[int(np.argmin(left))])
+        state = int(target[np.argmin(left)])
+    return moves
+
+
+def closed_move(page: Page) -> str:
+    words = page.locator("#seen").inner_text().split(".")[0]
+    return next(move for move in MOVE_NAMES if move not in words)
+
+
+def test_a_person_gets_lost_is_advised_and_finds_the_place(
+    serve_pages: Callable[..., str], open_page: Callable[..., Page], tmp_path: Path
+):
+    page = open_page(serve_pages() + "/walk")
+    walker = Walker(page)
+    walker.begin(MAZE)
+    expect(page.locator("#map")).to_be_focused()
+    expect(page.locator("#map")).to_have_attribute("role", "img")
+
+    wall = closed_move(page)
+    for _ in range(20):
+        expect(page.locator("#counsel")).to_contain_text("No advice now")
+        walker.press(wall)
+    expect(page.locator("#counsel")).to_contain_text(re.compile(r"Advice: (north|south|east|west) \d+\s%"))
+    advised = page.locator("#moves button.advised")
+    shares = [int(re.sub(r"\D", "", text)) for text in advised.locator(".share").all_inner_texts()]
+    assert sum(shares) == pytest.approx(100, abs=2)
+    expect(page.locator("#curves")).to_have_attribute("aria-label", re.compile("Advice was shown at 1 of them"))
+    expect(page.locator("#curves")).to_contain_text("threshold κ = 0.5")
+
+    # A bump does not move the person, so the shortest way is still that from the start.
+    building = walk_building(MAZE, {})
+    moves = way(building, walker.walk)
+    for move in moves:
+        walker.press(move)
+    words = f"in {20 + len(moves)} steps; the shortest way has {len(moves)}"
+    expect(page.get_by_role("status").filter(has_text="You found")).to_contain_text(words)
+    row = page.locator("#walks tbody tr").first.locator("td")
+    expect(row).to_have_text(
+        ["on", re.compile(r"\w+"), str(20 + len(moves)), str(len(moves)), f"{1 + 20 / len(moves):.1f}"]
+    )
+    expect(page.locator("#moves button").first).to_be_disabled()
+    expect(page.locator("#start")).to_be_focused()
+
+    # Every step on the page is in the memory.
+    with open_memory(tmp_path / "pages.db") as memory:
+        desk = AdviceDesk(memory, f"walk {MAZE}", {})
+        state = int(building.places[building.errand(walker.walk)[1]])
+        answer = desk.answer(walker.walk, 0, [{"state": state, "action": None}])
+    assert answer["step"] == walker.steps + 1
+
+
+def test_without_advice_there_are_no_arrows_and_the_curve_goes_on(
+    serve_pages: Callable[..., str], open_page: Callable[..., Page]
+):
+    page = open_page(serve_pages() + "/walk", PHONE)
+    walker = Walker(page)
+    page.get_by_label("Advice when I seem lost").uncheck()
+    walker.begin(MAZE)
+    expect(page.locator("#counsel")).to_contain_text("Advice is off. P(M | H) 0.20")
+    wall = closed_move(page)
+    for _ in range(24):
+        page.locator(f"#moves button[data-move={wall}]").click()
+        walker.steps += 1
+        expect(page.locator("#errand")).to_contain_text(f"· {walker.steps} step")
+    expect(page.locator("#counsel")).to_contain_text("Advice is off. P(M | H) 0.00")
+    expect(page.locator("#moves button.advised")).to_have_count(0)
+
+
+def test_a_map_of_the_person_comes_first(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
+    page = open_page(serve_pages("--map", f"hall={OFFICE}") + "/walk")
+    walker = Walker(page)
+    walker.ready()
+    expect(page.get_by_role("combobox", name="Building")).to_have_value("hall")
+    walker.press("north")
+    # Arrow keys in the list of buildings choose a building and are no step.
+    page.get_by_role("combobox", name="Building").focus()
+    page.keyboard.press("ArrowDown")
+    expect(page.get_by_role("combobox", name="Building")).to_have_value("building:0")
+    expect(page.locator("#errand")).to_contain_text("· 1 step ")
+    page.keyboard.press("Tab")
+    walker.press("south")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    walker.ready()
+
+
+def test_an_error_of_the_service_is_a_line_on_the_page(serve_pages: Callable[..., str], browser: Browser):
+    # Not by `open_page`, which takes a refused request for a defect.
+    page = browser.new_page()
+    page.goto(serve_pages() + "/walk")
+    walker = Walker(page)
+    walker.ready()
+    page.route(
+        "**/steps", lambda route: route.fulfill(status=503, json={"error": {"message": "the disk is full"}})
+    )
+    page.keyboard.press("ArrowUp")
+    expect(page.get_by_role("alert")).to_have_text("the disk is full")
+    expect(page.locator("#errand")).to_contain_text("· 0 steps")
+    page.unroute("**/steps")
+    walker.press("north")
+    expect(page.get_by_role("alert")).to_have_count(0)
+    page.close()
+
+
+def test_routes_check_what_they_are_given(tmp_path: Path):
+    settings = ServiceSettings(str(tmp_path / "m.db"))
+    with TestClient(app_with_pages(settings), base_url="http://127.0.0.1") as client:
+        begun = client.put("/v1/walks/ada", json={"building": MAZE}).json()
+        step = {"building": MAZE, "step": 1, "state": begun["state"], "move": "north"}
+        assert client.post("/v1/walks/ada/steps", json=step).json()["step"] == 1
+        for wrong in ({"step": 5}, {"state": 10**6}, {"move": "up"}, {"step": 0}, {"extra": 1}):
+            answer = client.post("/v1/walks/ada/steps", json=step | wrong)
+            assert answer.status_code == 422, wrong
+            assert answer.json()["error"]["message"]
+        for name in ("../map.yaml", "/etc/passwd", "attic", "advice:3/..", "building:77"):
+            answer = client.put("/v1/walks/ben", json={"building": name})
+            assert answer.status_code == 404
+            assert answer.json()["error"]["message"].startswith("building must be one of")
+        assert client.put("/v1/walks/ada", json={"building": MAZE}).status_code == 422
+
+
+def test_routes_answer_as_documented(tmp_path: Path):
+    schemathesis = pytest.importorskip("schemathesis", reason="needs the extra test")
+    from hypothesis import HealthCheck, given, settings
+    from schemathesis.specs.openapi.checks import positive_data_acceptance
+
+    # With a token file, requests for any host name pass.
+    token = add_token(str(tmp_path / "tokens"), "schemathesis", ["read", "write"])
+    app = app_with_pages(ServiceSettings(str(tmp_path / "m.db"), token_file=str(tmp_path / "tokens"), rate=0.0))
+    with TestClient(app):
+        routes = schemathesis.openapi.from_asgi("/openapi.json", app).include(path_regex="^/v1/walks")
+        found = list(routes.get_all_operations())
+        assert len(found) == 3
+        for operation in found:
+
+            @given(case=operation.ok().as_strategy())
+            @settings(max_examples=15, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+            def answers(case):
+                case.call_and_validate(
+                    headers={"Authorization": f"Bearer {token}"}, excluded_checks=[positive_data_acceptance]
+                )
+
+            answers()

@@ -1,0 +1,325 @@
+"""The page on ROS 2 and its node: message fields fit the definitions of ROS 2 Humble, and the node goes its round.
+
+rclpy cannot be installed from a package index, so the node runs here with a stand-in for rclpy. Its messages are
+those of the type store of rosbags, which has the definitions of ROS 2 Humble: a field that does not exist fails.
+"""
+
+import ast
+import csv
+import importlib
+import json
+import re
+import shlex
+import subprocess
+import sys
+import threading
+import types
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rosbags", reason="needs the extra ros")
+
+from rosbags.typesys import Stores, get_typestore
+
+from lifelore.domains.buildings.building import building_from_map
+from lifelore.domains.buildings.floor import floor_of
+from lifelore.domains.buildings.occupancy_map import read_occupancy_map, write_occupancy_map
+from lifelore.perception.clouds.cloud_file import read_cloud
+
+ROOT = Path(__file__).parents[1]
+PACKAGE = ROOT / "examples" / "ros2" / "lifelore_node"
+PAGE = (ROOT / "docs" / "ros2.md").read_text(encoding="utf-8")
+STORE = get_typestore(Stores.ROS2_HUMBLE)
+PROGRAM = [sys.executable, "-m", "lifelore.app.command_line"]
+
+
+@pytest.fixture(autouse=True)
+def import_path(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(str(PACKAGE))
+
+
+@pytest.fixture
+def conversions() -> Any:
+    return importlib.import_module("lifelore_node.conversions")
+
+
+@pytest.fixture(scope="module")
+def exports(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """What the first command of the page exports, after two tasks instead of five."""
+    folder = tmp_path_factory.mktemp("round")
+    (folder / "examples").symlink_to(ROOT / "examples")
+    (line,) = re.findall(r"^lifelore (live .*)$", PAGE, flags=re.M)
+    shorter = line.replace("--tasks 5", "--tasks 2")
+    assert shorter != line
+    words = [*shlex.split(shorter), "--memory", "m.db"]
+    subprocess.run([*PROGRAM, *words], cwd=folder, check=True, capture_output=True)
+    return folder / "exports"
+
+
+def message(name: str, fields: dict[str, Any]) -> Any:
+    """A message of ROS 2 Humble with these fields, zero elsewhere."""
+    values: dict[str, Any] = {}
+    defined = dict(STORE.fielddefs[name][1])
+    assert set(fields) <= set(defined), f"{name} has no {set(fields) - set(defined)}"
+    for field, (kind, detail) in defined.items():
+        given = fields.get(field)
+        if kind.name == "NAME":
+            values[field] = message(detail, given or {})
+        elif kind.name == "BASE":
+            base = detail[0]
+            values[field] = given if given is not None else "" if base == "string" else base == "bool" and False
+        else:
+            (inner_kind, inner), _ = detail
+            if inner_kind.name == "NAME":
+                values[field] = [message(inner, one) for one in given or []]
+            else:
+                values[field] = np.array(given or [], inner[0])
+    return STORE.types[name](**values)
+
+
+def sent(name: str, fields: dict[str, Any]) -> Any:
+    """The message as it arrives, after it was serialised as ROS 2 does."""
+    return STORE.deserialize_cdr(STORE.serialize_cdr(message(name, fields), name), name)
+
+
+def cloud_message(points: np.ndarray, padding: int = 4, big: bool = False) -> Any:
+    """A PointCloud2 of two rows with unused bytes after each point and each row."""
+    order = ">" if big else "<"
+    step = 16 + padding
+    layout = np.dtype(
+        {"names": ["x", "y", "z"], "formats": [order + "f4"] * 3, "offsets": [0, 4, 8], "itemsize": step}
+    )
+    rows = np.zeros((2, len(points) // 2), layout)
+    for k, name in enumerate("xyz"):
+        rows[name] = points[:, k].reshape(2, -1)
+    data = [np.concatenate([np.frombuffer(row.tobytes(), np.uint8), np.full(8, 255, np.uint8)]) for row in rows]
+    fields = [{"name": name, "offset": 4 * k, "datatype": 7, "count": 1} for k, name in enumerate("xyz")]
+    return sent(
+        "sensor_msgs/msg/PointCloud2",
+        {
+            "height": 2, "width": rows.shape[1], "fields": fields, "is_bigendian": big, "point_step": step,
+            "row_step": rows.shape[1] * step + 8, "data": np.concatenate(data).tolist(), "is_dense": False,
+        },
+    )  # fmt: skip
+
+
+# ---- conversions ---------------------------------------------------------------------------------------------
+
+
+def test_a_mask_becomes_a_grid_with_the_lowest_row_first(conversions, tmp_path):
+    grey = np.array([[0, 50, 100], [101, 255, 7]], np.uint8)
+    write_occupancy_map(tmp_path / "mask.yaml", grey, 0.1, (1.0, 2.0, 0.5), mode="raw")
+    grid = sent("nav_msgs/msg/OccupancyGrid", conversions.occupancy_grid(tmp_path / "mask.yaml"))
+    assert (grid.info.width, grid.info.height) == (3, 2)
+    assert grid.info.resolution == pytest.approx(0.1)
+    assert grid.data.tolist() == [-1, -1, 7, 0, 50, 100]
+    assert (grid.info.origin.position.x, grid.info.origin.position.y) == (1.0, 2.0)
+    turn = grid.info.origin.orientation
+    assert 2 * np.arctan2(turn.z, turn.w) == pytest.approx(0.5)
+    write_occupancy_map(tmp_path / "map.yaml", grey, 0.1)
+    with pytest.raises(ValueError, match="must have mode raw, got trinary"):
+        conversions.occupancy_grid(tmp_path / "map.yaml")
+
+
+@pytest.mark.slow
+def test_the_masks_of_a_life_lie_on_its_map(conversions, exports):
+    occupancy = read_occupancy_map(ROOT / "examples" / "data" / "office.yaml")
+    for name in ("keepout.yaml", "costs.yaml"):
+        grid = sent("nav_msgs/msg/OccupancyGrid", conversions.occupancy_grid(exports / name))
+        assert (grid.info.height, grid.info.width) == occupancy.state.shape
+        assert (grid.info.origin.position.x, grid.info.origin.position.y) == occupancy.origin[:2]
+        assert grid.data.min() >= -1
+        assert grid.data.max() <= 100
+        assert len(np.unique(grid.data)) > 1
+
+
+@pytest.mark.slow
+def test_the_last_path_becomes_poses_on_the_floor_that_face_the_next(conversions, exports):
+    path = sent("nav_msgs/msg/Path", conversions.path_poses(exports / "paths.csv"))
+    written = csv.DictReader((exports / "paths.csv").read_text(encoding="utf-8").splitlines())
+    rows = [row for row in written if (row["task"], row["path"]) == ("1", "0")]
+    points = [(pose.pose.position.x, pose.pose.position.y) for pose in path.poses]
+    assert points == [(float(row["x"]), float(row["y"])) for row in rows]
+    assert path.header.frame_id == path.poses[0].header.frame_id == "map"
+    occupancy = read_occupancy_map(ROOT / "examples" / "data" / "office.yaml")
+    floor = floor_of(occupancy, building_from_map(occupancy))
+    row, column = np.rint(floor.pixels(points)).astype(int).T
+    assert (floor.state[row, column] >= 0).all()
+    for pose, here, there in zip(path.poses, points, points[1:], strict=False):
+        yaw = 2 * np.arctan2(pose.pose.orientation.z, pose.pose.orientation.w)
+        step = np.subtract(there, here)
+        assert (np.cos(yaw), np.sin(yaw)) == pytest.approx(tuple(step / np.hypot(*step)))
+
+
+def test_an_export_without_paths_is_named(conversions, tmp_path):
+    (tmp_path / "paths.csv").write_text("task,path,step,x,y\n")
+    with pytest.raises(ValueError, match="must hold a path"):
+        conversions.path_poses(tmp_path / "paths.csv")
+
+
+@pytest.mark.parametrize("big", [False, True])
+def test_points_of_a_padded_cloud(conversions, big):
+    points = np.arange(30, dtype=np.float32).reshape(10, 3)
+    points[3, 1] = np.nan
+    found = conversions.cloud_points(cloud_message(points, big=big))
+    assert found.tolist() == np.delete(points, 3, axis=0).tolist()
+
+
+def test_a_cloud_without_z_is_refused(conversions):
+    cloud = cloud_message(np.zeros((4, 3), np.float32))
+    cloud.fields.pop()
+    with pytest.raises(ValueError, match="z is missing"):
+        conversions.cloud_points(cloud)
+
+
+# ---- the round -----------------------------------------------------------------------------------------------
+
+
+@pytest.fixture
+def service(tmp_path: Path) -> Iterator[str]:
+    pytest.importorskip("fastapi", reason="needs the extra web")
+    command = [*PROGRAM, "serve", "--json", "--port", "0", "--memory", str(tmp_path / "m.db")]
+    served = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+    with served:
+        assert served.stdout is not None
+        yield json.loads(served.stdout.readline())["url"]
+        served.terminate()
+
+
+class StandIn:
+    """What the node uses of rclpy: parameters, publishers, subscriptions, clock and log."""
+
+    parameters: dict[str, str] = {}  # noqa: RUF012
+
+    def __init__(self, name: str) -> None:
+        self.name, self.log = name, []
+        self.published: list[tuple[str, Any]] = []
+        self.subscribed: dict[str, Any] = {}
+        self.arrived = threading.Event()
+
+    def declare_parameter(self, name: str, default: str) -> Any:
+        return types.SimpleNamespace(value=self.parameters.get(name, default))
+
+    def create_publisher(self, kind: Any, topic: str, quality: Any) -> Any:
+        def publish(message: Any) -> None:
+            assert message.__msgtype__ == kind().__msgtype__
+            self.published.append((topic, message))
+            if topic == "lifelore/relations":
+                self.arrived.set()
+
+        return types.SimpleNamespace(publish=publish)
+
+    def create_subscription(self, kind: Any, topic: str, take: Any, quality: Any) -> None:
+        self.subscribed[topic] = take
+
+    def get_clock(self) -> Any:
+        stamp = message("builtin_interfaces/msg/Time", {"sec": 7})
+        return types.SimpleNamespace(now=lambda: types.SimpleNamespace(to_msg=lambda: stamp))
+
+    def get_logger(self) -> Any:
+        def error(text: str) -> None:
+            self.log.append(text)
+            self.arrived.set()
+
+        return types.SimpleNamespace(warning=self.log.append, error=error)
+
+
+def set_fields(target: Any, fields: dict[str, Any]) -> None:
+    """As `set_message_fields` of rosidl_runtime_py: a field that does not exist fails."""
+    filled = message(target.__msgtype__, fields)
+    for name in fields:
+        setattr(target, name, getattr(filled, name))
+
+
+def module(name: str, **content: Any) -> types.ModuleType:
+    made = types.ModuleType(name)
+    vars(made).update(content)
+    return made
+
+
+@pytest.fixture
+def node_module(monkeypatch: pytest.MonkeyPatch) -> Any:
+    def kind(name: str) -> Any:
+        return lambda: message(name, {})
+
+    quality = types.SimpleNamespace(TRANSIENT_LOCAL=1)
+    stand_ins = {
+        "rclpy": module("rclpy"),
+        "rclpy.node": module("rclpy.node", Node=StandIn),
+        "rclpy.qos": module("rclpy.qos", DurabilityPolicy=quality, QoSProfile=dict, qos_profile_sensor_data={}),
+        "rosidl_runtime_py": module("rosidl_runtime_py"),
+        "rosidl_runtime_py.set_message": module("rosidl_runtime_py.set_message", set_message_fields=set_fields),
+    }
+    for name, kinds in {
+        "nav_msgs": ["OccupancyGrid", "Path"],
+        "sensor_msgs": ["PointCloud2"],
+        "std_msgs": ["String"],
+    }.items():
+        stand_ins[name] = module(name)
+        stand_ins[f"{name}.msg"] = module(f"{name}.msg", **{one: kind(f"{name}/msg/{one}") for one in kinds})
+    for name, made in stand_ins.items():
+        monkeypatch.setitem(sys.modules, name, made)
+    monkeypatch.delitem(sys.modules, "lifelore_node.node", raising=False)
+    return importlib.import_module("lifelore_node.node")
+
+
+@pytest.mark.slow
+def test_the_node_publishes_exports_and_answers_a_cloud_with_relations(node_module, exports, service, monkeypatch):
+    monkeypatch.setattr(StandIn, "parameters", {"exports": str(exports), "url": service, "frame": "floor"})
+    node = node_module.LifeloreNode()
+    assert not node.log
+    topics = dict(node.published)
+    assert set(topics) == {"keepout_mask", "cost_mask", "lifelore/path"}
+    for published in topics.values():
+        assert (published.header.frame_id, published.header.stamp.sec) == ("floor", 7)
+    cloud = read_cloud(ROOT / "examples" / "data" / "table.pcd")
+    points = np.asarray(cloud.points, np.float32)
+    node.subscribed["points"](cloud_message(points[: len(points) // 2 * 2]))
+    assert node.arrived.wait(60)
+    (text,) = [message.data for topic, message in node.published if topic == "lifelore/relations"]
+    found = json.loads(text)
+    assert "on" in {relation["relation"] for relation in found["relations"]}
+    assert any(fact.startswith("on(") for fact in found["facts"])
+
+
+@pytest.mark.slow
+def test_a_cloud_that_the_service_refuses_is_logged_in_its_words(node_module, service, monkeypatch, tmp_path):
+    monkeypatch.setattr(StandIn, "parameters", {"exports": str(tmp_path), "url": service})
+    node = node_module.LifeloreNode()
+    assert [line.endswith("stays silent") for line in node.log] == [True] * 3
+    node.arrived.clear()
+    node.subscribed["points"](cloud_message(np.zeros((4, 3), np.float32)))
+    assert node.arrived.wait(60)
+    assert node.log[-1].startswith("no table was found in the cloud")
+    assert "Traceback" not in node.log[-1]
+
+
+# ---- the page ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.slow
+def test_its_python_runs_in_the_checkout(exports):
+    (code,) = re.findall(r"^```python\n(.*?)^```", PAGE, flags=re.S | re.M)
+    done = subprocess.run(
+        [sys.executable, "-W", "error", "-c", code], cwd=exports.parent, capture_output=True, text=True, check=True
+    )
+    assert re.search(r"680 × 480 pixels, \d+ expensive\n\d+ poses", done.stdout)
+
+
+def test_its_topics_and_parameters_are_those_of_the_node():
+    source = (PACKAGE / "lifelore_node" / "node.py").read_text(encoding="utf-8")
+    ast.parse(source)
+    for topic in ("keepout_mask", "cost_mask", "lifelore/path", "lifelore/relations"):
+        assert f'"{topic}"' in source
+        assert f"/{topic}`" in PAGE
+    for parameter in re.findall(r'declare_parameter\("(\w+)"', source):
+        assert f"`{parameter}`" in PAGE
+
+
+def test_the_page_and_the_package_say_that_no_robot_has_run_it():
+    assert "tested on a robot" in PAGE.split("## ")[0]
+    assert "Untested on a robot" in (PACKAGE / "package.xml").read_text(encoding="utf-8")
