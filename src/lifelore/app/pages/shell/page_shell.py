@@ -35,7 +35,9 @@ class Page:
         return f"/{self.name}"
 
 
-PAGES: tuple[Page, ...] = ()
+PAGES: tuple[Page, ...] = (
+    Page("play", "Play", "Steer a ball to its goal while the system adapts the speed to you.", live=True),
+)
 HOME = Page("", "Lifelore", "Choose a page.")
 
 
