@@ -7,6 +7,7 @@ import pytest
 pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
+from axe_playwright_python.sync_playwright import Axe
 from playwright.sync_api import Page
 
 from lifelore.domains.ball_game.ball_game import SIZES, ball_game
@@ -79,6 +80,8 @@ def test_a_script_plays_a_whole_session_by_keyboard(
     assert "Scripted players (no people)" in page.inner_text("#groups h3")
     assert "3 pairs of blocks" in page.inner_text("#groups")
     assert page.locator("#groups figure svg[role=img]").count() == 3
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
     page.reload()
     page.wait_for_selector("#next-panel:not([hidden])")  # the player comes back to the finished session
     page.on("dialog", lambda dialog: dialog.accept())

@@ -37,6 +37,7 @@ class Page:
 
 PAGES: tuple[Page, ...] = (
     Page("play", "Play", "Steer a ball to its goal while the system adapts the speed to you.", live=True),
+    Page("teach", "Teach", "Show a robot how to assemble, and watch learners use your prior.", live=True),
 )
 HOME = Page("", "Lifelore", "Choose a page.")
 

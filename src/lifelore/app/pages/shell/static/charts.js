@@ -3,7 +3,7 @@
 import { make } from "/static/shell/shell.js";
 
 const NS = "http://www.w3.org/2000/svg";
-const WIDTH = 360, HEIGHT = 240, LEFT = 52, RIGHT = 12, TOP = 12, BOTTOM = 44;
+const WIDTH = 360, HEIGHT = 240, RIGHT = 12, TOP = 12, BOTTOM = 44;
 const INK = "#22262b", LIGHT = "#dfe3e8", PAPER = "#ffffff";
 const DASHES = ["", "7 4", "2 3", "9 3 2 3", "4 2", "1 2"];
 export const COLOURS = ["#0072b2", "#b84f00", "#007a59", "#a3478a", "#5b636d", "#8a6100"];
@@ -29,9 +29,9 @@ export function ticksBetween(low, high, count = 5) {
  * A figure of lines.
  *
  * `series` are {name, points: [[x, y], …], half: [number or null, …]}: `half` is half of an interval around y.
- * `logarithmic` makes the y axis logarithmic, `level` draws a horizontal line. Series differ in colour, dash and marker.
+ * `xends` are the ends of the x axis, by default those of the points. `logarithmic` makes the y axis logarithmic, `level` draws a horizontal line. Series differ in colour, dash and marker.
  */
-export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, level = null, xticks = null, markers = true, digits = 2 }) {
+export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, level = null, xticks = null, xends = null, markers = true, digits = 2 }) {
   const figure = make("figure");
   figure.append(make("figcaption", {}, make("strong", {}, title)));
   const drawn = series.filter((one) => one.points.length);
@@ -44,25 +44,26 @@ export function lineChart({ title, xlabel, ylabel, series, logarithmic = false, 
   if (level !== null) ys.push(level);
   const positive = ys.filter((y) => y > 0);
   const ends = logarithmic ? [Math.min(...positive), Math.max(...positive)] : [Math.min(...ys), Math.max(...ys)];
-  const [x0, x1] = [Math.min(...xs), Math.max(...xs)];
+  const [x0, x1] = xends ?? [Math.min(...xs), Math.max(...xs)];
+  const marks = logarithmic ? powersBetween(...ends) : ticksBetween(ends[0], ends[1]);
+  const left = 26 + 7 * Math.max(...marks.map((y) => `${y}`.length));
   const warp = logarithmic ? Math.log : (value) => value;
   let [low, high] = ends.map(warp);
   const margin = 0.06 * (high - low || 1);
   low -= margin;
   high += margin;
-  const px = (x) => LEFT + ((x - x0) / (x1 - x0 || 1)) * (WIDTH - LEFT - RIGHT);
+  const px = (x) => left + ((x - x0) / (x1 - x0 || 1)) * (WIDTH - left - RIGHT);
   const py = (y) => HEIGHT - BOTTOM - ((warp(Math.max(y, logarithmic ? ends[0] : -Infinity)) - low) / (high - low)) * (HEIGHT - TOP - BOTTOM);
   const svg = draw("svg", { viewBox: `0 0 ${WIDTH} ${HEIGHT}`, class: "picture", role: "img", "aria-label": `${title}; the table below has the numbers`, "font-size": 11, fill: INK });
-  const marks = logarithmic ? powersBetween(...ends) : ticksBetween(ends[0], ends[1]);
   for (const y of marks) {
-    svg.append(draw("line", { x1: LEFT, x2: WIDTH - RIGHT, y1: py(y), y2: py(y), stroke: LIGHT }));
-    svg.append(draw("text", { x: LEFT - 6, y: py(y) + 4, "text-anchor": "end" }, `${y}`));
+    svg.append(draw("line", { x1: left, x2: WIDTH - RIGHT, y1: py(y), y2: py(y), stroke: LIGHT }));
+    svg.append(draw("text", { x: left - 6, y: py(y) + 4, "text-anchor": "end" }, `${y}`));
   }
   for (const x of xticks ?? ticksBetween(x0, x1, 6))
     svg.append(draw("text", { x: px(x), y: HEIGHT - BOTTOM + 16, "text-anchor": "middle" }, `${x}`));
-  svg.append(draw("text", { x: (LEFT + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle" }, xlabel));
+  svg.append(draw("text", { x: (left + WIDTH - RIGHT) / 2, y: HEIGHT - 8, "text-anchor": "middle" }, xlabel));
   svg.append(draw("text", { transform: `translate(12 ${(HEIGHT - BOTTOM + TOP) / 2}) rotate(-90)`, "text-anchor": "middle" }, ylabel));
-  if (level !== null) svg.append(draw("line", { x1: LEFT, x2: WIDTH - RIGHT, y1: py(level), y2: py(level), stroke: INK, "stroke-dasharray": "1 3" }));
+  if (level !== null) svg.append(draw("line", { x1: left, x2: WIDTH - RIGHT, y1: py(level), y2: py(level), stroke: INK, "stroke-dasharray": "1 3" }));
   series.forEach((one, i) => {
     const look = { colour: one.colour ?? COLOURS[i % COLOURS.length], dash: DASHES[i % DASHES.length] };
     const path = one.points.map(([x, y], k) => `${k ? "L" : "M"}${px(x).toFixed(1)} ${py(y).toFixed(1)}`).join("");
