@@ -15,6 +15,7 @@ from starlette.websockets import WebSocketDisconnect
 
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.tokens import add_token
 from lifelore.domains.ball_game.ball_game import SIZES, ball_game
 from lifelore.domains.ball_game.simulated_player import choose_heading
 
@@ -156,6 +157,25 @@ def test_sockets_and_sessions_that_are_refused(client):
         client.websocket_connect(f"{HOST}/v1/play/free/live", headers={"origin": "http://elsewhere.org"}),
     ):
         pass
+
+
+def test_a_socket_needs_a_token_where_the_service_does(tmp_path):
+    tokens = str(tmp_path / "tokens")
+    read, write = (add_token(tokens, name, [name]) for name in ("read", "write"))
+    settings = ServiceSettings(str(tmp_path / "m.db"), token_file=tokens)
+    with TestClient(app_with_pages(settings), base_url="http://127.0.0.1") as client:
+        for protocols in (["lifelore"], ["lifelore", f"bearer.{read}"], ["lifelore", "bearer.wrong"]):
+            with (
+                pytest.raises(WebSocketDisconnect),
+                client.websocket_connect(f"{HOST}/v1/play/free/live", subprotocols=protocols),
+            ):
+                pass
+        with client.websocket_connect(
+            f"{HOST}/v1/play/free/live", subprotocols=["lifelore", f"bearer.{write}"]
+        ) as socket:
+            assert socket.accepted_subprotocol == "lifelore"
+            socket.send_json({"do": "free", "size": 2})
+            assert socket.receive_json()["kind"] == "scene"
 
 
 def test_the_game_says_what_is_drawn_and_agreed_to(client):

@@ -53,11 +53,11 @@ def open_lesson(memory: Memory, name: str) -> FactoryLesson:
 def stored_demonstrations(memory: Memory, name: str) -> list[Demonstration]:
     """The stored demonstrations of a lesson, in order."""
     found = []
-    for key in sorted(key for key, _, _ in memory.keys(SHOWN) if key.startswith(f"{name}/")):
-        record = memory.recall(SHOWN, key, VERSION)
-        assert record is not None
-        states, actions = np.divmod(record.values, len(ACTION_NAMES))
-        found.append(Demonstration(str(record.about["number"]), name, states, actions))
+    for _, records in memory.history(robot_of(name)):
+        for record in records:
+            if record.kind == SHOWN:
+                states, actions = np.divmod(record.values, len(ACTION_NAMES))
+                found.append(Demonstration(str(record.about["number"]), name, states, actions))
     return found
 
 

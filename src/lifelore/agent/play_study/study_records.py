@@ -102,7 +102,7 @@ def store_round(memory: Memory, session: StudySession, result: RoundResult) -> b
     settings = session.settings
     planned, table = result.planned, result.moves.ravel()
     about = {**result.row, "player": settings.player, "pace": settings.pace, "time": int(time.time())}
-    key = f"{session.name}/{result.number:03}"
+    key = _round_key(session.name, result.number)
     records = [Record(ROUND, key, VERSION, "newest", np.arange(len(table)), table, about)]
     if planned.phase == TRAINING:
         records += _sums(TrainingTotals.of([result]), _sum_key(settings, settings.player))
@@ -111,8 +111,8 @@ def store_round(memory: Memory, session: StudySession, result: RoundResult) -> b
 
 def stored_results(memory: Memory, name: str) -> list[RoundResult]:
     """The stored rounds of a session, in order."""
-    own = sorted(key for key, _, _ in memory.keys(ROUND) if key.startswith(f"{name}/"))
-    return [stored_result(memory, key) for key in own]
+    records = (record for _, records in memory.history(robot_of(name)) for record in records)
+    return [_result_of(record) for record in records if record.kind == ROUND]
 
 
 def stored_result(memory: Memory, key: str) -> RoundResult:
@@ -120,6 +120,10 @@ def stored_result(memory: Memory, key: str) -> RoundResult:
     record = memory.recall(ROUND, key, VERSION)
     if record is None:
         raise NotFoundError(f"no round '{key[:40]}' is stored")
+    return _result_of(record)
+
+
+def _result_of(record: Record) -> RoundResult:
     about = record.about
     planned = Round(
         about["phase"], about["size"], about["speed"] if about["phase"] != "test" else None, about["method"],
@@ -149,14 +153,9 @@ def other_players(
     scripted = scripted_others(settings.layout)
     if not totals.covers(settings):
         return scripted
-    players = {
-        key.split("/")[0]
-        for key, _, about in memory.keys(ROUND)
-        if about["player"] == PERSON and about["pace"] == settings.pace and about["phase"] == TRAINING
-    }
     # What a ball does after a command depends on its size, not on who commands: scripted moves count as well.
     moves = totals.moves + scripted.totals.moves
-    return Others(totals._replace(moves=moves), PERSON, len(players - {name}))
+    return Others(totals._replace(moves=moves), PERSON, _trained_people(memory, settings, name))
 
 
 def export_session(memory: Memory, name: str) -> dict[str, Any]:
@@ -181,6 +180,20 @@ def forget_session(memory: Memory, name: str) -> int:
     """Delete all that is stored of a session, for ever; the number of contributions removed."""
     session_about(memory, name)
     return memory.forget(robot_of(name))
+
+
+def _trained_people(memory: Memory, settings: StudySettings, name: str) -> int:
+    """Number of people other than this one with a training round at the pace of the session."""
+    found = 0
+    for other, _, about in memory.keys(SESSION):
+        theirs = StudySettings.from_document(about["settings"])
+        if other != name and theirs.player == PERSON and theirs.pace == settings.pace:
+            found += memory.recall(ROUND, _round_key(other, theirs.practice), VERSION) is not None
+    return found
+
+
+def _round_key(session: str, number: int) -> str:
+    return f"{session}/{number:03}"
 
 
 _ONE = np.zeros(1, np.int64)

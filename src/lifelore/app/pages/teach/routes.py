@@ -19,6 +19,7 @@ from lifelore.agent.factory_lesson.lesson_records import (
 )
 from lifelore.agent.factory_lesson.lesson_task import MOST_COMPONENTS
 from lifelore.app.service.service_state import Service
+from lifelore.core.errors import StoreError
 
 MOST_OPEN = 200
 """Largest number of lessons held in main memory; others are read again from memory when their person returns."""
@@ -78,7 +79,11 @@ def router(service: Service) -> APIRouter:
         "/lessons/{lesson}/steps", summary="Take a step; the last step of a task stores its demonstration"
     )
     async def step(lesson: Name, document: Step) -> Any:
-        return JSONResponse(await run(take, lesson, document.action))
+        try:
+            return JSONResponse(await run(take, lesson, document.action))
+        except StoreError:
+            lessons.pop(lesson, None)  # it may hold a demonstration that is not stored
+            raise
 
     def take(name: str, action: int) -> dict[str, Any]:
         opened = lesson_of(name)

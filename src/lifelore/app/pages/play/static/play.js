@@ -1,6 +1,6 @@
 // The page /play: consent, the socket of the rounds, keys and buttons, belief, and the record of the player.
 
-import { ask, make, openSocket, say } from "/static/shell/shell.js";
+import { ask, make, openSocket, saveAs, say } from "/static/shell/shell.js";
 import { describeField, drawField } from "/static/play/field.js";
 
 const KEYS = { ArrowUp: 0, ArrowDown: 1, ArrowRight: 2, ArrowLeft: 3, w: 0, s: 1, d: 2, a: 3 };
@@ -135,10 +135,6 @@ function showSession(view) {
   byId("next-panel").hidden = false;
   byId("consent-panel").hidden = true;
   byId("identifier").textContent = view.session;
-  byId("json").href = `/v1/play/sessions/${view.session}/record`;
-  byId("json").download = `play_${view.session}.json`;
-  byId("csv").href = `/v1/play/sessions/${view.session}/record.csv`;
-  byId("csv").download = `play_${view.session}.csv`;
   const done = view.phase === "finished";
   const others = view.others.player === "person" ? `${view.others.players} other people` : "scripted players, for no other person has played yet";
   byId("progress").textContent = done
@@ -192,6 +188,10 @@ byId("show-belief").addEventListener("change", (event) => {
   byId("belief").hidden = !event.target.checked;
   send({ do: "belief", show: event.target.checked });
 });
+
+for (const [id, address] of [["json", "record"], ["csv", "record.csv"]])
+  byId(id).addEventListener("click", () => attempt(() =>
+    saveAs(`/v1/play/sessions/${session.session}/${address}`, `play_${session.session}.${id}`)));
 
 byId("delete").addEventListener("click", () => attempt(async () => {
   if (!confirm("Delete all that is stored of this session, for ever?")) return;

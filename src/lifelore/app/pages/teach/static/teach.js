@@ -1,6 +1,6 @@
 // The page /teach: steps by keys and buttons, the advice of the prior, and the curves of the learners.
 
-import { ask, make, say } from "/static/shell/shell.js";
+import { ask, make, saveAs, say } from "/static/shell/shell.js";
 import { lineChart } from "/static/shell/charts.js";
 import { describeFloor, drawFloor, letter } from "/static/teach/floor.js";
 
@@ -34,8 +34,6 @@ function show(changed) {
   byId("work").hidden = false;
   byId("lesson-panel").hidden = false;
   byId("identifier").textContent = view.lesson;
-  byId("record").href = `/v1/teach/lessons/${view.lesson}/record`;
-  byId("record").download = `teach_${view.lesson}.jsonl`;
   drawFloor(canvas, floor, view);
   Object.assign(canvas.dataset, { number: view.number, steps: view.steps, over: view.over, shown: view.shown, row: view.cell[0], column: view.cell[1] });
   byId("where").textContent = describeFloor(floor, view);
@@ -148,6 +146,9 @@ function goOn() {
 byId("next").addEventListener("click", goOn);
 byId("skip").addEventListener("click", goOn);
 byId("show-advice").addEventListener("change", showAdvice);
+
+byId("record").addEventListener("click", () => inTurn(() =>
+  saveAs(`/v1/teach/lessons/${view.lesson}/record`, `teach_${view.lesson}.jsonl`)));
 
 byId("delete").addEventListener("click", () => inTurn(async () => {
   if (!confirm("Delete all that is stored of this lesson, for ever?")) return;
