@@ -9,6 +9,7 @@ from lifelore.agent.factory_lesson.lesson_learners import SELF, SHOWN, WITHOUT, 
 from lifelore.agent.factory_lesson.lesson_prior import ALPHA0, advice_in, competence_of, prior_of
 from lifelore.agent.factory_lesson.lesson_task import lesson_task
 from lifelore.core.errors import InputError
+from lifelore.domains.factory.contexts import ASSEMBLY_STATION, PROCURE_STATION, terrain
 from lifelore.domains.factory.factory import ACTION_NAMES
 from lifelore.domains.factory.modified_factory import SIDE
 
@@ -31,6 +32,14 @@ def test_an_expert_assembles_all_and_gets_the_optimal_reward():
     assert competence_of(shown, lesson.present) == pytest.approx(1.0)
     with pytest.raises(InputError, match="over"):
         lesson.act(0)
+
+
+def test_the_robot_sees_the_stations_of_other_components_and_so_does_the_person():
+    lesson = FactoryLesson("ada", 2)
+    view, picture = lesson.view(), terrain(lesson.present.task.factory)
+    for kind, sign in (("procure", PROCURE_STATION), ("assemble", ASSEMBLY_STATION)):
+        shown = [*view["unused"][kind], *(item[kind] for item in view["items"])]
+        assert sorted(shown) == np.argwhere(picture == sign).tolist()
 
 
 def test_walls_cost_and_do_not_move():

@@ -103,6 +103,24 @@ def test_a_free_round_by_touch_with_the_belief(serve_pages: Callable[..., str], 
     page.wait_for_function("() => /collisions [1-9]/.test(document.getElementById('where').textContent)")
 
 
+def test_a_round_that_is_stopped_begins_again(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
+    page = open_page(f"{serve_pages()}/play")
+    page.wait_for_selector("#size option", state="attached")
+    page.check("#consent")
+    page.click("#begin")
+    for _ in range(2):
+        page.wait_for_selector("#next:not([disabled])")
+        page.click("#next")
+        page.wait_for_selector("#field[data-running=true]")
+        page.keyboard.press("ArrowRight")
+        page.wait_for_function("() => Number(document.getElementById('field').dataset.moves) > 2")
+        page.keyboard.press("Escape")
+        assert page.get_attribute("#field", "data-running") == "false"
+    assert "round 1 of 16" in page.inner_text("#progress")
+    page.click("#free")  # over a socket of its own
+    page.wait_for_selector("#field[data-phase=free][data-running=true]")
+
+
 def test_an_empty_memory_says_what_to_do(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
     page = open_page(f"{serve_pages()}/play#results")
     page.wait_for_selector("#results-message:not([hidden])")

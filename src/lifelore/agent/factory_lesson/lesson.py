@@ -104,8 +104,8 @@ class FactoryLesson:
         dict
             ``lesson``, ``components``, ``number``, ``shown`` (demonstrations), ``steps``, ``reward``, ``over``,
             ``collision`` (of the last step), ``cell`` (row, column of the robot), ``items`` (``component``,
-            ``stage``, ``procure``, ``assemble`` with their cells), ``advice`` (probability by action) and
-            ``advised`` (whether the prior has counts here).
+            ``stage``, ``procure``, ``assemble`` with their cells), ``unused`` (cells of the stations that the task
+            does not need), ``advice`` (probability by action) and ``advised`` (whether the prior has counts here).
         """
         task, floor = self.present.task, self.present.task.factory.floor
         size = task.factory.n_cells
@@ -125,7 +125,7 @@ class FactoryLesson:
             "lesson": self.name, "components": self.components, "number": self.number, "shown": len(self.shown),
             "steps": len(self.actions), "reward": self.reward, "over": self.over,
             "collision": bool(self.event & COLLISION), "cell": floor.cells[self.state % size].tolist(),
-            "items": items, "advice": advice, "advised": advised,
+            "items": items, "unused": self._unused(), "advice": advice, "advised": advised,
         }  # fmt: skip
 
     def floor(self) -> list[str]:
@@ -134,6 +134,14 @@ class FactoryLesson:
         picture = np.full(grid.shape, "#")
         picture[tuple(grid.cells.T)] = "."
         return ["".join(row) for row in picture]
+
+    def _unused(self) -> dict[str, list[list[int]]]:
+        """Cells of the stations of other components; the robot sees them as stations too."""
+        task = self.present.task
+        cells, others = task.factory.floor.cells, np.ones(task.factory.n_components, bool)
+        others[list(task.components)] = False
+        points = {"procure": task.factory.procure_at, "assemble": task.factory.assemble_at}
+        return {kind: cells[at[others]].tolist() for kind, at in points.items()}
 
     def _start(self) -> None:
         self.state = int(self.present.tables.starts[0])

@@ -29,7 +29,7 @@ _ONE = np.zeros(1, np.int64)
 
 def robot_of(lesson: str) -> str:
     """The name under which memory has all that is stored of a lesson."""
-    return f"teach {lesson}"
+    return f"teach: {lesson}"
 
 
 def open_new_lesson(memory: Memory, components: int = 2, seed: int = 0) -> FactoryLesson:

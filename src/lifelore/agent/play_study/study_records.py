@@ -43,7 +43,7 @@ CONSENT = (
 
 def robot_of(session: str) -> str:
     """The name under which memory has all that is stored of a session."""
-    return f"play {session}"
+    return f"play: {session}"
 
 
 def open_new_session(memory: Memory, settings: StudySettings, *, consent: bool, seed: int = 0) -> StudySession:

@@ -65,7 +65,7 @@ function send(document) {
 
 function receive(document) {
   if (document.kind === "scene") beginRound(document);
-  else if (document.kind === "frame") showFrame(document);
+  else if (document.kind === "frame" && running) showFrame(document);
   else if (document.kind === "over") endRound(document);
   else if (document.kind === "error") say(message, document.message, "error");
 }
@@ -80,6 +80,8 @@ function beginRound(scene) {
   const place = scene.phase === "free" ? "" : ` ${scene.number + 1} of ${scene.rounds}`;
   byId("round").textContent = `${PHASES[scene.phase]}${place}: ${about.join(", ")}. Press an arrow key to start the ball.`;
   byId("next").disabled = byId("free").disabled = true;
+  byId("stop").hidden = false;
+  byId("belief").hidden = scene.phase !== "free" || !byId("show-belief").checked;
   showFrame(ball);
   canvas.scrollIntoView({ block: "nearest" });
 }
@@ -124,9 +126,18 @@ function endRound(over) {
 
 function finishRound() {
   running = false;
+  byId("stop").hidden = true;
   canvas.dataset.running = "false";
   byId("next").disabled = session?.phase === "finished";
   byId("free").disabled = session?.phase === "test";
+}
+
+/** Leave the round that is running; nothing of it is recorded, and a round of the study begins again. */
+function stopRound() {
+  if (!running) return;
+  send({ do: "leave" });
+  finishRound();
+  byId("round").textContent = "The round is stopped; nothing of it is recorded.";
 }
 
 function showSession(view) {
@@ -158,6 +169,7 @@ async function attempt(action) {
 byId("consent").addEventListener("change", () => { byId("begin").disabled = !byId("consent").checked; });
 
 byId("begin").addEventListener("click", () => attempt(async () => {
+  stopRound();
   byId("begin").disabled = true;
   byId("round").textContent = "The session is being prepared.";
   try {
@@ -195,6 +207,7 @@ for (const [id, address] of [["json", "record"], ["csv", "record.csv"]])
 
 byId("delete").addEventListener("click", () => attempt(async () => {
   if (!confirm("Delete all that is stored of this session, for ever?")) return;
+  stopRound();
   if (socket) socket.close();
   await ask(`/v1/play/sessions/${session.session}`, { method: "DELETE" });
   sessionStorage.removeItem(SESSION);
@@ -205,6 +218,8 @@ byId("delete").addEventListener("click", () => attempt(async () => {
   byId("free").disabled = false;
 }));
 
+byId("stop").addEventListener("click", stopRound);
+
 function steer(heading) {
   if (!running) return;
   send({ do: "steer", heading });
@@ -212,6 +227,7 @@ function steer(heading) {
 }
 
 window.addEventListener("keydown", (event) => {
+  if (event.key === "Escape") stopRound();
   const heading = KEYS[event.key];
   if (heading === undefined || event.ctrlKey || event.altKey || event.metaKey || !running) return;
   event.preventDefault();

@@ -1,11 +1,12 @@
 // The factory floor on a canvas: walls, numbered stations, robot; and the same in words.
 
 const WALL = "#59616b", FREE = "#ffffff", LINE = "#eef0f3", PROCURE = "#23783f", ASSEMBLE = "#b03a34", DONE = "#dfe3e8", INK = "#22262b", ROBOT = "#0072b2";
+const PALE_PROCURE = "#c5e3cf", PALE_ASSEMBLE = "#f0cfcc";
 
 /** The letter of the assembly point of a component. */
 export const letter = (component) => String.fromCharCode(96 + component);
 
-/** Draw the floor; stations that are used already are grey. */
+/** Draw the floor; stations that are used already are grey, those of other components pale. */
 export function drawFloor(canvas, floor, view) {
   const context = canvas.getContext("2d"), side = canvas.width / floor.length;
   floor.forEach((row, y) => [...row].forEach((sign, x) => {
@@ -18,6 +19,8 @@ export function drawFloor(canvas, floor, view) {
   context.font = `bold ${Math.round(0.7 * side)}px system-ui, sans-serif`;
   context.textAlign = "center";
   context.textBaseline = "middle";
+  for (const cell of view.unused.procure) station(context, side, cell, "", PALE_PROCURE);
+  for (const cell of view.unused.assemble) station(context, side, cell, "", PALE_ASSEMBLE);
   for (const item of view.items) {
     station(context, side, item.procure, `${item.component}`, item.stage === "raw" ? PROCURE : DONE);
     station(context, side, item.assemble, letter(item.component), item.stage === "assembled" ? DONE : ASSEMBLE);
@@ -46,9 +49,9 @@ export function describeFloor(floor, view) {
   const goals = view.items.filter((item) => item.stage !== "assembled").map((item) => {
     const raw = item.stage === "raw";
     const [y, x] = raw ? item.procure : item.assemble;
-    return `${raw ? `Station ${item.component}` : `Point ${letter(item.component)}`}: ${steps(x - column, "right", "left")}, ${steps(y - row, "down", "up")}`;
+    return `${raw ? `station ${item.component}` : `point ${letter(item.component)}`} lies ${steps(x - column, "right", "left")}, ${steps(y - row, "down", "up")}`;
   });
-  return `Robot in row ${row}, column ${column}; walls ${walls.join(", ") || "nowhere near"}. ${goals.join("; ")}${goals.length ? "." : ""}`;
+  return `Robot in row ${row}, column ${column}; walls ${walls.join(", ") || "nowhere beside it"}${goals.map((goal) => `; ${goal}`).join("")}.`;
 }
 
 const steps = (n, forward, backward) => `${Math.abs(n)} ${n < 0 ? backward : forward}`;

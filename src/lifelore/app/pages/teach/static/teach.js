@@ -98,6 +98,7 @@ function step(action) {
 async function learn() {
   const own = ++learning;
   for (const episodes of PARTS) {
+    if (own !== learning) return;
     let found;
     try {
       found = await ask(`/v1/teach/lessons/${view.lesson}/curves`, { method: "POST", body: { episodes } });
@@ -152,8 +153,8 @@ byId("record").addEventListener("click", () => inTurn(() =>
 
 byId("delete").addEventListener("click", () => inTurn(async () => {
   if (!confirm("Delete all that is stored of this lesson, for ever?")) return;
+  learning++; // no more questions about its curves
   await ask(`/v1/teach/lessons/${view.lesson}`, { method: "DELETE" });
-  learning++;
   sessionStorage.removeItem(LESSON);
   view = undefined;
   byId("lesson-panel").hidden = true;
