@@ -18,7 +18,6 @@ from lifelore.experiments.chapter4.ball_game.play import (
     FixedSpeeds,
     Learner,
     Players,
-    log_shares,
     losses_by_speed,
     play_all,
     populations,
@@ -61,11 +60,6 @@ def test_learnt_transitions_are_distributions_and_tell_of_slips():
     # In mid corridor with room ahead (class 6 of both) balls of 60 slip 30 times as often as balls of 2.
     slips = 1 - table[2, 6 * 7 + 6].reshape(4, N_AFTER, 6)[0].sum(axis=0)
     assert slips[0] < 0.06 < 0.15 < slips[5]
-
-
-def test_log_shares_by_hand():
-    counts = np.array([[[1.0], [3.0], [0.0], [0.0]]])
-    assert np.exp(log_shares(counts, 2, 0.5)).ravel().tolist() == pytest.approx([0.3, 0.7, 0.5, 0.5])
 
 
 def test_everybody_meets_the_same_world_whoever_else_plays():

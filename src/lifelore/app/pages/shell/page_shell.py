@@ -36,6 +36,8 @@ class Page:
 
 
 PAGES: tuple[Page, ...] = (
+    Page("play", "Play", "Steer a ball to its goal while the system adapts the speed to you.", live=True),
+    Page("teach", "Teach", "Show a robot how to assemble, and watch learners use your prior.", live=True),
     Page("walk", "Walk", "Find a place in a building that you do not know, with and without advice.", live=True),
 )
 HOME = Page("", "Lifelore", "Choose a page.")

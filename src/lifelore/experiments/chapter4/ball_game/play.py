@@ -15,10 +15,9 @@ from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import MAX_STEPS, BallGame, LossScale, draw_sigma
 from lifelore.domains.ball_game.moves import N_OUTCOMES, N_SIGNALS, command_place, read_moves
 from lifelore.domains.ball_game.simulated_player import Balls, advance, new_balls, random_states
+from lifelore.interaction.adaptation.move_model import PSEUDO_COUNT, log_shares
 
 PLACES = 20 * 20 * 4
-PSEUDO_COUNT = 0.5
-"""Observations of every outcome that a learnt model is given beforehand, shared out over the fates."""
 
 Ints = NDArray[np.int64]
 Floats = NDArray[np.float64]
@@ -57,13 +56,6 @@ class Trained(NamedTuple):
 def scale_of(normalisation: str, steps: Ints, hits: Ints) -> LossScale:
     """How losses are normalised: ``"fixed"`` T/400 + C/20, or ``"maxima"`` of these episodes."""
     return LossScale() if normalisation == "fixed" else LossScale.from_episodes(steps, hits)
-
-
-def log_shares(counts: Floats, group: int, pseudo_count: float) -> Floats:
-    """Logs of shares within each `group` of the middle axis, (policies, groups · group, types)."""
-    policies, _, types = counts.shape
-    parts = counts.reshape(policies, -1, group, types) + pseudo_count
-    return np.log(parts / parts.sum(axis=2, keepdims=True)).reshape(counts.shape)
 
 
 class Moves(NamedTuple):

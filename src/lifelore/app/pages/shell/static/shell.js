@@ -39,6 +39,14 @@ export function openSocket(path) {
   return socket;
 }
 
+/** Save an answer of the service as a file; a plain link could not carry the token. */
+export async function saveAs(path, name) {
+  const answer = await ask(path, { raw: true });
+  const address = URL.createObjectURL(await answer.blob());
+  make("a", { href: address, download: name }).click();
+  URL.revokeObjectURL(address);
+}
+
 /** Say something in an element: a message, a warning or an error; an empty text hides it. */
 export function say(element, text, kind = "") {
   element.hidden = !text;
