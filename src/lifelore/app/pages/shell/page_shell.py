@@ -35,7 +35,11 @@ class Page:
         return f"/{self.name}"
 
 
-PAGES: tuple[Page, ...] = ()
+PAGES: tuple[Page, ...] = (
+    Page(
+        "see", "See", "See the objects of a point cloud in 3-D, where they touch, and which is on or beside which."
+    ),
+)
 HOME = Page("", "Lifelore", "Choose a page.")
 
 
