@@ -39,6 +39,12 @@ PAGES: tuple[Page, ...] = (
     Page(
         "see", "See", "See the objects of a point cloud in 3-D, where they touch, and which is on or beside which."
     ),
+    Page(
+        "life",
+        "Life",
+        "Watch a memory grow: tasks, learning curves, maps, beliefs, curiosity, and reasons.",
+        live=True,
+    ),
 )
 HOME = Page("", "Lifelore", "Choose a page.")
 
