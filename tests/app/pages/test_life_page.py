@@ -17,7 +17,7 @@ from fastapi.testclient import TestClient
 from playwright.sync_api import Page, expect
 
 from lifelore.agent.live.life import live
-from lifelore.agent.live.life_settings import LifeSettings, MemorySettings
+from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
 from lifelore.agent.long_lived.live_task import LivingSettings
 from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
 from lifelore.app.pages.mount import app_with_pages
@@ -118,6 +118,15 @@ def test_a_life_on_a_map_has_arrows_and_curves(serve_pages: Callable[..., str], 
     expect(page.locator("#summary")).to_contain_text("5 tasks", timeout=15_000)
 
 
+def test_a_life_that_remembers_no_map_says_so(serve_pages: Callable[..., str], open_page: Opened, where: Path):
+    learning = LearningSettings("q", episodes=20)
+    memory = MemorySettings(str(where), "ada")
+    live(LifeSettings(WorldSettings("lattice", size=7), learning, memory=memory, tasks=1, jobs=1))
+    page = open_page(serve_pages(memory=where) + "/life")
+    expect(page.locator("#map")).to_have_text("This agent remembers no map.")
+    expect(page.locator("#curve circle")).to_have_count(2)
+
+
 def test_a_life_that_grows_is_shown_where_another_was(
     serve_pages: Callable[..., str], open_page: Opened, where: Path
 ):
@@ -153,11 +162,11 @@ def test_the_routes_refuse_what_is_not_there(where: Path):
         assert client.get("/v1/lives").json()["lives"][0]["tasks"] == 1
         with open_memory(where) as memory:
             assert client.get("/v1/lives/revision").json() == {"revision": memory.revision()}
+        assert client.get("/v1/lives/map?world=elsewhere").json() == {"map": None}
         for path, status, message in (
             ("tasks?robot=ada&domain=moon", 404, "no task of 'moon'"),
             ("task?robot=ada&domain=lattice&number=7", 404, "no task 7"),
             ("task?robot=ada&domain=lattice&number=-1", 422, "number"),
-            ("map?world=elsewhere", 404, "no move in a world"),
             ("family?domain=moon", 404, "domain must be one of"),
             ("tasks?robot=&domain=lattice", 422, "robot"),
         ):

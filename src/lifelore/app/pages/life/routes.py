@@ -34,9 +34,9 @@ def router(service: Service) -> APIRouter:
     def task(robot: Name, domain: Name, number: Number) -> dict[str, Any]:
         return task_of(memory, robot, domain, number)
 
-    @routes.get("/map", summary="The known part of a map, and the prior over its moves")
+    @routes.get("/map", summary="The known part of a map, and the prior over its moves; null where none is known")
     def map(world: Name, row: Number | None = None, column: Number | None = None) -> dict[str, Any]:
-        return known_map(memory, world, None if row is None or column is None else (row, column))
+        return {"map": known_map(memory, world, None if row is None or column is None else (row, column))}
 
     @routes.get("/family", summary="Types of a domain, what is expected of its contexts, and curiosity")
     def family(domain: Name, seed: Number = 0) -> dict[str, Any]:

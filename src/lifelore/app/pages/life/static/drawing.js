@@ -113,7 +113,7 @@ export function drawStacks(container, columns, { x, y, words, height = 190 }) {
 const STEPS = [[-1, 0], [1, 0], [0, 1], [0, -1]]; // rows and columns of north, south, east, west
 const NEGLIGIBLE = 0.05, SHADES = 4, NEAR = 12;
 
-/** Draw the known cells of a map, walls, arrows of the prior, and goals [{row, column, text, chosen}]. */
+/** Draw the known cells of a map, walls, arrows of the prior, places with untried moves, and goals [{row, column, text, chosen}]. */
 export function drawMap(container, map, goals, { near, words }) {
   const rows = map.cells.map((cell) => cell[0]), columns = map.cells.map((cell) => cell[1]);
   let box = [Math.min(...columns) - 0.5, Math.min(...rows) - 0.5, Math.max(...columns) + 1.5, Math.max(...rows) + 1.5];
@@ -129,6 +129,8 @@ export function drawMap(container, map, goals, { near, words }) {
     const opacity = 0.3 + (0.7 * (shade + 1)) / SHADES;
     drawn.append(svg("path", { d: path, stroke: BLUE, "stroke-width": 0.1, "stroke-linecap": "round", fill: "none", opacity }));
   });
+  const open = inside.filter((cell) => cell[4] > 0).map(([row, column]) => `M${column + 0.5} ${row + 0.15}l.35 .35l-.35 .35l-.35 -.35z`).join("");
+  drawn.append(svg("path", { d: open, fill: ORANGE, stroke: INK, "stroke-width": 0.06 }));
   for (const goal of goals) {
     const at = { cx: goal.column + 0.5, cy: goal.row + 0.5, r: (goal.chosen ? 0.95 : 0.6) * (near ? 0.6 : 1) };
     drawn.append(svg("circle", { ...at, fill: goal.chosen ? ORANGE : PAPER, stroke: INK, "stroke-width": 0.12 }));

@@ -2,13 +2,14 @@
 
 import { ask, make, say } from "/static/shell/shell.js";
 import { short } from "./drawing.js";
-import { drawMapLife } from "./map_life.js";
-import { drawTypesLife } from "./types_life.js";
+import { mapLife } from "./map_life.js";
+import { typesLife } from "./types_life.js";
 
-const EVERY = 1000; // milliseconds between two looks at memory
+const EVERY = 1000; // milliseconds between two looks at memory, and
+const SHARE = 5; // more than this many times what the last look has taken, so that a large memory is not kept busy
 const $ = (id) => document.getElementById(id);
 
-const state = { revision: null, lives: [], life: null, tasks: [], number: null, drawing: null };
+const state = { revision: null, lives: [], life: null, tasks: [], number: null, asked: 0, failed: false, sizes: new Map() };
 
 async function start() {
   $("choice").addEventListener("submit", (event) => event.preventDefault());
@@ -24,6 +25,7 @@ async function start() {
 
 /** Look whether memory has changed, and again after a while. */
 async function look() {
+  const began = performance.now();
   try {
     if (!document.hidden || state.revision === null) {
       const { revision } = await ask("/v1/lives/revision");
@@ -35,7 +37,7 @@ async function look() {
     state.failed = true;
     say($("message"), error.message, "error");
   }
-  setTimeout(look, EVERY);
+  setTimeout(look, Math.max(EVERY, SHARE * (performance.now() - began)));
 }
 
 async function read(revision) {
@@ -47,7 +49,7 @@ async function read(revision) {
   const options = state.lives.map((one) => make("option", {}, `${one.robot}: ${one.domain}, ${count(one.tasks, "task")}`));
   $("which").replaceChildren(...options);
   const known = state.lives.findIndex((one) => state.life && one.robot === state.life.robot && one.domain === state.life.domain);
-  const grown = $("follow").checked ? state.lives.findIndex((one) => one.tasks > (state.sizes?.get(nameOf(one)) ?? Infinity)) : -1;
+  const grown = $("follow").checked ? state.lives.findIndex((one) => one.tasks > (state.sizes.get(nameOf(one)) ?? Infinity)) : -1;
   state.sizes = new Map(state.lives.map((one) => [nameOf(one), one.tasks]));
   await chooseLife(grown >= 0 ? grown : Math.max(0, known));
 }
@@ -79,13 +81,16 @@ function step(by) {
 }
 
 async function draw() {
-  const { life, tasks, number } = state;
+  const { life, tasks, number, revision } = state;
   if (!life) return;
+  const asked = (state.asked += 1);
   try {
     const isMap = life.kind === "grid";
+    const drawNow = await (isMap ? mapLife : typesLife)(life, tasks, number, revision);
+    if (asked !== state.asked) return; // another task has been chosen meanwhile
     $("of-types").hidden = isMap;
     $("of-map").hidden = !isMap;
-    const words = await (isMap ? drawMapLife : drawTypesLife)(life, tasks, number);
+    const words = drawNow();
     const time = new Date().toLocaleTimeString("en-GB");
     $("summary").textContent = `${life.robot} has lived ${count(tasks.length, "task")} of ${life.domain}. ${words} Drawn at ${time}.`;
   } catch (error) {

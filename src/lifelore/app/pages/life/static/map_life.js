@@ -7,14 +7,21 @@ const COLOURS = ["#0072b2", "#e69f00", "#007a59", "#b84f00", "#a3478a", "#5d4bb5
 const LISTED = 12, GOALS = 8; // last tasks in the table, and last goals on the map
 const $ = (id) => document.getElementById(id);
 
-/** Draw the life and one of its tasks; a sentence about the life. */
-export async function drawMapLife(life, tasks, number) {
+/** Ask for what the picture of a task needs; a function that draws it and answers a sentence about the life. */
+export async function mapLife(life, tasks, number) {
   const task = tasks.find((one) => one.task === number);
-  const lived = tasks.filter((one) => one.agents);
-  drawSteps(lived);
-  drawPlaces(tasks.filter((one) => one.places !== undefined));
-  list(tasks.slice(-LISTED).reverse(), number);
-  return drawKnown(tasks, task);
+  const map = await knownMap(task);
+  return () => {
+    drawSteps(tasks.filter((one) => one.agents));
+    drawPlaces(tasks.filter((one) => one.places !== undefined));
+    list(tasks.slice(-LISTED).reverse(), number);
+    return drawKnown(map, tasks, task);
+  };
+}
+
+async function knownMap(task) {
+  const [row, column] = task.goal;
+  return (await ask(`/v1/lives/map?${new URLSearchParams({ world: task.world, row, column })}`)).map;
 }
 
 function drawSteps(tasks) {
@@ -56,13 +63,9 @@ function list(tasks, number) {
   $("list").replaceChildren(make("thead", {}, head), make("tbody", {}, ...rows));
 }
 
-async function drawKnown(tasks, task) {
+function drawKnown(map, tasks, task) {
   const [row, column] = task.goal;
-  let map;
-  try {
-    map = await ask(`/v1/lives/map?${new URLSearchParams({ world: task.world, row, column })}`);
-  } catch (error) {
-    if (error.status !== 404) throw error;
+  if (!map) {
     $("map").replaceChildren(make("p", {}, "This agent remembers no map."));
     $("map-words").textContent = "";
     return "It remembers no map.";
@@ -74,6 +77,7 @@ async function drawKnown(tasks, task) {
   const words = `${short(map.known)} known places of a map of ${map.shape[0]} by ${map.shape[1]} cells. ${about}`;
   const near = $("part").value === "near" ? { row, column } : null;
   drawMap($("map"), map, goals, { near, words });
-  $("map-words").textContent = `${words} The filled circle is the goal of task ${task.task}, the others are goals before it.`;
+  const open = map.untried ? ` A diamond marks each of ${short(map.untried)} places from which it has never made some open move.` : "";
+  $("map-words").textContent = `${words} The filled circle is the goal of task ${task.task}, the others are goals before it.${open}`;
   return `It knows ${short(map.known)} places.`;
 }

@@ -8,11 +8,22 @@ const UNKNOWN = "an unknown type", UNKNOWN_COLOUR = "#8a929b", OTHERS = "#dfe3e8
 const SHOWN = 8; // types and contexts that are listed, the first ones
 const $ = (id) => document.getElementById(id);
 
-/** Draw the life and one of its tasks; a sentence about the life. */
-export async function drawTypesLife(life, tasks, number) {
+const asked = { about: null, family: null }; // the last answer about a family: it is the same for all tasks of a life
+
+/** Ask for what the picture of a task needs; a function that draws it and answers a sentence about the life. */
+export async function typesLife(life, tasks, number, revision) {
   const query = new URLSearchParams({ robot: life.robot, domain: life.domain, number });
   const task = await ask(`/v1/lives/task?${query}`);
-  const family = await ask(`/v1/lives/family?${new URLSearchParams({ domain: life.domain, seed: task.seed ?? 0 })}`);
+  const about = `${revision} ${new URLSearchParams({ domain: life.domain, seed: task.seed ?? 0 })}`;
+  if (asked.about !== about) {
+    asked.family = await ask(`/v1/lives/family?${about.split(" ")[1]}`);
+    asked.about = about;
+  }
+  const { family } = asked;
+  return () => drawn(family, task, tasks, number);
+}
+
+function drawn(family, task, tasks, number) {
   const colourOf = colours(family, task);
   drawLife(tasks, number);
   drawTask(task, colourOf);
@@ -74,7 +85,7 @@ function reason(one) {
     {},
     make("strong", {}, upper(one.act)),
     ` as for ${one.as_for}: it expected ${short(one.expected)}${rival}; reward ${short(one.reward)}.`,
-    make("span", { class: "quiet" }, `Saw ${one.scene}; believed in ${shares(one.belief)}.${one.effects.length ? ` Then: ${one.effects.slice(0, 3).join("; ")}${one.effects.length > 3 ? "; …" : ""}.` : ""}`),
+    make("span", { class: "quiet" }, `Saw ${one.scene}; believed in ${shares(one.belief)}.${one.effects.length ? ` Then: ${one.effects.slice(0, 3).join("; ")}${one.effects.length > 3 ? "; …" : "."}` : ""}`),
   );
 }
 

@@ -38,7 +38,7 @@ export class CloudView {
     }
     if (drawing.points) this.group.add(pointsOf(drawing.points));
     for (const bar of drawing.bars) this.group.add(barOf(bar, drawing.bounds.radius));
-    for (const line of drawing.lines) this.group.add(lineOf(line, drawing.bounds.radius));
+    for (const line of drawing.lines) this.group.add(...(line.thick ? rodsOf : linesOf)(line, drawing.bounds.radius));
     for (const dot of drawing.dots) this.group.add(dotOf(dot, drawing.bounds.radius));
     for (const name of drawing.names) this.group.add(nameOf(name, drawing.bounds.radius));
     if (fresh) {
@@ -51,7 +51,7 @@ export class CloudView {
   reset() {
     const { centre, radius } = this.bounds;
     const narrow = Math.min(1, this.camera.aspect);
-    const away = (1.05 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
+    const away = (0.92 * radius) / Math.sin((this.camera.fov * Math.PI) / 360) / narrow;
     this.controls.target.set(...centre);
     this.camera.position.set(centre[0] + 0.34 * away, centre[1] - 0.76 * away, centre[2] + 0.55 * away);
     this.camera.near = radius / 100;
@@ -147,7 +147,7 @@ function dotOf({ at, colour, faded }, radius) {
   return group;
 }
 
-function lineOf({ path, colour, dashed, faded }, radius) {
+function linesOf({ path, colour, dashed, faded }, radius) {
   const geometry = new THREE.BufferGeometry().setFromPoints(path.map((at) => new THREE.Vector3(...at)));
   const common = { color: colour, transparent: true, opacity: faded ? FADED : 1, depthTest: false };
   const material = dashed
@@ -156,17 +156,30 @@ function lineOf({ path, colour, dashed, faded }, radius) {
   const line = new THREE.Line(geometry, material);
   line.computeLineDistances();
   line.renderOrder = 3;
-  return line;
+  return [line];
+}
+
+/** A path of thin rods, because WebGL draws all lines one pixel wide. */
+function rodsOf({ path, colour, faded }, radius) {
+  return path.slice(1).map((to, i) => {
+    const rod = rodOf(path[i], to, 0.006 * radius, seenThrough(colour, faded));
+    rod.renderOrder = 3;
+    return rod;
+  });
+}
+
+function rodOf(from, to, thick, material) {
+  const a = new THREE.Vector3(...from), along = new THREE.Vector3(...to).sub(a);
+  const length = Math.max(along.length(), 1e-6);
+  const rod = new THREE.Mesh(new THREE.CylinderGeometry(thick, thick, length, 12), material);
+  rod.position.copy(a).addScaledVector(along, 0.5);
+  rod.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.divideScalar(length));
+  return rod;
 }
 
 function barOf({ from, to, colour, weight, faded }, radius) {
-  const a = new THREE.Vector3(...from), b = new THREE.Vector3(...to);
-  const along = b.clone().sub(a), length = Math.max(along.length(), 1e-6);
-  const thick = 0.014 * radius * weight;
-  const bar = new THREE.Mesh(new THREE.CylinderGeometry(thick, thick, length, 12), seenThrough(colour, faded));
+  const bar = rodOf(from, to, 0.014 * radius * weight, seenThrough(colour, faded));
   if (!faded) bar.material.opacity = 0.35 + 0.6 * weight;
-  bar.position.copy(a).addScaledVector(along, 0.5);
-  bar.quaternion.setFromUnitVectors(new THREE.Vector3(0, 1, 0), along.divideScalar(length));
   bar.renderOrder = 2;
   return bar;
 }

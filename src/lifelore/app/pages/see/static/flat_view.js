@@ -99,7 +99,7 @@ export class FlatView {
       this.pen.fillRect(0, 0, w, h);
     }
     for (const bar of this.drawing.bars) this.stroke([bar.from, bar.to], bar.colour, 6 * bar.weight, [], bar.faded);
-    for (const line of this.drawing.lines) this.stroke(line.path, line.colour, 1.5, line.dashed ? [4, 3] : [], line.faded);
+    for (const line of this.drawing.lines) this.stroke(line.path, line.colour, line.thick ? 3 : 1.5, line.dashed ? [4, 3] : [], line.faded);
     for (const dot of this.drawing.dots) this.dot(dot);
     for (const name of this.drawing.names) this.name(name);
   }

@@ -56,7 +56,7 @@ export function drawingOf(scene, settings) {
     dots: show.contacts ? contactDots(scene, selected) : [],
     lines: [...(show.networks ? networkLines(scene, selected) : []), ...(show.holes ? holeLines(scene) : [])],
     bars: show.relations ? relationBars(scene, selected, least) : [],
-    names: scene.objects.map((one) => ({ at: above(scene, one), text: String(one.id) })),
+    names: namesOf(scene),
   };
 }
 
@@ -93,7 +93,8 @@ function networkLines(scene, selected) {
   const inside = scene.objects.flatMap((one) =>
     one.edges.map(([i, j]) => ({
       path: [one.contact_points[i].xyz, one.contact_points[j].xyz],
-      colour: colourOf(one.id),
+      colour: darker(colourOf(one.id)), // to stand out from the object's own points
+      thick: true,
       faded: selected !== null && one.id !== selected,
     })),
   );
@@ -109,7 +110,7 @@ function networkLines(scene, selected) {
 function holeLines(scene) {
   return scene.holes
     .filter((hole) => hole.outline && hole.outline.length > 1)
-    .map((hole) => ({ path: [...hole.outline, hole.outline[0]], colour: HOLE }));
+    .map((hole) => ({ path: [...hole.outline, hole.outline[0]], colour: HOLE, thick: true }));
 }
 
 function relationBars(scene, selected, least) {
@@ -129,6 +130,18 @@ function relationBars(scene, selected, least) {
     });
 }
 
+/** A value that is computed once for each scene. */
+function once(compute) {
+  const known = new WeakMap();
+  return (scene) => {
+    if (!known.has(scene)) known.set(scene, compute(scene));
+    return known.get(scene);
+  };
+}
+
+const namesOf = once((scene) => scene.objects.map((one) => ({ at: above(scene, one), text: String(one.id) })));
+const boundsOf = once(boundsOfObjects);
+
 function above(scene, one) {
   let top = -Infinity;
   for (let i = 0; i < scene.n; i += 1) if (scene.labels[i] === one.id) top = Math.max(top, scene.xyz[3 * i + 2]);
@@ -136,7 +149,7 @@ function above(scene, one) {
 }
 
 /** Middle and radius of the objects; of all points where there is no object. */
-function boundsOf(scene) {
+function boundsOfObjects(scene) {
   const low = [Infinity, Infinity, Infinity], high = [-Infinity, -Infinity, -Infinity];
   const only = scene.objects.length > 0;
   for (let i = 0; i < scene.n; i += 1) {
@@ -149,6 +162,10 @@ function boundsOf(scene) {
   if (!Number.isFinite(low[0])) return { centre: [0, 0, 0], radius: 1 };
   const centre = low.map((value, k) => (value + high[k]) / 2);
   return { centre, radius: Math.max(0.02, Math.hypot(...high.map((value, k) => value - low[k])) / 2) };
+}
+
+function darker(colour) {
+  return `#${bytesOf(colour).map((value) => Math.round(0.5 * value).toString(16).padStart(2, "0")).join("")}`;
 }
 
 export function bytesOf(colour) {

@@ -133,9 +133,10 @@ function showSummary(scene, least) {
   const contacts = scene.objects.reduce((sum, one) => sum + one.contact_points.length, 0);
   const { shown, of } = scene.points;
   const drawn = shown === of ? `${of.toLocaleString("en")} points` : `${shown.toLocaleString("en")} of ${of.toLocaleString("en")} points drawn`;
-  $("summary").textContent =
+  const words =
     `${count(scene.objects.length, "object")}, ${count(stated, "relation")}, ${count(contacts, "contact point")}, ` +
     `${count(scene.holes.length, "hole")}; ${drawn}; perceived in ${scene.seconds.toFixed(2)} s.`;
+  if ($("summary").textContent !== words) $("summary").textContent = words; // a screen reader reads each change
 }
 
 function showObjects(scene) {
@@ -179,7 +180,8 @@ function showDetails(scene, least) {
     isHidden(scene, one.id) ? ["Its top", "other objects hide it in part, so it may carry more"] : null,
   ].filter(Boolean);
   const list = make("dl", {}, ...rows.flatMap(([name, value]) => [make("dt", {}, name), make("dd", {}, value)]));
-  $("details").replaceChildren(make("h3", {}, `Object ${one.id}`), list);
+  const title = make("h3", {}, `Object ${one.id}`);
+  if ($("details").textContent !== title.textContent + list.textContent) $("details").replaceChildren(title, list);
 }
 
 function listed(relations, id, least) {
