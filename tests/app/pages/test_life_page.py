@@ -14,7 +14,7 @@ pytest.importorskip("playwright", reason="needs the extra browser")
 
 from axe_playwright_python.sync_playwright import Axe
 from fastapi.testclient import TestClient
-from playwright.sync_api import Page, expect
+from playwright.sync_api import Browser, Dialog, Page, expect
 
 from lifelore.agent.live.life import live
 from lifelore.agent.live.life_settings import LearningSettings, LifeSettings, MemorySettings
@@ -22,6 +22,7 @@ from lifelore.agent.long_lived.live_task import LivingSettings
 from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
+from lifelore.app.service.tokens import add_token
 from lifelore.domains.worlds import WorldSettings
 from lifelore.memory import open_memory
 
@@ -154,6 +155,33 @@ def test_both_kinds_of_lives_are_accessible_and_fit(
         assert found.violations_count == 0, found.generate_report()
         wide = page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth")
         assert wide <= 0, f"{panel} is {wide} px too wide"
+
+
+def test_a_service_with_tokens_asks_once(
+    serve_pages: Callable[..., str], browser: Browser, where: Path, tmp_path: Path
+):
+    # Not by `open_page`: the browser itself logs each answer that is an error.
+    serve_customers(where, 1)
+    token = add_token(str(tmp_path / "tokens"), "ada", ["read"])
+    address = serve_pages("--token-file", str(tmp_path / "tokens"), memory=where)
+    questions: list[str] = []
+    with browser.new_context(viewport=DESKTOP) as context:  # pyright: ignore[reportArgumentType]
+        page = context.new_page()
+
+        def dismiss(dialog: Dialog) -> None:
+            questions.append(dialog.message)
+            dialog.dismiss()
+
+        page.on("dialog", dismiss)
+        page.goto(address + "/life")
+        expect(page.locator("#message")).to_contain_text("the request needs a token")
+        page.wait_for_timeout(2500)  # two looks at memory would have come
+        assert len(questions) == 1
+    with browser.new_context(viewport=DESKTOP) as context:  # pyright: ignore[reportArgumentType]
+        page = context.new_page()
+        page.on("dialog", lambda dialog: dialog.accept(token))
+        page.goto(address + "/life")
+        expect(page.locator("#task-title")).to_have_text("Task 0")
 
 
 def test_the_routes_refuse_what_is_not_there(where: Path):

@@ -36,6 +36,7 @@ async function look() {
   } catch (error) {
     state.failed = true;
     say($("message"), error.message, "error");
+    if ([401, 403].includes(error.status)) return; // without a token it is no use to ask again
   }
   setTimeout(look, Math.max(EVERY, SHARE * (performance.now() - began)));
 }
