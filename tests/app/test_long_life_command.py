@@ -67,7 +67,7 @@ def test_explain_says_why(ask, where):
     assert "first episode, return" in run.out
     assert "as for" in run.out
     document = ask("explain", "3", "--memory", where, "--json").document
-    assert set(document) == TASK | {"domain"}
+    assert set(document) == TASK | {"domain", "seed"}
 
 
 @pytest.mark.parametrize(

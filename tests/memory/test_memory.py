@@ -340,3 +340,29 @@ def test_durable_asks_sqlite_for_a_flush_at_every_commit(file):
     for durable, expected in [(False, 1), (True, 2)]:
         with open_memory(file, durable=durable) as memory, memory._store.reading() as conn:
             assert conn.value("PRAGMA synchronous") == expected
+
+
+def test_the_revision_changes_with_the_content_and_only_with_it(memory, new_place, back_end):
+    seen = [memory.revision()]
+
+    def changed() -> bool:
+        seen.append(memory.revision())
+        return seen[-1] not in seen[:-1]
+
+    give(memory, "a", 0, record({1: 1}))
+    assert changed()
+    give(memory, "a", 0, record({1: 1}))  # stored already
+    memory.recall("prior", "b7", 1)
+    assert not changed()
+    give(memory, "b", 0, record({2: 1}))
+    assert changed()
+    memory.forget("a")
+    assert changed()
+    memory.forget_records([("prior", "b7", 1)])
+    assert changed()
+    with open_memory(new_place(back_end)) as other:
+        give(other, "c", 0, record({3: 1}))
+        memory.merge_from(other)
+    assert changed()
+    give(memory, "a", 1, record({1: 1}))
+    assert changed()

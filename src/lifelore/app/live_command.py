@@ -145,6 +145,10 @@ def live(
     epsilon: Annotated[float, Option(help="q: exploration rate ε of the first episode.")] = 1.0,
     epsilon_decay: Annotated[float, Option(help="q: factor of ε after each episode.")] = 0.98,
     epsilon_floor: Annotated[float, Option(help="q: least ε.")] = 0.01,
+    serve: Annotated[
+        bool, Option("--serve", help="Serve the pages while the life runs; /life draws it as it goes (extra web).")
+    ] = False,
+    port: Annotated[int | None, Option(help="Port of --serve; 0: any free port [8321].")] = None,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> int:
     """Live through tasks in one world and learn from each.
@@ -180,6 +184,7 @@ def live(
     from lifelore.agent.live.output.report import check_folder, write_portfolio
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
     from lifelore.app.life_table import print_life
+    from lifelore.app.pages_beside import pages_beside
     from lifelore.domains.worlds import WorldSettings
 
     settings = LifeSettings(
@@ -216,6 +221,7 @@ def live(
         check_folder(out)
     log = None if l2log is None else LifeLog(l2log, domain)
     with (
+        pages_beside(serve, port, memory),
         LongTable(csv, seed) if csv is not None else nullcontext() as table,
         stop_on_interrupt() as stop,
         progress_bar("living") as progress,

@@ -6,7 +6,9 @@ import typer
 
 Option = typer.Option
 
-APPLY = {"domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "spare", "as_json"}
+APPLY = {
+    "domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "spare", "serve", "port", "as_json",
+}  # fmt: skip
 """Options of `lifelore live` that apply to these domains."""
 
 
@@ -15,6 +17,7 @@ def live_long_life(context: typer.Context) -> int:
     from lifelore.agent.long_lived.live_task import LivingSettings
     from lifelore.agent.long_lived.long_life import LongLifeSettings, live_long
     from lifelore.app.console import INTERRUPTED, print_json, progress_bar, stop_on_interrupt
+    from lifelore.app.pages_beside import pages_beside
     from lifelore.core.errors import InputError
 
     given: dict[str, Any] = context.params
@@ -35,7 +38,8 @@ def live_long_life(context: typer.Context) -> int:
         given["labels"],
         given["spare"],
     )
-    with stop_on_interrupt() as stop, progress_bar("living") as progress:
+    beside = pages_beside(given["serve"], given["port"], given["memory"])
+    with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
         report = live_long(settings, progress, stop)
     if given["as_json"]:
         print_json(report)

@@ -288,6 +288,11 @@ class Memory:
         with self._store.reading() as conn:
             return [entry["robot"] for entry in overview.robots(conn)]
 
+    def revision(self) -> str:
+        """A text that differs after each change of the content by any process; it costs no look at the content."""
+        with self._store.reading() as conn:
+            return overview.revision(conn)
+
     def show(self) -> dict[str, Any]:
         """Content of the memory as JSON data: ``location``, ``schema``, ``robots``, ``lore``, ``forgotten``."""
         with self._store.reading() as conn:

@@ -33,6 +33,15 @@ def overview(conn: Connection, location: str) -> dict[str, Any]:
     }
 
 
+def revision(conn: Connection) -> str:
+    """Last number of a contribution, number of tombstones, and last stamp of a forgotten record."""
+    # Numbers of contributions are never given twice, and each forgotten contribution has a tombstone.
+    last = conn.value("SELECT COALESCE(MAX(number), 0) FROM lifelore_contributions")
+    tombstones = conn.value("SELECT COUNT(*) FROM lifelore_tombstones")
+    forgotten = max(ledger.forgotten_records(conn).values(), default=0)
+    return f"{last}-{tombstones}-{forgotten}"
+
+
 def robots(conn: Connection) -> list[dict[str, Any]]:
     """One entry a robot, sorted by name: ``robot``, ``tasks``, ``first`` and ``last`` time (UTC)."""
     return [

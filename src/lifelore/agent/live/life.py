@@ -313,20 +313,27 @@ class _RunningLife:
         records = {name: self._learn(name, results[name], goal) for name in self.names}
         chosen = {} if own is None else own.to_dict()
         about = {"index": index, "goal": self.world.cells[goal].tolist()}
+        agents = {name: result.to_dict() for name, result in results.items()}
         stored = self.memory.contribute(
             self.settings.memory.robot,
             records[self.names[0]] + self.unstored + self._names(own) + self._job_records(seq),
             process=self.process,
             seq=seq,
-            task=about | chosen | {"world": self.world.fingerprint},
+            task=about | chosen | {"world": self.world.fingerprint, "agents": agents, **self._known()},
             taken=index,
         )
         if not stored:
             return self._lost(index)
         self.unstored = []
-        agents = {name: result.to_dict() for name, result in results.items()}
         self.finished.append(about | chosen | {"optimal_return": optimal, "agents": agents})
         return results
+
+    def _known(self) -> dict[str, int]:
+        """Number of places that the first agent knows, if it remembers any."""
+        name = self.names[0]
+        if not AGENTS[name].remembers or self.settings.learning.learner != "model":
+            return {}
+        return {"places": int((self.lores[name].model.percept >= 0).sum())}
 
     def _names(self, own: OwnGoal | None) -> list[Record]:
         """The record by which memory knows a named destination from now on."""

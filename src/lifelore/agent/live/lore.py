@@ -37,14 +37,17 @@ class PriorScope:
 def prior_scope(world: GridWorld, condition: str) -> PriorScope:
     """Contexts and key of the prior of a world; `condition` as in `PriorSettings`.
 
-    The key of an observation prior is the definition of the percept and the actions, so that other worlds share
-    it. The key of a state prior is the fingerprint of the world, so that no other world shares it.
+    Other worlds share the key of an observation prior (`observation_key`). The key of a state prior is the
+    fingerprint of the world, so that no other world shares it.
     """
     if condition == "state":
         return PriorScope("state", world.fingerprint, transitions.cells_of(world), ())
-    definition = repr((PERCEPT, MOVE_NAMES)).encode()
-    key = hashlib.sha256(definition).hexdigest()[:32]
-    return PriorScope("observation", key, world.percepts, (MOVE_BITS,))
+    return PriorScope("observation", observation_key(), world.percepts, (MOVE_BITS,))
+
+
+def observation_key() -> str:
+    """Key of the observation prior of all grid worlds: the definition of the percept and the actions."""
+    return hashlib.sha256(repr((PERCEPT, MOVE_NAMES)).encode()).hexdigest()[:32]
 
 
 @dataclass

@@ -84,4 +84,6 @@ def explained(document: dict[str, Any]) -> list[str]:
 
 
 def _shares(belief: dict[str, float]) -> str:
-    return ", ".join(f"{name} {100 * value:.0f} %" for name, value in belief.items() if value >= 0.005)
+    # Memory stores keys in alphabetical order.
+    likely = sorted(belief.items(), key=lambda one: -one[1])
+    return ", ".join(f"{name} {100 * value:.0f} %" for name, value in likely if value >= 0.005)

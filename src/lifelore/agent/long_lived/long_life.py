@@ -155,7 +155,7 @@ def _store(
         records if settings.agent == "full" else [],
         process=process,
         seq=seq,
-        task=document | {"domain": settings.domain},
+        task=document | {"domain": settings.domain, "seed": settings.seed},
         taken=number,
     )
 

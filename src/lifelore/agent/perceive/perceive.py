@@ -22,6 +22,7 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 if TYPE_CHECKING:
     from lifelore.perception.reasoning.planning_goal import Statement
     from lifelore.perception.relations.relation_classifier import RelationClassifier
+    from lifelore.perception.scene import Scene
     from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
     from lifelore.perception.segmentation.region import Region
     from lifelore.perception.segmentation.table_frame import Up
@@ -169,6 +170,21 @@ def perceived(
     notice: Callable[[str], None] | None = None,
 ) -> dict[str, Any]:
     """As `perceive`, with a loaded model, or None for the shipped model, and checked files."""
+    cloud, scene, document = scene_and_document(source, model, settings, progress)
+    _report_stage(progress, 4)
+    write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
+    if notice is not None and cloud.from_parts and settings.labels == "auto":
+        notice(f"the labels {PARTS_NOTICE}")
+    return document
+
+
+def scene_and_document(
+    source: Source,
+    model: "RelationClassifier | None" = None,
+    settings: PerceiveSettings = DEFAULT,
+    progress: Progress | None = None,
+) -> "tuple[PointCloud, Scene, dict[str, Any]]":
+    """The cloud as it was read, its scene, and the document of `perceive`; no file is written."""
     began = time.perf_counter()
     _report_stage(progress, 0)
     cloud = read_scene(source, settings)
@@ -192,11 +208,7 @@ def perceived(
     )
     document["warnings"] = [asdict(warning) for warning in scene_warnings(segmented)]
     document["seconds"] = round(time.perf_counter() - began, DIGITS)
-    _report_stage(progress, 4)
-    write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
-    if notice is not None and cloud.from_parts and settings.labels == "auto":
-        notice(f"the labels {PARTS_NOTICE}")
-    return document
+    return cloud, scene, document
 
 
 def files_read(sources: Iterable[Source], settings: PerceiveSettings) -> list[str | os.PathLike[str]]:

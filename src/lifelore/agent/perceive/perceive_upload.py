@@ -3,12 +3,16 @@
 from collections.abc import Mapping
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from lifelore.agent.perceive.perceive import PerceiveSettings, perceive
-from lifelore.agent.perceive.scene_files import domain_path
+from lifelore.agent.perceive.perceive import PerceiveSettings, scene_and_document
+from lifelore.agent.perceive.scene_bytes import scene_bytes
+from lifelore.agent.perceive.scene_files import SceneFiles, domain_path, write_scene_files
 from lifelore.agent.perceive.source_files import SourceFiles
 from lifelore.core.errors import NotFoundError
+
+if TYPE_CHECKING:
+    from lifelore.perception.scene import Scene
 
 KINDS = {"pcd": "cloud.pcd", "ply": "cloud.ply", "npz": "cloud.npz", "npy": "cloud.npy"}
 """Names of uploaded clouds by their kind."""
@@ -42,6 +46,17 @@ def perceive_upload(
     InputError
         An upload or option breaks its rule.
     """
+    return _perceived(kind, parts, options, depth_scale)[1]
+
+
+def perceive_upload_with_points(kind: str, parts: Mapping[str, bytes], options: Mapping[str, Any]) -> bytes:
+    """The points of an uploaded scene and its document, see `scene_bytes`; errors as in `perceive_upload`."""
+    return scene_bytes(*_perceived(kind, parts, options, None))
+
+
+def _perceived(
+    kind: str, parts: Mapping[str, bytes], options: Mapping[str, Any], depth_scale: float | None
+) -> "tuple[Scene, dict[str, Any]]":
     if kind != "depth" and kind not in KINDS:
         raise NotFoundError(f"format must be one of {', '.join(KINDS)}, got '{kind[:40]}'")
     with TemporaryDirectory() as folder:
@@ -55,12 +70,14 @@ def perceive_upload(
         for part, path in paths.items():
             Path(path).write_bytes(parts[part])
         beside = SourceFiles(paths.get("intrinsics"), paths.get("colour"), depth_scale)
-        problem, graph = f"{folder}/problem.pddl", f"{folder}/graph.dot"
         settings = PerceiveSettings(beside=beside, **options)
-        document = perceive(paths["cloud" if kind != "depth" else "depth"], settings, pddl=problem, dot=graph)
-        document["pddl"] = {"domain": _text(domain_path(problem)), "problem": _text(problem)}
-        document["dot"] = _text(graph)
-    return document
+        source = paths["cloud" if kind != "depth" else "depth"]
+        _, scene, document = scene_and_document(source, settings=settings)
+        files = SceneFiles(pddl=f"{folder}/problem.pddl", dot=f"{folder}/graph.dot")
+        write_scene_files(files, scene, document, settings.min_confidence, settings.statements)
+        document["pddl"] = {"domain": _text(domain_path(f"{files.pddl}")), "problem": _text(f"{files.pddl}")}
+        document["dot"] = _text(f"{files.dot}")
+    return scene, document
 
 
 def _text(path: str) -> str:

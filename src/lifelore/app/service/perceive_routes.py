@@ -3,13 +3,14 @@
 import base64
 import binascii
 import json
+from collections.abc import Callable
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Query, Request
+from fastapi import APIRouter, Query, Request, Response
 from pydantic import BaseModel, ConfigDict, Field, FiniteFloat
 from starlette.concurrency import run_in_threadpool
 
-from lifelore.agent.perceive.perceive_upload import perceive_upload
+from lifelore.agent.perceive.perceive_upload import perceive_upload, perceive_upload_with_points
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError
 
@@ -22,6 +23,10 @@ BODY = {
     }
 }
 """OpenAPI of a request whose body is a file."""
+BYTES = "application/octet-stream"
+_POINTS: dict[int | str, dict[str, Any]] = {
+    200: {"content": {BYTES: {"schema": {"type": "string", "format": "binary"}}}}
+}
 
 
 class SceneOptions(BaseModel):
@@ -75,14 +80,24 @@ def router(service: Service) -> APIRouter:
     """The routes of perception."""
     routes = APIRouter(prefix="/v1/perceive", tags=["perceive"])
 
-    def perceived(*arguments: Any) -> dict[str, Any]:
-        return service.worker.call(perceive_upload, arguments, SHARE * service.settings.seconds)
+    def called(function: Callable[..., Any], *arguments: Any) -> Any:
+        return service.worker.call(function, arguments, SHARE * service.settings.seconds)
+
+    async def of_cloud(function: Callable[..., Any], request: Request, options: CloudOptions) -> Any:
+        content = await request.body()
+        given = options.model_dump(exclude={"format"}, exclude_none=True)
+        return await run_in_threadpool(called, function, options.format, {"cloud": content}, given)
 
     @routes.post("/cloud", summary="Perceive the scene of a point cloud", openapi_extra=BODY)
     async def cloud(request: Request, options: Annotated[CloudOptions, Query()]) -> dict[str, Any]:
-        content = await request.body()
-        given = options.model_dump(exclude={"format"}, exclude_none=True)
-        return await run_in_threadpool(perceived, options.format, {"cloud": content}, given)
+        return await of_cloud(perceive_upload, request, options)
+
+    @routes.post(
+        "/points", summary="As /cloud, with the points of the scene before the document, as bytes",
+        openapi_extra=BODY, response_class=Response, responses=_POINTS,
+    )  # fmt: skip
+    async def points(request: Request, options: Annotated[CloudOptions, Query()]) -> Response:
+        return Response(await of_cloud(perceive_upload_with_points, request, options), media_type=BYTES)
 
     @routes.post("/depth", summary="Perceive the scene of a depth image")
     def depth(document: DepthImage) -> dict[str, Any]:
@@ -91,7 +106,7 @@ def router(service: Service) -> APIRouter:
         if document.colour is not None:
             parts["colour"] = _decoded("colour", document.colour)
         given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
-        return perceived("depth", parts, given, document.depth_scale)
+        return called(perceive_upload, "depth", parts, given, document.depth_scale)
 
     return routes
 

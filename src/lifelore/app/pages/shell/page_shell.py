@@ -39,6 +39,15 @@ PAGES: tuple[Page, ...] = (
     Page("play", "Play", "Steer a ball to its goal while the system adapts the speed to you.", live=True),
     Page("teach", "Teach", "Show a robot how to assemble, and watch learners use your prior.", live=True),
     Page("walk", "Walk", "Find a place in a building that you do not know, with and without advice.", live=True),
+    Page(
+        "see", "See", "See the objects of a point cloud in 3-D, where they touch, and which is on or beside which."
+    ),
+    Page(
+        "life",
+        "Life",
+        "Watch a memory grow: tasks, learning curves, maps, beliefs, curiosity, and reasons.",
+        live=True,
+    ),
 )
 HOME = Page("", "Lifelore", "Choose a page.")
 

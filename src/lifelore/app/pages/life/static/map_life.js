@@ -1,0 +1,83 @@
+// A life of tasks with goals on a map: steps to learn each task, and the known map with the arrows of the prior.
+
+import { ask, make } from "/static/shell/shell.js";
+import { drawCurves, drawMap, short } from "./drawing.js";
+
+const COLOURS = ["#0072b2", "#e69f00", "#007a59", "#b84f00", "#a3478a", "#5d4bb5", "#7a6a00"];
+const LISTED = 12, GOALS = 8; // last tasks in the table, and last goals on the map
+const $ = (id) => document.getElementById(id);
+
+/** Ask for what the picture of a task needs; a function that draws it and answers a sentence about the life. */
+export async function mapLife(life, tasks, number) {
+  const task = tasks.find((one) => one.task === number);
+  const map = await knownMap(task);
+  return () => {
+    drawSteps(tasks.filter((one) => one.agents));
+    drawPlaces(tasks.filter((one) => one.places !== undefined));
+    list(tasks.slice(-LISTED).reverse(), number);
+    return drawKnown(map, tasks, task);
+  };
+}
+
+async function knownMap(task) {
+  const [row, column] = task.goal;
+  return (await ask(`/v1/lives/map?${new URLSearchParams({ world: task.world, row, column })}`)).map;
+}
+
+function drawSteps(tasks) {
+  const names = [...new Set(tasks.flatMap((one) => Object.keys(one.agents)))];
+  const series = names.map((name, i) => ({
+    name: name === "scratch" ? "scratch, which remembers nothing" : name,
+    colour: COLOURS[i % COLOURS.length],
+    dashed: name === "scratch",
+    points: tasks.filter((one) => one.agents[name]).map((one) => [one.task, one.agents[name].steps_to_80]),
+  }));
+  if (!series.length) {
+    $("curve").replaceChildren(make("p", {}, "These tasks were stored without their results, by an earlier version of Lifelore."));
+    $("curve-words").textContent = "";
+    return;
+  }
+  const words = `Steps that each agent needed for each of ${tasks.length} tasks.`;
+  drawCurves($("curve"), series, { x: "task", y: "steps to 80 % of the best", words, log: true });
+  $("curve-words").textContent = "Lower is better: the steps until the agent's way has 80 % of the value of the best way, on a logarithmic scale.";
+}
+
+function drawPlaces(tasks) {
+  if (!tasks.length) {
+    $("places").replaceChildren(make("p", { class: "quiet" }, "This life does not store how many places it knows."));
+    return;
+  }
+  const points = tasks.map((one) => [one.task, one.places]);
+  const words = `Known places: ${short(tasks[0].places)} after task ${tasks[0].task}, ${short(tasks.at(-1).places)} after task ${tasks.at(-1).task}.`;
+  drawCurves($("places"), [{ name: "known places", colour: COLOURS[2], points }], { x: "task", y: "places", words, height: 180 });
+}
+
+function list(tasks, number) {
+  const names = [...new Set(tasks.flatMap((one) => Object.keys(one.agents ?? {})))];
+  const head = make("tr", {}, ...["Task", "Goal", ...names.map((name) => `Steps, ${name}`)].map((text) => make("th", { scope: "col" }, text)));
+  const rows = tasks.map((one) => {
+    const steps = names.map((name) => one.agents?.[name]).map((found) => make("td", { class: "number" }, found ? short(found.steps_to_80) : "–"));
+    const goal = one.name ?? `row ${one.goal[0]}, column ${one.goal[1]}`;
+    return make("tr", one.task === number ? { class: "chosen" } : {}, make("td", {}, String(one.task)), make("td", {}, goal), ...steps);
+  });
+  $("list").replaceChildren(make("thead", {}, head), make("tbody", {}, ...rows));
+}
+
+function drawKnown(map, tasks, task) {
+  const [row, column] = task.goal;
+  if (!map) {
+    $("map").replaceChildren(make("p", {}, "This agent remembers no map."));
+    $("map-words").textContent = "";
+    return "It remembers no map.";
+  }
+  const here = tasks.filter((one) => one.world === task.world && one.task <= task.task).slice(-GOALS);
+  const goals = here.map((one) => ({ row: one.goal[0], column: one.goal[1], text: String(one.task), chosen: one === task }));
+  const given = { observation: "the surroundings of a place", state: "the place" }[map.prior];
+  const about = given ? `An arrow shows where the prior, given ${given}, sends the agent; darker arrows have more probability.` : "There is no prior in memory.";
+  const words = `${short(map.known)} known places of a map of ${map.shape[0]} by ${map.shape[1]} cells. ${about}`;
+  const near = $("part").value === "near" ? { row, column } : null;
+  drawMap($("map"), map, goals, { near, words });
+  const open = map.untried ? ` A diamond marks each of ${short(map.untried)} places from which it has never made some open move.` : "";
+  $("map-words").textContent = `${words} The filled circle is the goal of task ${task.task}, the others are goals before it.${open}`;
+  return `It knows ${short(map.known)} places.`;
+}

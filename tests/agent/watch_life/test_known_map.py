@@ -1,0 +1,94 @@
+"""The known part of a map by hand: cells from the top, percepts, arrows of both priors, and a large map."""
+
+import numpy as np
+import pytest
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.live.lore import observation_key
+from lifelore.agent.live.transitions import cells_of, model_table, to_record
+from lifelore.agent.watch_life import known_map as module
+from lifelore.agent.watch_life.known_map import known_map
+from lifelore.core.learning.known_world import unknown_world
+from lifelore.domains.grids.grid_world import GridWorld
+from lifelore.memory import Memory, open_memory
+
+#: Three cells in a row below one at the left:  a . .
+#:                                              b c d
+FREE = np.array([[True, False, False], [True, True, True]])
+
+
+@pytest.fixture
+def world() -> GridWorld:
+    return GridWorld.from_free("corner", FREE)
+
+
+@pytest.fixture
+def memory(tmp_path, world):
+    """A memory in which the cells a, b and c are known."""
+    model = unknown_world(4, 4)
+    model.percept[:3] = world.percepts[:3]
+    model.target[0, 1] = 1  # from a to b
+    table = model_table(world, model)
+    record = to_record(world, table, np.full_like(table, -1))
+    with open_memory(tmp_path / "m.db") as opened:
+        opened.contribute("r", [record], process="p", seq=0, task={})
+        yield opened
+
+
+def known(memory: Memory, world: str, near: tuple[int, int] | None = None) -> dict:
+    """The known map, which there must be."""
+    found = known_map(memory, world, near)
+    assert found is not None
+    return found
+
+
+def prior(memory: Memory, key: str, contexts) -> None:
+    """Count north as the best move in some contexts, twice."""
+    counts = ActionPrior(4, key=key)
+    for _ in range(2):
+        counts.update(contexts, [[True, False, False, False]] * len(contexts))
+    memory.contribute("r", [counts.to_record({})], process=key, seq=0, task={})
+
+
+def test_known_cells_stand_where_the_map_has_them(memory, world):
+    found = known(memory, world.fingerprint)
+    assert found["shape"] == [2, 3]
+    assert (found["known"], found["untried"]) == (3, 2)
+    assert {(row, column): untried for row, column, *_, untried in found["cells"]} == {
+        (0, 0): 0, (1, 0): 2, (1, 1): 2
+    }  # fmt: skip
+    assert {(row, column): percept for row, column, percept, *_ in found["cells"]} == {
+        (0, 0): int(world.percepts[0]), (1, 0): int(world.percepts[1]), (1, 1): int(world.percepts[2])
+    }  # fmt: skip
+    assert (found["prior"], found["arrows"]) == (None, [])
+    assert {arrow for *_, arrow, _ in found["cells"]} == {-1}
+
+
+def test_arrows_are_those_of_the_observation_prior(memory, world):
+    prior(memory, observation_key(), [int(world.percepts[1])])
+    found = known(memory, world.fingerprint)
+    assert found["prior"] == "observation"
+    arrows = {(row, column): arrow for row, column, _, arrow, _ in found["cells"]}
+    # Two counts and α⁰ = 0.1: (2 + 0.1) / (2 + 4 · 0.1)
+    assert found["arrows"][arrows[1, 0]] == pytest.approx([0.875, 0.042, 0.042, 0.042], abs=1e-3)
+    assert arrows[0, 0] == arrows[1, 1] == -1
+
+
+def test_arrows_of_a_state_prior_belong_to_the_place(memory, world):
+    prior(memory, world.fingerprint, [int(cells_of(world)[2])])
+    found = known(memory, world.fingerprint)
+    assert found["prior"] == "state"
+    arrows = {(row, column): arrow for row, column, _, arrow, _ in found["cells"]}
+    assert found["arrows"][arrows[1, 1]][0] == pytest.approx(0.875)
+    assert arrows[0, 0] == arrows[1, 0] == -1
+
+
+def test_of_a_large_map_the_nearest_places_are_given(memory, world, monkeypatch):
+    monkeypatch.setattr(module, "MOST_CELLS", 2)
+    found = known(memory, world.fingerprint, near=(1, 2))
+    assert found["known"] == 3
+    assert {tuple(cell[:2]) for cell in found["cells"]} == {(1, 1), (1, 0)}
+
+
+def test_of_a_world_without_moves_nothing_is_known(memory):
+    assert known_map(memory, "elsewhere") is None

@@ -1,0 +1,237 @@
+"""The page see as a person uses it: examples, objects by mouse and keyboard, own files, and without WebGL."""
+
+import json
+import struct
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("fastapi", reason="needs the extra web")
+pytest.importorskip("playwright", reason="needs the extra browser")
+
+from playwright.sync_api import Browser, Page, expect
+
+from lifelore.agent.perceive.perceive import perceive
+
+pytestmark = [pytest.mark.browser, pytest.mark.slow]
+
+EXAMPLES = Path(__file__).parents[3] / "src" / "lifelore" / "app" / "pages" / "see" / "static" / "examples"
+DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
+TOWER = "3 objects, 3 relations, 7 contact points, 1 hole; 16,915 points; perceived in"
+LOADED = 30_000
+"""Milliseconds for the first scene: the process that perceives has to start."""
+
+Opened = Callable[..., Page]
+
+
+def shown(page: Page, text: str) -> None:
+    expect(page.locator("#summary")).to_contain_text(text, timeout=LOADED)
+
+
+def pixels(page: Page, colour: tuple[int, int, int], apart: int = 24) -> int:
+    """Number of pixels of the picture that are nearly of a colour."""
+    from io import BytesIO
+
+    from PIL import Image
+
+    picture = np.asarray(Image.open(BytesIO(page.locator("#view canvas").screenshot())).convert("RGB"), int)
+    return int((np.abs(picture - colour).max(axis=2) < apart).sum())
+
+
+def drop(page: Page, name: str, content: bytes) -> None:
+    """Drop a file on the picture."""
+    page.evaluate(
+        """([name, bytes]) => {
+            const carried = new DataTransfer();
+            carried.items.add(new File([new Uint8Array(bytes)], name));
+            const given = { dataTransfer: carried, bubbles: true, cancelable: true };
+            const event = (kind) => new DragEvent(kind, given);
+            document.querySelector("#view").dispatchEvent(event("dragover"));
+            document.querySelector("#view").dispatchEvent(event("drop"));
+        }""",
+        [name, list(content)],
+    )
+
+
+def test_the_first_visit_shows_a_scene_and_its_objects_are_chosen_by_keyboard(
+    serve_pages: Callable[..., str], open_page: Opened
+):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    blue, orange, green = (0, 114, 178), (230, 159, 0), (0, 122, 89)
+    assert all(pixels(page, colour) > 500 for colour in (blue, orange, green))
+    rows = page.locator("#relations tbody tr")
+    expect(rows).to_have_count(3)
+    expect(rows.nth(1)).to_contain_text("Object 4 is on object 3")
+    page.locator("#objects button").first.focus()
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    chosen = page.get_by_role("button", name="Object 3")
+    expect(chosen).to_have_attribute("aria-pressed", "true")
+    expect(chosen).to_be_focused()
+    details = page.locator("#details")
+    expect(details).to_contain_text("object 2 (100 %)")  # rests on
+    expect(details).to_contain_text("object 4 (100 %)")  # carries
+    expect(details).to_contain_text("with object 4")
+    expect(details).to_contain_text("opening")
+    assert pixels(page, orange) > 500 > pixels(page, blue)  # the others fade
+    page.keyboard.press("Enter")
+    expect(chosen).to_have_attribute("aria-pressed", "false")
+
+
+def test_a_click_chooses_and_keys_turn_the_picture(serve_pages: Callable[..., str], open_page: Opened):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    canvas = page.locator("#view canvas")
+    canvas.focus()
+    before = canvas.screenshot()
+    page.keyboard.press("ArrowRight")
+    turned = canvas.screenshot()
+    assert turned != before
+    page.keyboard.press("0")
+    assert canvas.screenshot() == before
+    box = canvas.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    expect(page.locator("#objects button[aria-pressed=true]")).to_have_count(1)
+    for name in ("Points", "Contact points", "Contact networks", "Relations", "Holes"):
+        box_before = canvas.screenshot()
+        page.get_by_role("checkbox", name=name, exact=True).uncheck()
+        assert canvas.screenshot() != box_before, name
+
+
+def test_doubtful_relations_fall_below_the_least_confidence(serve_pages: Callable[..., str], open_page: Opened):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    page.select_option("#example", "crowded_table")
+    shown(page, "6 objects, 7 relations")
+    page.locator("#least").focus()
+    page.keyboard.press("End")
+    expect(page.locator("#least-value")).to_have_text("100 %")
+    for _ in range(10):
+        page.keyboard.press("ArrowLeft")
+    expect(page.locator("#least-value")).to_have_text("90 %")
+    shown(page, "6 objects, 5 relations")
+    doubtful = page.locator("#relations tr.doubtful")
+    expect(doubtful).to_have_count(2)
+    expect(doubtful.first).to_contain_text("Object 7 is on and beside object 3 (doubtful)")
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save the graph").click()
+    assert "digraph" in Path(saved.value.path()).read_text()
+
+
+def test_own_files_are_analysed_with_their_warnings(
+    serve_pages: Callable[..., str], open_page: Opened, tmp_path: Path
+):
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    page.set_input_files("#file", EXAMPLES / "without_labels.pcd")
+    shown(page, "4 objects")
+    expect(page.locator("#warnings li")).to_contain_text("4 objects were cut automatically")
+    page.get_by_role("button", name="Object 2").click()
+    expect(page.locator("#details")).to_contain_text("sure (cut automatically)")
+    side = np.stack(np.meshgrid(np.arange(40), np.arange(40)), -1).reshape(-1, 2)
+    table = np.column_stack([0.02 * side - 0.4, np.zeros(len(side)), np.ones(len(side))])
+    block = np.column_stack([0.0025 * side, np.full(len(side), 0.1), np.full(len(side), 2)])
+    walls = [np.column_stack([np.full(len(side), x), 0.0025 * side, np.full(len(side), 2)]) for x in (0.0, 0.1)]
+    np.save(tmp_path / "block.npy", np.concatenate([table, block, *walls]))
+    page.select_option("#up", "z")
+    drop(page, "block.npy", (tmp_path / "block.npy").read_bytes())
+    shown(page, "1 object, 1 relation")
+    expect(page.locator("#warnings li")).to_have_count(0)
+    drop(page, "notes.txt", b"words")
+    message = page.locator("#message")
+    expect(message).to_contain_text("notes.txt is no PCD, PLY, npz or npy file")
+    expect(message).to_have_attribute("role", "alert")
+
+
+def test_a_damaged_file_is_one_line_and_the_scene_stays(serve_pages: Callable[..., str], browser: Browser):
+    # Not by `open_page`: the browser itself logs each answer that is an error.
+    with browser.new_context(viewport=DESKTOP) as context:  # pyright: ignore[reportArgumentType]
+        page = context.new_page()
+        page.goto(serve_pages() + "/see")
+        shown(page, TOWER)
+        drop(page, "broken.pcd", b"no cloud")
+        message = page.locator("#message")
+        expect(message).to_have_class("message error")
+        expect(message).to_contain_text("cloud.pcd")
+        expect(message).not_to_contain_text("tmp")
+        shown(page, TOWER)
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_without_webgl_the_picture_is_flat_and_does_the_same(
+    serve_pages: Callable[..., str], open_page: Opened, size: dict[str, int]
+):
+    page = open_page(serve_pages() + "/", size)
+    page.add_init_script(
+        """const given = HTMLCanvasElement.prototype.getContext;
+        HTMLCanvasElement.prototype.getContext = function (kind, ...rest) {
+            return kind.startsWith("webgl") ? null : given.call(this, kind, ...rest);
+        };"""
+    )
+    page.goto(page.url + "see")
+    shown(page, TOWER)
+    expect(page.locator("#help")).to_contain_text("This browser has no WebGL, so the picture is flat.")
+    assert pixels(page, (230, 159, 0)) > 300
+    canvas = page.locator("#view canvas")
+    canvas.focus()
+    before = canvas.screenshot()
+    page.keyboard.press("ArrowLeft")
+    assert canvas.screenshot() != before
+    box = canvas.bounding_box()
+    assert box is not None
+    page.mouse.click(box["x"] + 0.5 * box["width"], box["y"] + 0.5 * box["height"])
+    expect(page.locator("#objects button[aria-pressed=true]")).to_have_count(1)
+
+
+def test_the_bytes_hold_the_points_and_the_document_of_perceive(
+    serve_pages: Callable[..., str], open_page: Opened
+):
+    address = serve_pages()
+    page = open_page(address + "/")
+    content = (EXAMPLES / "tower.pcd").read_bytes()
+    answer = page.request.post(
+        address + "/v1/perceive/points?format=pcd",
+        data=content,
+        headers={"Content-Type": "application/octet-stream"},
+    )
+    body = answer.body()
+    (n,) = struct.unpack("<I", body[:4])
+    xyz = np.frombuffer(body, "<f4", 3 * n, 4).reshape(n, 3)
+    labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)
+    colours = np.frombuffer(body, "u1", 3 * n, 4 + 16 * n)
+    document = json.loads(body[4 + 19 * n :])
+    own = perceive(str(EXAMPLES / "tower.pcd"))
+    for key in own.keys() - {"seconds", "source"}:
+        assert document[key] == own[key], key
+    assert document["points"] == {"shown": n, "of": n}
+    assert len(np.unique(colours)) > 10
+    for one in own["objects"]:
+        mine = xyz[labels == one["id"]]
+        assert len(mine) == one["n_points"]
+        np.testing.assert_allclose(mine.mean(axis=0), one["centroid"], atol=1e-5)
+    numbers = [i for edge in own["contact_edges"] for name, i in edge if name == "table"]
+    assert numbers
+    assert max(numbers) < len(document["table_contact_points"])
+
+
+def test_the_examples_are_what_their_script_makes(tmp_path: Path):
+    pytest.importorskip("mujoco")
+    from importlib.util import module_from_spec, spec_from_file_location
+
+    found = spec_from_file_location("see_examples", Path(__file__).with_name("see_examples.py"))
+    assert found is not None
+    assert found.loader is not None
+    script = module_from_spec(found)
+    found.loader.exec_module(script)
+    script.make_examples(tmp_path)
+    from lifelore.perception.clouds.cloud_file import read_cloud
+
+    assert {path.name for path in EXAMPLES.glob("*.pcd")} == {path.name for path in tmp_path.iterdir()}
+    for path in tmp_path.iterdir():
+        made, shipped = read_cloud(path), read_cloud(EXAMPLES / path.name)
+        np.testing.assert_allclose(made.points, shipped.points, atol=1e-4)
+        np.testing.assert_array_equal(made.labels, shipped.labels)
