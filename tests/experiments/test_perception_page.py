@@ -44,13 +44,16 @@ def test_relations(method, cells):
             assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
 
 
-def test_plans():
+@pytest.mark.parametrize(("title", "how"), [("labels given", ""), ("without labels", " without labels")])
+def test_plans(title, how):
     found = rows("plans")
-    table = re.findall(r"^\| (0[.\d]*)(?: \(default\))? \| (0\.\d{3} \|.+) \|$", PAGE, flags=re.M)
+    lines = re.search(rf"^\| {title}: least probability .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)
+    assert lines
+    table = re.findall(r"^\| (0[.\d]*)(?: \(default\))? \| (0\.\d{3} \|.+) \|$", lines.group(1), flags=re.M)
     assert len(table) == 5
     for least, cells in table:
         names = [
-            f"{where}, hidden tops unknown, from {float(least):g}: {measure}"
+            f"{where}{how}, hidden tops unknown, from {float(least):g}: {measure}"
             for where in ("simulated", "real")
             for measure in ("objects with a plan", "valid plans")
         ]
@@ -58,6 +61,18 @@ def test_plans():
             value, *ends = map(float, re.findall(r"\d\.\d+", cell))
             assert value == pytest.approx(found[name]["value"], abs=6e-4)
             assert not ends or ends == pytest.approx(found[name]["ci95"], abs=6e-3)
+
+
+@pytest.mark.parametrize(("how", "words"), [("", "with labels given"), (" without labels", "without labels")])
+def test_valid_plans_at_the_default(how, words):
+    told = re.search(
+        rf"(0\.\d+) \[(0\.\d+), (0\.\d+)\](?: of the real objects)? {words} \(goal (0\.\d+): (\S+)\)", PAGE
+    )
+    assert told
+    row = rows("plans")[f"real{how}, hidden tops unknown, from 0.6: objects with a valid plan"]
+    assert float(told[1]) == pytest.approx(row["value"], abs=6e-4)
+    assert [float(told[2]), float(told[3])] == pytest.approx(row["ci95"], abs=6e-3)
+    assert told[5] == ("met" if row["value"] >= float(told[4]) else "**missed**")
 
 
 def test_everybody_is_in_the_table():
