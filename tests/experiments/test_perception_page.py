@@ -75,6 +75,40 @@ def test_valid_plans_at_the_default(how, words):
     assert told[5] == ("met" if row["value"] >= float(told[4]) else "**missed**")
 
 
+def test_views():
+    found = rows("views")
+    lines = re.findall(r"^  \| ([123]) \| (0\.\d{3} .+) \|$", PAGE, flags=re.M)
+    assert len(lines) == 3
+    for number, cells in lines:
+        for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
+            row = found[f"{measure}, {number} view{'s' if number != '1' else ''}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(row["value"], abs=6e-4)
+            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+    for number, words in ((2, "two views less one view are"), (3, "three views less one")):
+        told = re.search(rf"{words} \+(0\.\d+) \[(0\.\d+), (0\.\d+)\]", PAGE)
+        row = found[f"exact, {number} views less 1 view, the same pairs"]
+        assert told
+        assert [float(told[n]) for n in (1, 2, 3)] == pytest.approx([row["value"], *row["ci95"]], abs=6e-4)
+
+
+def test_arrangements():
+    found = rows("relations")
+    lines = re.search(r"^\| arrangement \| pairs .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)
+    assert lines
+    table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[1].splitlines()]
+    assert len(table) == 6
+    measures = ("exact", "on", "recall of both", "exact, pairs with the table", "calibration error")
+    for name, pairs, *cells in table:
+        where = name.removeprefix("all of the table above, ") if "above" in name else f"simulated {name}"
+        for measure, cell in zip(measures, cells, strict=True):
+            row = found[f"ours as shipped with scene logic, {where}, {measure}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(row["value"], abs=6e-3 if measure.startswith("recall") else 6e-4)
+            assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
+        assert int(pairs) == found[f"ours as shipped with scene logic, {where}, exact"]["n"]
+
+
 def test_everybody_is_in_the_table():
     told = {name.split(",")[0] for name in rows("relations") if name.endswith(", real, exact")}
     # Ours are shown with the logic that goes with them alone.
