@@ -109,6 +109,27 @@ def test_arrangements():
         assert int(pairs) == found[f"ours as shipped with scene logic, {where}, exact"]["n"]
 
 
+def test_raw_frames():
+    found = rows("raw_frames")
+    titles = {
+        "plain": "plain", "against a wall": "table against a wall", "shelf": "shelf above the table",
+        "furniture": "cabinet, chair, second table", "glass table": "glass table",
+    }  # fmt: skip
+    for kind, title in titles.items():
+        n = 12
+        shares = (
+            found[f"{kind}, {n} frames, largest plane: right"],
+            found[f"{kind}, {n} frames, evidence: right"],
+            found[f"{kind}, evidence: false table"],
+        )
+        objects = ", ".join(f"{found[f'{kind}: objects {part}']['value']}" for part in ("true", "cut", "found"))
+        counts = " | ".join(f"{n * share['value']:.0f}" for share in shares)
+        assert f"| {title} | {n} | {counts} | {objects} |\n" in PAGE
+    right, false = found["all rooms, 60 frames, evidence: right"], found["all rooms, evidence: false table"]
+    assert f"({60 * right['value']:.0f} of 60)" in PAGE
+    assert f"({60 * false['value']:.0f} of 60)" in PAGE
+
+
 def test_everybody_is_in_the_table():
     told = {name.split(",")[0] for name in rows("relations") if name.endswith(", real, exact")}
     # Ours are shown with the logic that goes with them alone.

@@ -17,7 +17,8 @@ from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane, over_outline
 from lifelore.perception.segmentation.region import Region, inside, over_table
-from lifelore.perception.segmentation.table_search import REACH, Search, Table, find_table, no_table
+from lifelore.perception.segmentation.table_evidence import REACH
+from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
 
 Up = Literal["table", "z"] | ArrayLike
 EVERYWHERE = Region()
