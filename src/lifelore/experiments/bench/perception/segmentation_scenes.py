@@ -19,7 +19,7 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_truth import read_relations
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.table_frame import Up, segmented_scene, to_scene
 
 GIVEN = "labels given"
