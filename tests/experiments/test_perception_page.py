@@ -44,13 +44,16 @@ def test_relations(method, cells):
             assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
 
 
-def test_plans():
+@pytest.mark.parametrize(("title", "how"), [("labels given", ""), ("without labels", " without labels")])
+def test_plans(title, how):
     found = rows("plans")
-    table = re.findall(r"^\| (0[.\d]*)(?: \(default\))? \| (0\.\d{3} \|.+) \|$", PAGE, flags=re.M)
+    lines = re.search(rf"^\| {title}: least probability .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)
+    assert lines
+    table = re.findall(r"^\| (0[.\d]*)(?: \(default\))? \| (0\.\d{3} \|.+) \|$", lines.group(1), flags=re.M)
     assert len(table) == 5
     for least, cells in table:
         names = [
-            f"{where}, hidden tops unknown, from {float(least):g}: {measure}"
+            f"{where}{how}, hidden tops unknown, from {float(least):g}: {measure}"
             for where in ("simulated", "real")
             for measure in ("objects with a plan", "valid plans")
         ]
@@ -58,6 +61,73 @@ def test_plans():
             value, *ends = map(float, re.findall(r"\d\.\d+", cell))
             assert value == pytest.approx(found[name]["value"], abs=6e-4)
             assert not ends or ends == pytest.approx(found[name]["ci95"], abs=6e-3)
+
+
+@pytest.mark.parametrize(("how", "words"), [("", "with labels given"), (" without labels", "without labels")])
+def test_valid_plans_at_the_default(how, words):
+    told = re.search(
+        rf"(0\.\d+) \[(0\.\d+), (0\.\d+)\](?: of the real objects)? {words} \(goal (0\.\d+): (\S+)\)", PAGE
+    )
+    assert told
+    row = rows("plans")[f"real{how}, hidden tops unknown, from 0.6: objects with a valid plan"]
+    assert float(told[1]) == pytest.approx(row["value"], abs=6e-4)
+    assert [float(told[2]), float(told[3])] == pytest.approx(row["ci95"], abs=6e-3)
+    assert told[5] == ("met" if row["value"] >= float(told[4]) else "**missed**")
+
+
+def test_views():
+    found = rows("views")
+    lines = re.findall(r"^  \| ([123]) \| (0\.\d{3} .+) \|$", PAGE, flags=re.M)
+    assert len(lines) == 3
+    for number, cells in lines:
+        for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
+            row = found[f"{measure}, {number} view{'s' if number != '1' else ''}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(row["value"], abs=6e-4)
+            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+    for number, words in ((2, "two views less one view are"), (3, "three views less one")):
+        told = re.search(rf"{words} \+(0\.\d+) \[(0\.\d+), (0\.\d+)\]", PAGE)
+        row = found[f"exact, {number} views less 1 view, the same pairs"]
+        assert told
+        assert [float(told[n]) for n in (1, 2, 3)] == pytest.approx([row["value"], *row["ci95"]], abs=6e-4)
+
+
+def test_arrangements():
+    found = rows("relations")
+    lines = re.search(r"^\| arrangement \| pairs .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)
+    assert lines
+    table = [[cell.strip() for cell in line.strip("|").split("|")] for line in lines[1].splitlines()]
+    assert len(table) == 6
+    measures = ("exact", "on", "recall of both", "exact, pairs with the table", "calibration error")
+    for name, pairs, *cells in table:
+        where = name.removeprefix("all of the table above, ") if "above" in name else f"simulated {name}"
+        for measure, cell in zip(measures, cells, strict=True):
+            row = found[f"ours as shipped with scene logic, {where}, {measure}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(row["value"], abs=6e-3 if measure.startswith("recall") else 6e-4)
+            assert not ends or ends == pytest.approx(row["ci95"], abs=6e-3)
+        assert int(pairs) == found[f"ours as shipped with scene logic, {where}, exact"]["n"]
+
+
+def test_raw_frames():
+    found = rows("raw_frames")
+    titles = {
+        "plain": "plain", "against a wall": "table against a wall", "shelf": "shelf above the table",
+        "furniture": "cabinet, chair, second table", "glass table": "glass table",
+    }  # fmt: skip
+    for kind, title in titles.items():
+        n = 12
+        shares = (
+            found[f"{kind}, {n} frames, largest plane: right"],
+            found[f"{kind}, {n} frames, evidence: right"],
+            found[f"{kind}, evidence: false table"],
+        )
+        objects = ", ".join(f"{found[f'{kind}: objects {part}']['value']}" for part in ("true", "cut", "found"))
+        counts = " | ".join(f"{n * share['value']:.0f}" for share in shares)
+        assert f"| {title} | {n} | {counts} | {objects} |\n" in PAGE
+    right, false = found["all rooms, 60 frames, evidence: right"], found["all rooms, evidence: false table"]
+    assert f"({60 * right['value']:.0f} of 60)" in PAGE
+    assert f"({60 * false['value']:.0f} of 60)" in PAGE
 
 
 def test_everybody_is_in_the_table():

@@ -7,7 +7,8 @@ import typer
 Option = typer.Option
 
 APPLY = {
-    "domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "seed", "spare", "serve", "port", "as_json",
+    "domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "spare", "seed", "serve", "port",
+    "as_json",
 }  # fmt: skip
 """Options of `lifelore live` that apply to these domains."""
 

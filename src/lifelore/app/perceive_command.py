@@ -256,7 +256,7 @@ def _cut(segment: str | None, colours: int | None):
         raise InputError("colours belongs to --segment colour: add it, or leave --colours out")
     if segment is None:
         return None
-    from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 
     default = SegmentationSettings.colours
     return SegmentationSettings(method=segment, colours=default if colours is None else colours)  # type: ignore[arg-type]

@@ -10,7 +10,7 @@ from PIL import Image
 
 from lifelore.agent.perceive.perceive import PerceiveSettings, perceive
 from lifelore.agent.perceive.perceive_many import perceive_folder, perceive_many
-from lifelore.agent.perceive.source_files import SourceFiles, with_table
+from lifelore.agent.perceive.source_files import SourceFiles
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.domains.tabletop.depth_camera import KINECT
@@ -18,6 +18,7 @@ from lifelore.domains.tabletop.settings import TabletopScene
 from lifelore.domains.tabletop.tabletop import sample_scene
 from lifelore.perception.clouds.camera_intrinsics import CameraIntrinsics
 from lifelore.perception.clouds.point_cloud import PointCloud
+from lifelore.perception.segmentation.table_labels import with_table
 
 pytest.importorskip("mujoco")
 INTRINSICS = {

@@ -43,6 +43,17 @@ def names(folder: Path) -> list[str]:
     return [str(folder / "a.npz"), str(folder / "b.npz")]
 
 
+def test_settings_are_checked_before_anything_is_read(folder: Path) -> None:
+    nowhere = [str(folder / "no.npz"), str(folder / "none.npz")]
+    for wrong, said in (
+        ({"units": "ft"}, "units"),
+        ({"labels": "some"}, "labels"),
+        ({"up": "north"}, "up must be"),
+    ):
+        with pytest.raises(InputError, match=said):
+            perceive_views(nowhere, PerceiveSettings(**wrong), poses=str(folder / "no.json"))
+
+
 def test_two_views_give_one_scene(folder: Path) -> None:
     document = perceive_views(names(folder), poses=str(folder / "poses.json"))
     truth = {

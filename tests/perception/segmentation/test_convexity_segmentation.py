@@ -11,7 +11,7 @@ from lifelore.experiments.chapter2.scoring.segmentation_scoring import overlaps,
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.convexity_segmentation import convex_objects
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 from lifelore.perception.segmentation.table_frame import to_scene
 

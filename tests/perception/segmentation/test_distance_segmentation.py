@@ -9,11 +9,8 @@ import pytest
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.distance_segmentation import (
-    SegmentationSettings,
-    euclidean_clusters,
-    segmented,
-)
+from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 from lifelore.perception.segmentation.table_frame import to_scene
 
 RNG = np.random.default_rng(1)

@@ -5,7 +5,7 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.region import Region, inside
 from lifelore.perception.segmentation.table_frame import segmented_scene
 

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from lifelore.perception.reasoning.planning_goal import Statement
     from lifelore.perception.relations.relation_classifier import RelationClassifier
     from lifelore.perception.scene import Scene
-    from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+    from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
     from lifelore.perception.segmentation.region import Region
     from lifelore.perception.segmentation.table_frame import Up
 
@@ -100,6 +100,18 @@ def check_goal(settings: PerceiveSettings, pddl: str | None) -> None:
     """Raise InputError for a goal without a planning problem to write it to."""
     if settings.goal is not None and pddl is None:
         raise InputError("goal is written to the planning problem, but none is asked for: add pddl (--pddl FILE)")
+
+
+def check_settings(settings: PerceiveSettings, pddl: str | None) -> None:
+    """Raise InputError for settings that would fail for every cloud."""
+    from lifelore.perception.clouds.cloud_scale import check_units
+    from lifelore.perception.clouds.label_rule import check_rule
+    from lifelore.perception.segmentation.table_frame import check_up
+
+    check_units(settings.units)
+    check_rule(settings.labels)
+    check_up(settings.up)
+    check_goal(settings, pddl)
 
 
 def is_file_name(model: str) -> bool:

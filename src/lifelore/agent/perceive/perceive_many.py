@@ -16,7 +16,7 @@ from lifelore.agent.perceive.perceive import (
     DEFAULT,
     PerceiveSettings,
     Source,
-    check_goal,
+    check_settings,
     files_read,
     model_of,
     perceived,
@@ -33,9 +33,6 @@ from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError, LifeloreError
 from lifelore.core.protocols import Progress
 from lifelore.perception.clouds.cloud_file import read_cloud
-from lifelore.perception.clouds.cloud_scale import check_units
-from lifelore.perception.clouds.label_rule import check_rule
-from lifelore.perception.segmentation.table_frame import check_up
 
 Entry = dict[str, Any]
 """``{"source", …}`` with the document of `perceive`; or ``{"source", "error"}``."""
@@ -83,8 +80,7 @@ def perceive_many(
         Before the first cloud: a setting breaks its rule, the model does not exist, or a file to write has no
         ``{name}``, cannot be written, or is the same for two clouds.
     """
-    _check_settings(settings)
-    check_goal(settings, pddl)
+    check_settings(settings, pddl)
     if len(sources) > 1:
         settings.beside.check_for_many()
     files = [named_files(source, pddl, dot, plot) for source in sources]
@@ -140,8 +136,7 @@ def perceive_folder(
         Before the first cloud: as `perceive_many`, or the folder does not exist. Later: the folder has
         disappeared.
     """
-    _check_settings(settings)
-    check_goal(settings, pddl)
+    check_settings(settings, pddl)
     if settings.beside != NO_SOURCE_FILES:
         raise InputError(
             "watch perceives clouds alone: leave out intrinsics, colour, depth_scale, masks and table_mask"
@@ -182,13 +177,6 @@ def _entry(source: str, document: Callable[[], dict[str, Any]]) -> Entry:
         return {"source": source, "error": str(error).removeprefix(f"{Path(source)}: ")}
     except MemoryError:
         return {"source": source, "error": "does not fit into memory: reduce the number of points"}
-
-
-def _check_settings(settings: PerceiveSettings) -> None:
-    """Check the settings that would fail for every cloud."""
-    check_units(settings.units)
-    check_rule(settings.labels)
-    check_up(settings.up)
 
 
 def _check_equal_names(sources: Sequence[str]) -> None:

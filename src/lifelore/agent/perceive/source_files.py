@@ -5,11 +5,8 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-import numpy as np
-
 from lifelore.agent.perceive.scene_files import NAME
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 
@@ -17,10 +14,6 @@ if TYPE_CHECKING:
     from lifelore.perception.segmentation.table_frame import Up
 
 CLOUD_SUFFIXES = (".pcd", ".ply", ".npz")
-_LEVEL = 0.97
-"""Cosine between the table's normal and an upward direction that is known."""
-_BAND = 0.010
-"""Metres above and below the table's plane; points without a mask in it are the table."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +33,7 @@ class SourceFiles:
     masks : str, optional
         Masks of the objects, see `mask_file.read_masks`.
     table_mask : int, optional
-        Number of the table's mask. Default: points without a mask on the table's plane are the table.
+        Number of the table's mask. Default: the table is searched for among the points without a mask.
 
     Raises
     ------
@@ -128,7 +121,11 @@ def read_source(source: object, units: str, labels: str, up: "Up", files: Source
     from lifelore.perception.clouds.mask_file import read_masks
 
     masked = read_masks(files.masks, cloud, files.table_mask)
-    return masked if files.table_mask is not None else with_table(masked, up)
+    if files.table_mask is not None:
+        return masked
+    from lifelore.perception.segmentation.table_labels import with_table
+
+    return with_table(masked, up)
 
 
 def _depth_image(source: object, units: str, files: SourceFiles) -> PointCloud:
@@ -143,26 +140,3 @@ def _depth_image(source: object, units: str, files: SourceFiles) -> PointCloud:
     from lifelore.perception.clouds.depth_file import read_depth_image
 
     return read_depth_image(source, str(files.intrinsics), colour=files.colour, depth_scale=files.depth_scale)
-
-
-def with_table(cloud: PointCloud, up: "Up" = "table") -> PointCloud:
-    """The labelled cloud with its points without label on the table's plane labelled as table.
-
-    A cloud where the points without label show no plane, or no level plane under a known upward direction, stays
-    as it is.
-    """
-    if cloud.labels is None or (cloud.labels == TABLE).any():
-        return cloud
-    from lifelore.perception.segmentation.table_frame import table_plane
-
-    try:
-        plane = table_plane(cloud)
-    except InputError:
-        return cloud
-    if not (isinstance(up, str) and up == "table"):
-        vector = np.array([0.0, 0.0, 1.0]) if isinstance(up, str) else np.asarray(up, np.float64)
-        if abs(plane.normal @ vector) < _LEVEL * np.linalg.norm(vector):
-            return cloud
-    on_it = np.zeros(len(cloud.points), bool)
-    on_it[cloud.measured] = np.abs(plane.height(cloud.points[cloud.measured].astype(np.float64))) <= _BAND
-    return replace(cloud, labels=np.where(on_it & (cloud.labels == UNLABELLED), TABLE, cloud.labels))

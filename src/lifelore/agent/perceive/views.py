@@ -10,13 +10,13 @@ from lifelore.agent.perceive.perceive import (
     DEFAULT,
     PerceiveSettings,
     Source,
-    check_goal,
+    check_settings,
     files_read,
     model_of,
     perceived,
     read_scene,
 )
-from lifelore.agent.perceive.scene_files import NAME, SceneFiles, check_scene_files
+from lifelore.agent.perceive.scene_files import SceneFiles, check_scene_files
 from lifelore.agent.perceive.source_files import NO_SOURCE_FILES
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
@@ -71,10 +71,9 @@ def perceive_views(
         raise InputError(
             "masks number the objects of each view differently: leave out --masks, or give labelled clouds"
         )
-    if NAME not in (settings.beside.colour or NAME):
-        settings.beside.check_for_many()
+    settings.beside.check_for_many()
     files = SceneFiles(pddl, dot, plot)
-    check_goal(settings, pddl)
+    check_settings(settings, pddl)
     check_scene_files(files, [*files_read(sources, settings), poses])
     given = read_poses(poses, len(sources))
     model = model_of(settings)

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.figures.scenes.camera_projection import camera_of
+from lifelore.figures.scenes.camera_projection import PictureCamera, camera_of
 from lifelore.figures.scenes.cloud_image import render_cloud
 from lifelore.figures.scenes.object_palette import object_palette
 from lifelore.figures.style import house_style, new_figure
@@ -19,6 +19,7 @@ _PANEL = (2.6, 2.1)
 """Inches: width and height of a panel."""
 _RESOLUTION = 120
 """Pixels an inch of a panel."""
+_SIZE = (round(_PANEL[0] * _RESOLUTION), round(_PANEL[1] * _RESOLUTION))
 
 
 def draw_segmentations(
@@ -40,21 +41,33 @@ def draw_segmentations(
         for row, (name, truth, clouds) in zip(axes, scenes, strict=True):
             row[0].text(-0.06, 0.5, name, rotation=90, va="center", ha="center", transform=row[0].transAxes)
             for axis, method in zip(row, methods, strict=True):
-                axis.imshow(_panel(truth, clouds[method]))
+                axis.imshow(segments_picture(truth, clouds[method], _SIZE)[0])
                 axis.set_axis_off()
         for axis, method in zip(axes[0], methods, strict=True):
             axis.set_title(method)
     return figure
 
 
-def _panel(truth: NDArray[np.int64], cloud: LabelledCloud) -> NDArray[np.float64]:
-    """(height, width, 3) colours of a scene; seen from the camera, with the true objects in the middle."""
-    width, height = (round(inches * _RESOLUTION) for inches in _PANEL)
+def segments_picture(
+    truth: NDArray[np.int64], cloud: LabelledCloud, size: tuple[int, int]
+) -> tuple[NDArray[np.float64], PictureCamera]:
+    """Picture (height, width, 3) of a scene in the colours of `coloured_as`, and its camera.
+
+    Parameters
+    ----------
+    truth : (n,) int64
+        True labels of the cloud's points; the true objects are in the middle of the picture.
+    cloud : LabelledCloud
+        The scene as it is cut, with the camera that has seen it.
+    size : (width, height)
+        Pixels.
+    """
     labels = coloured_as(truth, cloud.labels)
     shown = LabelledCloud(cloud.points, labels, cloud.colours, cloud.camera)
     framed = LabelledCloud(cloud.points, truth, cloud.colours, cloud.camera)
+    camera = camera_of(framed, size)
     numbers = range(2, 2 + max(int(truth.max(initial=0)), int(labels.max(initial=0))))
-    return render_cloud(shown, camera_of(framed, (width, height)), object_palette(numbers)).colours
+    return render_cloud(shown, camera, object_palette(numbers)).colours, camera
 
 
 def coloured_as(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> NDArray[np.int64]:

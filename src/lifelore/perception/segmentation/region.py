@@ -9,7 +9,8 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.table_search import REACH, Table
+from lifelore.perception.segmentation.table_evidence import REACH
+from lifelore.perception.segmentation.table_search import Table
 
 AXES = ("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX")
 MAX_OBJECTS = 60

@@ -14,10 +14,11 @@ from lifelore.perception.clouds.cloud_scale import FAR
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.cut_confidence import CutCloud
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, cut_cloud
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
 from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane, over_outline
 from lifelore.perception.segmentation.region import Region, inside, over_table
-from lifelore.perception.segmentation.table_search import REACH, Search, Table, find_table, no_table
+from lifelore.perception.segmentation.table_evidence import REACH
+from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
 
 Up = Literal["table", "z"] | ArrayLike
 EVERYWHERE = Region()
@@ -183,10 +184,7 @@ def _search(points: NDArray[np.float64], cloud: PointCloud, up: Up) -> Search:
     if _has_table_label(cloud.labels, 3 if isinstance(up, str) and up == "table" else 1):
         return Search(None)
     free = None if cloud.labels is None else cloud.labels == UNLABELLED
-    if isinstance(up, str):
-        direction = np.array([0.0, 0.0, 1.0]) if up == "z" else None
-    else:
-        direction = _unit(up)
+    direction = up_direction(up)
     search = find_table(points, cloud.camera, direction, free)
     if search.table is None and direction is None:
         raise no_table(_size_hint(points))
@@ -253,6 +251,19 @@ def check_up(up: Up) -> None:
         _unit(up)
     elif up not in ("table", "z"):
         raise InputError(f"up must be 'table', 'z' or three numbers, got {up!r}")
+
+
+def up_direction(up: Up) -> NDArray[np.float64] | None:
+    """(3,) unit vector upwards; None under ``"table"``.
+
+    Raises
+    ------
+    InputError
+        `up` is no direction.
+    """
+    if isinstance(up, str):
+        return np.array([0.0, 0.0, 1.0]) if up == "z" else None
+    return _unit(up)
 
 
 def _unit(up: ArrayLike) -> NDArray[np.float64]:

@@ -1,7 +1,7 @@
 """The table's plane of a cloud without a labelled table: flat patches judged by evidence, not by size.
 
-A table is level where up is known, objects stand on it, few points hang over it unsupported, and it is no face of
-an object. A wall, a floor under a table and an object's own side fail one of these tests.
+A table is level where up is known, objects stand on it, few points hang over it unsupported or float elsewhere,
+and it is no face of an object. A wall, a floor under a table and an object's own side fail one of these tests.
 """
 
 from collections.abc import Sequence
@@ -20,26 +20,16 @@ from lifelore.perception.segmentation.surface_patches import (
     patches,
     plane_of,
 )
+from lifelore.perception.segmentation.table_evidence import BELOW_SHARE, PARALLEL, Candidate, candidates_of
 
-LEVEL = 10.0
-"""Degrees between a table's normal and a known up direction."""
-REACH = 0.6
-"""Metres above a table within which objects stand on it."""
 BACKGROUND_AREA = 0.09
 """Square metres; a larger flat patch is furniture or a wall, not an object's face."""
-FACE_AREA = 0.12
-"""Square metres; a smaller patch with as many points below its border is the top of an object."""
-HANGING = 0.20
-"""Metres above a plane from which a cluster hangs in the air; below, its support may be hidden."""
-LEAST_TABLE = 0.03
-"""Square metres; a smaller patch is no table."""
-_BELOW_SHARE = 0.3
 _BARE_SHARE = 0.25
-_NOISE_SHARE, _SURE_SHARE = 0.01, 0.05
-_SPECK = 4
-_PARALLEL = np.cos(np.radians(LEVEL))
+_NOISE_SHARE = 0.01
 _INSIDE = 0.7
 _UNLIKELY = 0.25
+_FLOATING = 5
+"""Times the points of standing objects; where more float, they stand on a table that was not seen."""
 _FLOOR = 0.30
 """Metres between a table and a floor below it."""
 
@@ -81,27 +71,6 @@ class Search:
     tilted: NDArray[np.float64] | None = None
 
 
-@dataclass(frozen=True, eq=False)
-class _Candidate:
-    """A patch with one of its two sides as the upper, and the evidence for it, in points of the cloud."""
-
-    patch: Patch
-    plane: Plane
-    standing: int
-    hanging: int
-    below: int
-    on_it: int
-
-    @property
-    def score(self) -> int:
-        return self.standing - self.hanging
-
-    @property
-    def is_face(self) -> bool:
-        """Whether it may be an object's own face: small, with points below its border."""
-        return self.patch.area < FACE_AREA and self.below > _BELOW_SHARE * self.on_it
-
-
 def find_table(
     points: NDArray[np.float64],
     camera: NDArray[np.float64] | None = None,
@@ -127,7 +96,7 @@ def find_table(
     voxels = oriented_voxels(points, camera, free)
     found = patches(voxels, stream(0, "perception", "table search"))
     large = tuple(patch for patch in found if patch.area >= BACKGROUND_AREA)
-    candidates = _candidates(voxels, found, large, camera)
+    candidates = candidates_of(voxels, found, large, camera)
     chosen = _chosen(voxels, candidates, camera, up)
     if chosen is None:
         tilted = None if up is None else _chosen(voxels, candidates, camera, None)
@@ -137,98 +106,24 @@ def find_table(
     return Search(Table(table, chosen.patch, others, chosen.standing))
 
 
-def _candidates(
-    voxels: OrientedVoxels, found: Sequence[Patch], large: Sequence[Patch], camera: NDArray[np.float64] | None
-) -> list[_Candidate]:
-    """Both sides of every patch of a table's size, judged; the camera's side first."""
-    owner = np.full(len(voxels.points), -1)
-    for number, patch in enumerate(large):
-        owner[patch.voxels] = number
-    made = []
-    for patch in found:
-        if patch.area < LEAST_TABLE:
-            continue
-        parallel = np.array([abs(other.plane.normal @ patch.plane.normal) >= _PARALLEL for other in large], bool)
-        near_side = camera is None or patch.plane.height(camera) >= 0
-        for plane in (patch.plane, patch.plane.flipped()) if near_side else (patch.plane.flipped(), patch.plane):
-            made.append(_judged(voxels, patch, plane, owner, parallel))
-    return made
-
-
-def _judged(
-    voxels: OrientedVoxels, patch: Patch, plane: Plane, owner: NDArray[np.int64], parallel: NDArray[np.bool_]
-) -> _Candidate:
-    """The evidence for a patch with this upper side.
-
-    Clusters of voxels over it that touch it stand on it, unless they touch another large patch parallel to it: a
-    table's legs. Clusters that touch neither it nor a large patch, and begin `HANGING` above it, hang in the air.
-    """
-    heights = plane.height(voxels.points)
-    over = (np.abs(heights) > voxels.bands) & (np.abs(heights) <= 2 * REACH) & (owner < 0)
-    over[patch.voxels] = False
-    over[over] = patch.covers(voxels.points[over])
-    below = int(voxels.counts[over & (heights < 0) & (heights > -REACH / 2)].sum())
-    above = np.flatnonzero(over & (heights > 0))
-    on_it = int(voxels.counts[patch.voxels].sum())
-    if len(above) == 0:
-        return _Candidate(patch, plane, 0, 0, below, on_it)
-    cluster = np.full(len(voxels.points), -1)
-    cluster[above] = _clusters(above, voxels.links, len(voxels.points))
-    k = int(cluster.max()) + 1
-    size = np.bincount(cluster[above], minlength=k)
-    points = np.bincount(cluster[above], voxels.counts[above], minlength=k)
-    top, bottom = np.full(k, -np.inf), np.full(k, np.inf)
-    np.maximum.at(top, cluster[above], heights[above])
-    np.minimum.at(bottom, cluster[above], heights[above])
-    foot = np.zeros(len(voxels.points), bool)
-    foot[patch.voxels] = True
-    other_level = (owner >= 0) & np.append(parallel, False)[owner] & ~foot
-    touches = {
-        name: _touching(cluster, mask, voxels.links, k)
-        for name, mask in (("foot", foot), ("level", other_level), ("large", (owner >= 0) & ~foot))
-    }
-    standing = touches["foot"] & ~touches["level"] & (size >= _SPECK) & (top <= REACH)
-    hanging = ~touches["foot"] & ~touches["large"] & (size >= _SPECK) & (bottom >= HANGING)
-    return _Candidate(patch, plane, int(points[standing].sum()), int(points[hanging].sum()), below, on_it)
-
-
-def _clusters(members: NDArray[np.int64], links: NDArray[np.int64], n: int) -> NDArray[np.int64]:
-    """Number of the connected cluster of each of `members`, which are some of n voxels."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-
-    number = np.full(n, -1)
-    number[members] = np.arange(len(members))
-    pairs = number[links]
-    pairs = pairs[(pairs >= 0).all(axis=1)]
-    graph = coo_array((np.ones(len(pairs), np.int8), (pairs[:, 0], pairs[:, 1])), shape=(len(members),) * 2)
-    return connected_components(graph, directed=False)[1].astype(np.int64)
-
-
-def _touching(
-    cluster: NDArray[np.int64], mask: NDArray[np.bool_], links: NDArray[np.int64], k: int
-) -> NDArray[np.bool_]:
-    """(k,) bool: clusters of which a voxel is linked to a voxel of `mask`."""
-    first, second = links.T
-    met = np.concatenate([cluster[first[mask[second]]], cluster[second[mask[first]]]])
-    return np.bincount(met[met >= 0], minlength=k) > 0
-
-
 def _chosen(
     voxels: OrientedVoxels,
-    candidates: Sequence[_Candidate],
+    candidates: Sequence[Candidate],
     camera: NDArray[np.float64] | None,
     up: NDArray[np.float64] | None,
-) -> _Candidate | None:
+) -> Candidate | None:
     """The likeliest table; None where no candidate passes the tests."""
     if up is not None:
-        candidates = [c for c in candidates if c.plane.normal @ up >= _PARALLEL]
+        candidates = [c for c in candidates if c.plane.normal @ up >= PARALLEL]
     total = int(voxels.counts.sum())
     likely = {id(c): up is not None or _is_likely_up(c.plane.normal, voxels, camera) for c in candidates}
     carrying = [
         c
         for c in candidates
-        if c.score > _NOISE_SHARE * c.on_it and not c.is_face and (likely[id(c)] or c.on_it >= _BARE_SHARE * total)
+        if c.score > _NOISE_SHARE * c.on_it
+        and c.floating + c.tall <= _FLOATING * c.standing
+        and not c.is_face
+        and (likely[id(c)] or c.on_it >= _BARE_SHARE * total)
     ]
     if carrying:
         return max(
@@ -237,21 +132,21 @@ def _chosen(
     bare = [
         c
         for c in candidates
-        if c.below <= _BELOW_SHARE * c.on_it
-        and c.hanging <= _NOISE_SHARE * c.on_it
+        if c.below <= BELOW_SHARE * c.on_it
+        and max(c.hanging, c.floating, c.tall) <= _NOISE_SHARE * c.on_it
         and (up is not None or c.on_it >= _BARE_SHARE * total)
         and likely[id(c)]
     ]
     return max(bare, key=lambda c: c.on_it, default=None)
 
 
-def _weight(candidate: _Candidate, others: Sequence[_Candidate], voxels: OrientedVoxels, likely: bool) -> float:
+def _weight(candidate: Candidate, others: Sequence[Candidate], voxels: OrientedVoxels, likely: bool) -> float:
     """1, or less for a floor below another candidate and for an unlikely up direction."""
     weight = 1.0 if likely else _UNLIKELY
     for other in others:
         places = voxels.points[other.patch.voxels]
         is_above = (
-            candidate.plane.normal @ other.plane.normal >= _PARALLEL
+            candidate.plane.normal @ other.plane.normal >= PARALLEL
             and np.median(candidate.plane.height(places)) >= _FLOOR
         )
         if is_above and np.mean(candidate.patch.covers(places)) >= _INSIDE:
@@ -276,7 +171,7 @@ def _refined(
     points: NDArray[np.float64],
     camera: NDArray[np.float64] | None,
     voxels: OrientedVoxels,
-    chosen: _Candidate,
+    chosen: Candidate,
 ) -> Plane:
     """The plane through all points of the patch's voxels, each weighed by its noise."""
     member = np.zeros(len(voxels.points), bool)

@@ -36,14 +36,22 @@ def fetch_order(state: PlanningState, target: int) -> tuple[int, ...] | None:
 
 def is_valid(order: Sequence[int], truth: Iterable[PairLabel], least_confidence: int = 2) -> bool:
     """Whether nothing rests on any object when it is picked up, by labels with at least that confidence."""
-    resting = {
-        (label.a, label.b)
+    return first_fault(order, truth, least_confidence) is None
+
+
+def first_fault(
+    order: Sequence[int], truth: Iterable[PairLabel], least_confidence: int = 2
+) -> tuple[int, int] | None:
+    """The first object that is picked up while another rests on it, as (object, other); None of a valid plan."""
+    resting = sorted(
+        (label.b, label.a)
         for label in truth
         if label.relation in (ON, BOTH) and label.confidence >= least_confidence and label.b != TABLE
-    }
+    )
     away: set[int] = set()
     for thing in order:
-        if any(below == thing and other not in away for other, below in resting):
-            return False
+        for below, other in resting:
+            if below == thing and other not in away:
+                return below, other
         away.add(thing)
-    return True
+    return None

@@ -16,7 +16,7 @@ Series = Mapping[str, Sequence[float]]
 def draw_plan_validity(
     thresholds: Sequence[float], default: float, panels: Mapping[str, tuple[Series, Series]]
 ) -> "Figure":
-    """The figure: a panel for each kind of scene.
+    """The figure: a panel for each kind of scene, two a row.
 
     Parameters
     ----------
@@ -25,13 +25,20 @@ def draw_plan_validity(
     panels : by title, the series with hidden tops unknown, and with hidden tops taken as clear
     """
     with house_style():
-        figure = new_figure(9.4, 3.8)
-        axes = figure.subplots(1, len(panels), sharey=True, squeeze=False)[0]
-        for place, (title, (unknown, as_clear)) in zip(axes, panels.items(), strict=True):
+        rows = -(-len(panels) // 2)
+        figure = new_figure(9.4, 3.6 * rows + 0.3)
+        axes = figure.subplots(rows, 2, sharex=True, sharey=True, squeeze=False)
+        lowest = min(min(series["planned"]) for both in panels.values() for series in both)
+        for place, (title, (unknown, as_clear)) in zip(axes.flat, panels.items(), strict=False):
             _panel(place, thresholds, default, unknown, as_clear)
-            place.set(title=title, xlabel="least probability of a stated fact", ylim=(0.5, 1.02))
-        axes[0].set_ylabel("share")
-        axes[0].legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none", fontsize=7.5)
+            place.set(title=title, ylim=(min(0.5, lowest - 0.05), 1.02))
+        for place in axes.flat[len(panels) :]:
+            place.set_axis_off()
+        for place in axes[-1]:
+            place.set_xlabel("least probability of a stated fact")
+        for place in axes[:, 0]:
+            place.set_ylabel("share")
+        axes[0, 0].legend(loc="lower left", frameon=True, framealpha=1, edgecolor="none", fontsize=7.5)
         figure.suptitle("Plans that fetch an object, from perceived facts")
     return figure
 

@@ -2,95 +2,81 @@
 
 For every object near another, a plan fetches it (`fetch_plan`) from the facts that are stated at a threshold. The
 plan is valid if no object has anything on it when it is picked up, by the forces of the simulation, or by the
-hand-made labels of confidence 2 and 3. A higher threshold gives fewer plans, of which more are valid.
+hand-made labels of confidence 2 and 3. A higher threshold gives fewer plans, of which more are valid. The same
+objects are fetched once with labels given, and once without labels (`fetched_scene`). The real scenes in which an
+object has no valid plan are drawn.
 """
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
-from lifelore.core.relations import PairLabel
 from lifelore.domains.tabletop.tabletop import TabletopSettings, tabletop_scenes
-from lifelore.experiments.bench.perception.fetch_plan import fetch_order, is_valid
+from lifelore.experiments.bench.perception.fetched_scene import (
+    AS_CLEAR,
+    NO_OBJECT,
+    NO_PLAN,
+    NOT_FOUND,
+    THRESHOLDS,
+    UNKNOWN,
+    Fetched,
+    Key,
+    fetched_given,
+    fetched_without_labels,
+)
+from lifelore.experiments.bench.perception.figure_plan_failures import FailedScene
 from lifelore.experiments.bench.perception.relation_scenes import HELD_OUT
+from lifelore.experiments.bench.perception.segmentation_scenes import (
+    real_true_scenes,
+    simulated_true_scene,
+    true_labels,
+)
 from lifelore.experiments.bench.rounds import at_least, row
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
 from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
-from lifelore.perception.perceived_scene import perceived_scene
-from lifelore.perception.reasoning.hidden_tops import hidden_tops
-from lifelore.perception.reasoning.label_distribution import label_distributions
-from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE, planning_state
-from lifelore.perception.reasoning.scene_logic import alternatives
-from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE
 
-THRESHOLDS = (0.0, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.85, 0.9, 0.95, 0.98)
 SCENES = 40
 """Simulated scenes a round; two to seven objects each."""
 SIMULATED, REAL = "simulated", "real"
-UNKNOWN, AS_CLEAR = "hidden tops unknown", "hidden tops taken as clear"
+WITHOUT = " without labels"
 OUT = Path("results")
-Key = tuple[str, float]
-"""How hidden tops count, and the threshold."""
-
-
-@dataclass(frozen=True)
-class Fetched:
-    """Counts of a scene: objects to fetch, and by `Key` the plans and the valid ones among them."""
-
-    targets: int
-    plans: Mapping[Key, tuple[int, int]]
+DEFAULT = (UNKNOWN, PLAN_CONFIDENCE)
 
 
 def bench_plans(repeats: int, progress: Progress, out: Path = OUT) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`. Each round adds simulated scenes.
 
-    With two rounds or more, the figure ``bench_plans.png`` is drawn in `out`.
+    With two rounds or more, the figure ``bench_plans.png`` is drawn in `out`, and ``plans/failures.png`` if there
+    are real scenes.
     """
     n = SCENES * repeats
-    real = real_scenes() if real_scenes_folder() else ()
+    real = list(zip(real_scenes(), real_true_scenes(), strict=True)) if real_scenes_folder() else []
     seed, shapes = HELD_OUT
-    fetched: dict[str, list[Fetched]] = {SIMULATED: [], REAL: []}
+    fetched: dict[str, list[Fetched]] = {where + how: [] for how in ("", WITHOUT) for where in (SIMULATED, REAL)}
+    failed: list[FailedScene] = []
     for scene in tabletop_scenes(n, seed, TabletopSettings(shapes=shapes)):
-        fetched[SIMULATED].append(fetched_in(scene.cloud, scene.truth))
+        targets, given = fetched_given(scene.cloud, scene.truth)
+        fetched[SIMULATED].append(given)
+        fetched[SIMULATED + WITHOUT].append(fetched_without_labels(simulated_true_scene(scene), targets)[1])
         progress(len(fetched[SIMULATED]), n + len(real), "simulated scenes")
-    for scene in real:
-        fetched[REAL].append(fetched_in(scene.cloud, scene.truth))
+    for labelled, scene in real:
+        targets, given = fetched_given(labelled.cloud, labelled.truth)
+        cut, without = fetched_without_labels(scene, targets)
+        fetched[REAL].append(given)
+        fetched[REAL + WITHOUT].append(without)
+        if given.failures or without.failures:
+            failed.append(
+                FailedScene(
+                    scene.name, true_labels(scene), (labelled.cloud, cut), (given.failures, without.failures)
+                )
+            )
         progress(n + len(fetched[REAL]), n + len(real), "real scenes")
-    rows, goals = [], []
     if repeats > 1:
-        _draw(fetched, out)
-    for where, scenes in fetched.items():
-        for key in [(hidden, least) for hidden in (UNKNOWN, AS_CLEAR) for least in THRESHOLDS]:
-            planned, valid, useful = shares(scenes, key)
-            name = f"{where}, {key[0]}, from {key[1]:g}"
-            rows += [
-                _row(f"{name}: objects with a plan", planned),
-                _row(f"{name}: valid plans", valid),
-                _row(f"{name}: objects with a valid plan", useful),
-            ]
-        _, valid, _ = shares(scenes, (UNKNOWN, PLAN_CONFIDENCE))
-        measured = valid.value if valid.n else None
-        goals.append(at_least(f"{where}, default threshold {PLAN_CONFIDENCE:g}: valid plans", 0.95, measured))
-    return {"rows": rows, "goals": goals}
-
-
-def fetched_in(cloud: LabelledCloud, truth: Iterable[PairLabel]) -> Fetched:
-    """The plans for a scene, which the shipped model perceives."""
-    truth = tuple(truth)
-    scene = perceived_scene(cloud, shipped_model())
-    targets = sorted({end for i in scene.interfaces if TABLE not in (i.a, i.b) for end in (i.a, i.b)})
-    beliefs = label_distributions(alternatives(scene.beliefs))
-    hidden = {UNKNOWN: hidden_tops(cloud), AS_CLEAR: ()}
-    plans = {}
-    for way, tops in hidden.items():
-        for least in THRESHOLDS:
-            state = planning_state(scene.relations, scene.objects, least, beliefs, tops)
-            orders = [order for target in targets if (order := fetch_order(state, target)) is not None]
-            plans[way, least] = len(orders), sum(is_valid(order, truth) for order in orders)
-    return Fetched(len(targets), plans)
+        _draw(fetched, failed, out)
+    rows = [line for where, scenes in fetched.items() for line in _rows(where, scenes)]
+    return {"rows": rows, "goals": _goals(fetched)}
 
 
 def shares(scenes: Iterable[Fetched], key: Key) -> tuple[Estimate, Estimate, Estimate]:
@@ -104,22 +90,62 @@ def shares(scenes: Iterable[Fetched], key: Key) -> tuple[Estimate, Estimate, Est
     )
 
 
+def _rows(where: str, scenes: Sequence[Fetched]) -> list[dict]:
+    """Rows at each threshold, and at the default threshold the reasons of failures."""
+    rows = []
+    for key in [(hidden, least) for hidden in (UNKNOWN, AS_CLEAR) for least in THRESHOLDS]:
+        planned, valid, useful = shares(scenes, key)
+        name = f"{where}, {key[0]}, from {key[1]:g}"
+        rows += [
+            _row(f"{name}: objects with a plan", planned),
+            _row(f"{name}: valid plans", valid),
+            _row(f"{name}: objects with a valid plan", useful),
+        ]
+    reasons = [reason for scene in scenes for reason in scene.failures.values()]
+    counts = {reason: reasons.count(reason) for reason in (NOT_FOUND, NO_PLAN, NO_OBJECT)}
+    counts["another object rests on it"] = len(reasons) - sum(counts.values())
+    return rows + [
+        row(f"{where}, default threshold, failures: {reason}", count, "objects")
+        for reason, count in counts.items()
+    ]
+
+
 def _row(name: str, estimate: Estimate) -> dict:
     value = estimate.value if estimate.n else None
     return row(name, value, "share") | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
 
 
-def _draw(fetched: Mapping[str, Sequence[Fetched]], out: Path) -> None:
+def _goals(fetched: Mapping[str, Sequence[Fetched]]) -> list[dict]:
+    """Of the plans at the default threshold."""
+    goals = []
+    for where in (SIMULATED, REAL):
+        _, valid, _ = shares(fetched[where], DEFAULT)
+        name = f"{where}, default threshold {PLAN_CONFIDENCE:g}"
+        goals.append(at_least(f"{name}: valid plans", 0.95, valid.value if valid.n else None))
+    for where, least in ((REAL, 0.95), (REAL + WITHOUT, 0.80)):
+        _, _, useful = shares(fetched[where], DEFAULT)
+        name = f"{where}, default threshold {PLAN_CONFIDENCE:g}"
+        goals.append(at_least(f"{name}: objects with a valid plan", least, useful.value if useful.n else None))
+    return goals
+
+
+def _draw(fetched: Mapping[str, Sequence[Fetched]], failed: Sequence[FailedScene], out: Path) -> None:
+    from lifelore.experiments.bench.perception.figure_plan_failures import draw_plan_failures
     from lifelore.experiments.bench.perception.figure_plan_validity import draw_plan_validity
     from lifelore.figures.style import save_figure
 
     out.mkdir(parents=True, exist_ok=True)
     panels = {
-        f"{len(scenes)} {where} scenes": (_series(scenes, UNKNOWN), _series(scenes, AS_CLEAR))
+        f"{len(scenes)} {where} scenes" if WITHOUT not in where else f"{len(scenes)} scenes, {where}": (
+            _series(scenes, UNKNOWN),
+            _series(scenes, AS_CLEAR),
+        )
         for where, scenes in fetched.items()
         if scenes
     }
     save_figure(draw_plan_validity(THRESHOLDS, PLAN_CONFIDENCE, panels), out / "bench_plans.png")
+    if failed:
+        save_figure(draw_plan_failures(failed), out / "plans" / "failures.png")
 
 
 def _series(scenes: Sequence[Fetched], hidden: str) -> dict[str, list[float]]:

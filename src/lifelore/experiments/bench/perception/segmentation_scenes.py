@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import PairLabel
-from lifelore.domains.tabletop.tabletop import TabletopSettings, tabletop_scenes
+from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
 from lifelore.experiments.chapter2.scoring.segmentation_scoring import ObjectOverlap, matched_objects, overlaps
 from lifelore.experiments.chapter2.scoring.segmented_relations import RelationCounts, relation_counts
@@ -19,7 +19,7 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.perceived_scene import perceived_scene
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_truth import read_relations
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.table_frame import Up, segmented_scene, to_scene
 
 GIVEN = "labels given"
@@ -73,21 +73,20 @@ def real_true_scenes() -> list[TrueScene]:
 
 def simulated_true_scenes(n: int) -> Iterator[TrueScene]:
     """The first `n` simulated scenes; their frame is the table's."""
-    for scene in tabletop_scenes(n, SEED, TabletopSettings(shapes=SHAPES)):
-        cloud = scene.cloud
-        yield TrueScene(
-            scene.name,
-            PointCloud(cloud.points, cloud.labels, cloud.colours, camera=cloud.camera),
-            scene.truth,
-            "z",
-        )
+    yield from map(simulated_true_scene, tabletop_scenes(n, SEED, TabletopSettings(shapes=SHAPES)))
+
+
+def simulated_true_scene(scene: TabletopScene) -> TrueScene:
+    """A simulated scene; its frame is the table's."""
+    cloud = scene.cloud
+    points = PointCloud(cloud.points, cloud.labels, cloud.colours, camera=cloud.camera)
+    return TrueScene(scene.name, points, scene.truth, "z")
 
 
 def found_scene(scene: TrueScene, method: str, model: RelationClassifier) -> FoundScene:
     """What a method of `METHODS` finds, and the relations that `model` perceives then."""
-    cloud, settings = scene.cloud, METHODS[method]
-    if settings is not None:
-        cloud = PointCloud(cloud.points, None, cloud.colours, camera=cloud.camera)
+    settings = METHODS[method]
+    cloud = scene.cloud if settings is None else unlabelled(scene)
     began = time.process_time()
     labelled, confidence = _scene(cloud, scene.up, settings)
     between = time.process_time()
@@ -98,6 +97,11 @@ def found_scene(scene: TrueScene, method: str, model: RelationClassifier) -> Fou
     counts = relation_counts(scene.truth, relations, stands_for)
     cuts = [(sure, label in stands_for) for label, sure in confidence.items()]
     return FoundScene(labelled, found, counts, between - began, ended - began, cuts)
+
+
+def unlabelled(scene: TrueScene) -> PointCloud:
+    """The scene's cloud without its labels."""
+    return PointCloud(scene.cloud.points, None, scene.cloud.colours, camera=scene.cloud.camera)
 
 
 def true_labels(scene: TrueScene) -> NDArray[np.int64]:

@@ -22,7 +22,7 @@ from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import MIX
 from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 
 CAMERAS = ("stereo", "kinect")
 DENSE = "stereo, made dense"

@@ -23,7 +23,7 @@ from lifelore.domains.tabletop.shapes import box
 from lifelore.experiments.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
 from lifelore.experiments.chapter2.scoring.segmentation_scoring import overlaps
-from lifelore.perception.segmentation.distance_segmentation import SegmentationSettings, segmented
+from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 from lifelore.perception.segmentation.poking import PokedLabels, PokedSegments
 
 LOT = 2
