@@ -103,3 +103,37 @@ def test_numbers_are_those_of_the_benchmark():
 
 def test_its_picture_is_small_enough():
     assert (ROOT / "results" / "bench_deep.png").stat().st_size <= 300_000
+
+
+LAYOUTS = json.loads((ROOT / "results" / "bench_deep_layouts.json").read_text(encoding="utf-8"))
+LAYOUT_ROWS = {row["name"]: row for row in LAYOUTS["rows"]}
+WORLD = "SimpleCrossingS9N1"
+CASES = [
+    ("one", "one layout", "MaskablePPO"),
+    ("another every episode", "another layout every episode", "MaskablePPO"),
+    ("another every episode", "another layout every episode", "DQN"),
+]
+
+
+def shown(name, digits):
+    row = LAYOUT_ROWS[f"{WORLD}, {name}"]
+    low, high = row["ci95"]
+    return f"{row['value']:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
+
+
+@pytest.mark.parametrize(("words", "layouts", "learner"), CASES)
+def test_the_table_of_layouts(words, layouts, learner):
+    case = f"{layouts}, {learner}"
+    score, goals = "score at the end", "goals reached while learning"
+    cells = [
+        shown(f"{case} without prior, {score}", 2),
+        shown(f"{case} with prior, {score}", 2),
+        shown(f"{case}, {score}, gain by prior, mean", 2),
+        shown(f"{case} without prior, {goals}", 0),
+        shown(f"{case} with prior, {goals}", 0),
+    ]
+    assert f"| {words} | {learner} | " + " | ".join(cells) + " |" in PAGE
+
+
+def test_the_number_of_runs():
+    assert {row["n"] for row in LAYOUTS["rows"]} == {5}
