@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter5.c5_05_curiosity.late_type import SOON, auc
 from lifelore.experiments.chapter5.c5_05_curiosity.run import CHOOSERS, UNIFORM, late_lives
-from lifelore.experiments.engine.estimates import UNMEASURED, exact_value
+from lifelore.experiments.engine.estimates import UNMEASURED, exact_share, exact_value
 
 GAIN = 0.8
 """Share of what uniform replay gains, at which episodes are compared."""
@@ -31,11 +31,11 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     known = [score for life in lives for score in life.known_scores]
     late = [score for life in lives for score in life.late_scores]
     found["late_type_auc"] = exact_value(auc(known, late), len(late)) if known else UNMEASURED
-    found["late_type_learnt"] = mean_estimate([float(life.learnt) for life in lives])
+    found["late_type_learnt"] = exact_share(life.learnt for life in lives)
     false = [float(np.mean(life.false_alarms)) for life in lives if life.false_alarms]
     found["false_alarms"] = mean_estimate(false) if false else UNMEASURED
-    again = [float((life.recognised_after or np.inf) <= SOON) for life in lives if life.again]
-    found["recognised_soon"] = mean_estimate(again) if again else UNMEASURED
+    again = ((life.recognised_after or np.inf) <= SOON for life in lives if life.again)
+    found["recognised_soon"] = exact_share(again)
     return found
 
 
