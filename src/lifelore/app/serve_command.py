@@ -32,10 +32,11 @@ def serve(
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
-    """Answer over HTTP from the memory of the command line, and show pages in a browser.
+    """Answer over HTTP, and show pages in a browser.
 
     Use it when programs in other languages or on other machines need the memory, or to play, teach, walk and see
-    in a browser. Ctrl-C stops it: every answered request is stored. The addresses are listed under /openapi.json.
+    in a browser. The memory is that of the command line. Ctrl-C stops it: every answered request is stored. The
+    addresses are listed under /openapi.json.
     """
     from lifelore.app.console import print_json_line
     from lifelore.core.errors import InputError, MissingExtraError

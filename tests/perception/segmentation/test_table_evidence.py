@@ -44,6 +44,13 @@ def test_boxes_stand_on_a_floor():
     assert find_table(np.concatenate([FLOOR, boxes(0.0)]), up=UP).table is not None
 
 
+def test_tops_that_a_camera_above_sees_alone_do_not_float():
+    tops = boxes(0.0)
+    points = np.concatenate([FLOOR, tops[tops[:, 2] == 0.15]])
+    assert judged(points).floating == 0
+    assert find_table(points, camera=np.array([0.0, 0.0, 1.5])).table is not None
+
+
 @pytest.mark.parametrize("aside", [0.0, 1.5])
 def test_boxes_on_glass_float_and_the_floor_is_no_table(aside):
     # Beside the floor too: what is seen of it begins behind the objects.

@@ -44,7 +44,8 @@ class Candidate:
     hanging : int
         Points of clusters over it that touch nothing and begin at least `HANGING` above it.
     floating : int
-        Points of clusters anywhere that touch neither it nor a large patch: objects on a table of glass.
+        Points of clusters anywhere that touch neither it nor a large patch, and are not low over it: objects on a
+        table of glass.
     below : int
         Points under it.
     on_it : int
@@ -141,7 +142,10 @@ def _judged(voxels: OrientedVoxels, patch: Patch, plane: Plane, around: _Surroun
     over &= ~around.fringe[others].any(axis=0)
     over[over] = patch.covers(voxels.points[over])
     below = int(voxels.counts[over & (heights < 0) & (heights > -REACH / 2)].sum())
-    floating = _floating(voxels, around, foot | (np.abs(heights) <= voxels.bands))
+    # A camera above sees the tops of objects alone: what is low over the patch may stand on it.
+    low = (heights > 0) & (heights < HANGING)
+    low[low] = patch.covers(voxels.points[low])
+    floating = _floating(voxels, around, foot | low | (np.abs(heights) <= voxels.bands))
     on_it = int(voxels.counts[patch.voxels].sum())
     above = np.flatnonzero(over & (heights > 0))
     if len(above) == 0:
