@@ -34,7 +34,7 @@ class LiveRound:
         Accepted.
     session : StudySession
     store : async callable, optional
-        Stores the result of a round before the player is told; None where nothing is recorded.
+        Stores the result of a round before the page shows it; None where nothing is recorded.
     """
 
     def __init__(self, socket: WebSocket, session: StudySession, store: Store | None) -> None:
