@@ -191,7 +191,7 @@ def test_show_is_plain_data_with_exact_sums(memory):
         {"kind": "prior", "key": "b7", "version": 1, "merge": "add", "slots": 3, "sum": 2 * LARGEST - 5},
         {"kind": "prior", "key": "low", "version": 1, "merge": "add", "slots": 2, "sum": -(2**64)},
     ]
-    assert (shown["schema"], shown["forgotten"], shown["forgotten_records"]) == (5, 0, 0)
+    assert (shown["schema"], shown["forgotten"], shown["forgotten_records"]) == (6, 0, 0)
     assert shown["location"] == memory.location
 
 

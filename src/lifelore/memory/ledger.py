@@ -28,9 +28,10 @@ _KNOWN = (
     f"SELECT 1 FROM lifelore_contributions WHERE {_IDENTITY}"
     f" UNION ALL SELECT 1 FROM lifelore_tombstones WHERE {_IDENTITY}"
 )
+# A maximum for each table: one over the union of their rows would read them all.
 _LARGEST_STAMP = (
-    "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT stamp FROM lifelore_contributions"
-    " UNION ALL SELECT stamp FROM lifelore_forgotten_records) AS stamps"
+    "SELECT COALESCE(MAX(stamp), 0) FROM (SELECT MAX(stamp) AS stamp FROM lifelore_contributions"
+    " UNION ALL SELECT MAX(stamp) FROM lifelore_forgotten_records) AS stamps"
 )
 # Inserts nothing unless the row is new and the newest. The row gets the number of its key where the cache has that
 # key with the same description.

@@ -65,12 +65,17 @@ CREATE TABLE lifelore_leases (
     until {int} NOT NULL, PRIMARY KEY (robot, number))
 """
 
+_STAMPS = """
+CREATE INDEX lifelore_forgotten_records_stamp ON lifelore_forgotten_records (stamp)
+"""
+
 MIGRATIONS = {
     1: ("contributions, tombstones and cache", _FIRST),
     2: ("forgotten records", _SECOND),
     3: ("states that learners compute from a key's cells", _STATES),
     4: ("states beside the cells, and the only key of a contribution beside it", _TOGETHER),
     5: ("leases of tasks", _LEASES),
+    6: ("the last stamp of forgotten records without a look at all of them", _STAMPS),
 }
 LATEST = max(MIGRATIONS)
 FORGOTTEN_RECORDS = 2

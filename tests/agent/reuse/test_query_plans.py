@@ -1,0 +1,46 @@
+"""No statement of a choice or its outcome reads a whole table: the time does not grow with the memory."""
+
+import re
+
+import pytest
+
+from lifelore.agent.reuse.one_user import choose, forget, update
+from lifelore.agent.reuse.study import Study
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.memory import open_memory
+from lifelore.memory.connection import Connection
+
+WHOLE_TABLE = re.compile(r"\bSCAN lifelore_\w+")
+
+
+@pytest.fixture
+def asked(monkeypatch):
+    """Statements with their parameters, as they are run."""
+    found: list[tuple[str, object]] = []
+    run = Connection.execute
+
+    def noted(self, sql, parameters=()):
+        found.append((sql, parameters))
+        return run(self, sql, parameters)
+
+    monkeypatch.setattr(Connection, "execute", noted)
+    return found
+
+
+def test_a_choice_and_its_outcome_read_no_whole_table(tmp_path, asked):
+    library = PolicyLibrary.from_means([[8.0, 1.0], [1.0, 8.0]], 2.0)
+    study = Study("s", library, dict.fromkeys(library.policies, "active"), rule="sampling")
+    with open_memory(tmp_path / "m.db") as memory:
+        choose(memory, study, "gone")
+        forget(memory, study, "gone")
+        asked.clear()
+        for outcome in range(2):
+            update(memory, study, choose(memory, study, "ann", request=str(outcome))["decision"], float(outcome))
+        statements = list(asked)
+        with memory._store.pool.connection() as conn:
+            plans = {
+                sql: [row[3] for row in conn.execute(f"EXPLAIN QUERY PLAN {sql}", parameters).fetchall()]
+                for sql, parameters in statements
+            }
+    assert len(plans) > 5
+    assert {sql: plan for sql, plan in plans.items() if WHOLE_TABLE.search(" ".join(plan))} == {}
