@@ -24,15 +24,19 @@ from lifelore.agent.long_lived.families.tabletop import (  # noqa: E402
     available_acts,
     reward_bin,
 )
-from lifelore.agent.long_lived.families.tray_features import look_with_labels  # noqa: E402
+from lifelore.agent.long_lived.families.tray_features import look_at_raw_cloud, look_with_labels  # noqa: E402
 from lifelore.agent.long_lived.knowledge import Knowledge  # noqa: E402
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task  # noqa: E402
 from lifelore.agent.long_lived.task_family import AGENTS  # noqa: E402
+from lifelore.core.errors import InputError  # noqa: E402
+from lifelore.core.labelled_cloud import LabelledCloud  # noqa: E402
 from lifelore.domains.tabletop_job.best_return import OutcomeTree  # noqa: E402
 from lifelore.domains.tabletop_job.job import TabletopJob  # noqa: E402
 from lifelore.domains.tabletop_job.job_replay import JobReplay  # noqa: E402
 from lifelore.domains.tabletop_job.tray import sample_tray, tray_of  # noqa: E402
 from lifelore.domains.task_stream import TaskStream  # noqa: E402
+from lifelore.perception.clouds.point_cloud import PointCloud  # noqa: E402
+from lifelore.perception.segmentation.table_frame import to_scene  # noqa: E402
 
 KIND = job_type_named("patient/firm")
 
@@ -55,6 +59,17 @@ def test_a_replay_is_the_job():
             assert ours[1:] == theirs[1:]
             assert (ours[0].held, ours[0].gone) == (theirs[0].held, theirs[0].gone)
     assert len(replay.tree) <= 4
+
+
+def test_a_raw_cloud_of_which_no_scene_can_be_made_shows_nothing(monkeypatch):
+    job = TabletopJob(sample_tray(3, 0), KIND)
+    rng = np.random.default_rng(0)
+    lumps = rng.uniform(-1, 1, (100, 1, 3)) + rng.normal(0, 0.02, (100, 300, 3))
+    cloud = LabelledCloud(lumps.reshape(-1, 3), np.zeros(30_000, np.int64), None, np.array([0.0, -2.0, 2.0]))
+    with pytest.raises(InputError, match="objects"):
+        to_scene(PointCloud(cloud.points, camera=cloud.camera), "z")
+    monkeypatch.setattr(job, "look", lambda: cloud)
+    assert look_at_raw_cloud(job) is None
 
 
 def test_features_name_the_target_that_the_user_points_at(family):

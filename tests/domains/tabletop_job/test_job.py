@@ -141,6 +141,9 @@ def test_looks_carry_labels_on_request_alone():
     later = task.look(labelled=True)
     assert tray.target + 2 not in later.objects
     assert np.array_equal(later.points, task.look().points)
+    plain = task.look(labelled=True, coloured=False)
+    assert plain.colours is None
+    assert np.array_equal(later.points, plain.points)
     other = next(label for label in later.objects)
     for cloud in (tray.cloud, later):
         assert cloud.colours is not None

@@ -71,11 +71,12 @@ def create_app(settings: ServiceSettings, open_paths: Collection[str] = ()) -> F
     )  # fmt: skip
     app.state.service = service
     _answer_errors(app, service)
+    # A request is compared with the routes in this order; those that are asked most come first.
     for routes in (
-        health_routes,
-        study_routes,
         user_routes,
         panel_routes,
+        health_routes,
+        study_routes,
         adaptation_routes,
         log_routes,
         perceive_routes,

@@ -53,6 +53,7 @@ def photograph(
     camera: Camera,
     rng: np.random.Generator,
     fewest: int = FEW_POINTS,
+    coloured: bool = True,
 ) -> Photograph | None:
     """What the camera sees of the objects and of the table; None where an object has less than `fewest` points."""
     rays = _rays_at(outlines, view, camera)
@@ -67,7 +68,7 @@ def photograph(
     if np.bincount(labels, minlength=FIRST_OBJECT + len(outlines))[FIRST_OBJECT:].min() < fewest:
         return None
     normals[on_table] = (0.0, 0.0, 1.0)
-    colours = _colours(labels, normals[seen], rng)
+    colours = _colours(labels, normals[seen], rng) if coloured else None
     cloud = LabelledCloud(view.position + world[seen] * noisy[seen, None], labels, colours, view.position)
     return Photograph(cloud, view.position + world[seen] * depth[seen, None], view)
 

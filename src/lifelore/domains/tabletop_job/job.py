@@ -168,13 +168,15 @@ class TabletopJob:
             return witness.events(push_apart(tray, number), pushed=True)
         return witness.events(hand_over(tray, "brisk" if verb == HAND_OVER_BRISKLY else "gentle"))
 
-    def look(self, labelled: bool = False) -> LabelledCloud:
+    def look(self, labelled: bool = False, coloured: bool = True) -> LabelledCloud:
         """What the camera sees now, in the table's frame; the hand is out of the picture, what it holds is not.
 
         Parameters
         ----------
         labelled : bool
             Whether points carry the true object (``k + 2``) or the table (1); without, all labels are 0.
+        coloured : bool
+            Whether points have colours, which take a third of the time of a picture.
 
         Returns
         -------
@@ -182,15 +184,14 @@ class TabletopJob:
             At the start it is the tray's own picture. An object that is hidden has no points.
         """
         taken = self._observation.n_actions_taken
-        cloud = self.tray.cloud if taken == 0 else self._photograph(taken)
+        cloud = self.tray.cloud if taken == 0 else self._photograph(taken, coloured)
         return cloud if labelled else replace(cloud, labels=np.full_like(cloud.labels, UNLABELLED))
 
-    def _photograph(self, taken: int) -> LabelledCloud:
+    def _photograph(self, taken: int, coloured: bool) -> LabelledCloud:
         rng = stream(self.seed, "tabletop job", "camera", taken)
         outlines = [self._physics.outline(k) for k in self._physics.here]
-        photo = (
-            photograph(self._physics, outlines, self.tray.view, self._camera, rng, fewest=0) if outlines else None
-        )
+        view = self.tray.view
+        photo = photograph(self._physics, outlines, view, self._camera, rng, 0, coloured) if outlines else None
         if photo is None:
             return LabelledCloud(np.empty((0, 3)), np.empty(0, np.int64), None, self.tray.view.position)
         return with_paint_of(photo.cloud, self.tray.cloud)

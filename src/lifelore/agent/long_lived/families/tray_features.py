@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import KDTree
 
+from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import BOTH, ON
 from lifelore.domains.tabletop_job.job import TabletopJob
@@ -49,16 +50,23 @@ class TrayFeatures:
 
 def look_with_labels(job: TabletopJob) -> TrayFeatures | None:
     """The features of what the camera sees, with the labels of the points given; None if the target is hidden."""
-    return _features(job, job.look(labelled=True))
+    return _features(job, job.look(labelled=True, coloured=False))
 
 
 def look_at_raw_cloud(job: TabletopJob) -> TrayFeatures | None:
-    """The features of what the camera sees, objects cut automatically; None if the target is hidden."""
+    """The features of what the camera sees, objects cut automatically.
+
+    None if the target is hidden, or if no scene can be made of the cloud: it shows too little of the table.
+    """
     seen = job.look()
     if len(seen.points) == 0:
         return None
-    # The camera knows which way is up; the frame stays that of the table.
-    return _features(job, to_scene(PointCloud(seen.points, colours=seen.colours, camera=seen.camera), "z"))
+    try:
+        # The camera knows which way is up; the frame stays that of the table.
+        cloud = to_scene(PointCloud(seen.points, colours=seen.colours, camera=seen.camera), "z")
+    except InputError:
+        return None
+    return _features(job, cloud)
 
 
 def look_without_relations(job: TabletopJob) -> TrayFeatures | None:
