@@ -48,6 +48,7 @@ BENCHES = {
     "log": "interaction",
     "long_lived_worlds": "agent",
     "serve": "service",
+    "soak": "service",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
 WITH_MAP = ("courier", "recognition", "lidar", "long_lived_worlds")
@@ -65,9 +66,9 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``
         and ``views``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``:
-        runs of learning; for ``serve``: at most 5; for ``tabletop_lives``: three lives each; for
-        ``long_lived_worlds``: lives, half as many outside the factory; for ``evaluation``: 60 simulated studies
-        each; for ``novelty``: libraries of each case.
+        runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``: three lives
+        each; for ``long_lived_worlds``: lives, half as many outside the factory; for ``evaluation``: 60
+        simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
