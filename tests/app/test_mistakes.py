@@ -133,6 +133,8 @@ NAMES = {
     "reproduce C9.9": "claim 'C9.9' is not in the ledger",
     "reproduce C4.14": "is not built yet",
     "reproduce C3.1 --quick --full": "exclude each other",
+    "reproduce C3.1 --verify --full": "takes mode, settings and seed from the stored result",
+    "reproduce C3.1 --verify --out {folder}": "no result of C3.1 in",
     "reproduce C3.1 --set x": "KEY=VALUE",
     "reproduce C3.1 --set x=1 --out {folder}": "has no setting 'x'",
     "reproduce C3.1 --set tasks=nan --out {folder}": "setting 'tasks' must be a whole number",

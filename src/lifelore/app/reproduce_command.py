@@ -14,6 +14,9 @@ def reproduce(
     ] = False,
     full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger.")] = False,
     list_all: Annotated[bool, typer.Option("--list", help="List every claim.")] = False,
+    verify: Annotated[
+        bool, typer.Option("--verify", help="Run stored results again and compare them to the last digit.")
+    ] = False,
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting of the claims.")
     ] = None,
@@ -44,6 +47,20 @@ def reproduce(
         return
     if quick and full:
         raise InputError("quick and full exclude each other: choose one")
+    if verify:
+        if quick or full or settings or seed:
+            raise InputError(
+                "verify takes mode, settings and seed from the stored result; leave out --quick, --full, --set "
+                "and --seed"
+            )
+        from lifelore.experiments.engine.verify import verify as run_again
+
+        with progress_bar("verifying") as progress:
+            found = run_again(claims or [], jobs, out, progress, engine, scheduler)
+        print_json(found) if as_json else _print_verified(found)
+        if not all(one["equal"] for one in found):
+            raise typer.Exit(1)
+        return
     with progress_bar("reproducing") as progress:
         mode, overrides = "full" if full else "quick", _pairs(settings or [])
         results = run(claims or [], mode, overrides, jobs, out, seed, progress, engine, scheduler)
@@ -52,6 +69,22 @@ def reproduce(
     else:
         for result in results:
             print(f"{result['claim']} ({result['mode']}): {result['verdict']}. {result['why']}")
+
+
+def _print_verified(found: list[dict]) -> None:
+    for one in found:
+        n = one["n_differences"]
+        print(f"{one['claim']}: " + ("equal to the last digit" if one["equal"] else f"{n} numbers differ"))
+        for difference in one["differences"]:
+            print(f"  {_difference(difference)}")
+        if n > len(one["differences"]):
+            print(f"  … and {n - len(one['differences'])} more")
+        if not one["equal"] and one["changed"]:
+            print("  made with: " + "; ".join(_difference(difference) for difference in one["changed"]))
+
+
+def _difference(difference: dict) -> str:
+    return f"{difference['where']}: {difference['stored']} stored, {difference['now']} now"
 
 
 def _pairs(settings: list[str]) -> dict[str, str]:

@@ -32,7 +32,7 @@ MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
 FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
-OPTIONAL = {"limits", "named", "timed"}
+OPTIONAL = {"limits", "named", "timed", "data"}
 """Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
@@ -67,6 +67,8 @@ class Claim:
         The functions of the claim's modules, see above. `run_cell` is pure, and picklable by name.
     check : callable, optional
         ``check(settings)`` of the module `run` raises `InputError` for settings that limits cannot describe.
+    data : tuple of str
+        Folders in that of ``LIFELORE_DATA`` that it reads, unless its setting ``real`` is false.
     timed : bool
         Whether it measures time, which differs between runs of one seed: measures whose names start with
         ``seconds`` may differ then; no other may.
@@ -89,6 +91,7 @@ class Claim:
     named: tuple[str, ...] = ()
     check: Callable[[Settings], None] | None = None
     timed: bool = False
+    data: tuple[str, ...] = ()
 
     @classmethod
     def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
@@ -131,6 +134,7 @@ class Claim:
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
             timed=data.get("timed", False),
+            data=tuple(data.get("data", ())),
             **{name: functions[0] for name, functions in found.items() if functions},
         )
 

@@ -7,7 +7,7 @@ worker dies runs again on another worker, and the result does not depend on the 
 import socket
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from time import perf_counter
+from time import thread_time
 from typing import Any
 
 from lifelore.core.errors import InputError, MissingExtraError
@@ -21,7 +21,7 @@ SECONDS_TO_CONNECT = 10
 def cells_on_cluster(
     scheduler: str, claim_id: str, settings: Mapping[str, Any], cells: Sequence[Mapping[str, Any]], seed: int
 ) -> Iterator[tuple[int, dict, float]]:
-    """Run cells on a cluster; give (place in `cells`, result, seconds on the worker) of each as it finishes.
+    """Run cells on a cluster; give (place in `cells`, result, processor seconds) of each as it finishes.
 
     Raises
     ------
@@ -56,9 +56,9 @@ def run_on_worker(
         )
     # While the worker lives, because cells may overlap in its threads; a library's threads would change its sums.
     threadpool_limits(1)
-    began = perf_counter()
+    began = thread_time()
     result = claim.run_cell(settings, cell, seed)
-    return place, result, perf_counter() - began
+    return place, result, thread_time() - began
 
 
 @contextmanager

@@ -138,6 +138,7 @@ def _section(result: Mapping, figures: str) -> str:
         "",
         f"Mode {result['mode']}, seed {result['seed']}, {short(result['seconds'])} s of computing. "
         f"{_settings_in_words(result['settings'])}.",
+        *_made_in_words(result.get("made")),
         "",
         "</details>",
         "",
@@ -163,6 +164,16 @@ def _causes(claim: Claim, measured: Mapping) -> list[str]:
     if not failed:
         return []
     return ["**Why not.**", "", *(f"- {c.name}: {claim.causes[c.name]}." for c in failed), ""]
+
+
+def _made_in_words(made: Mapping | None) -> list[str]:
+    """When and on what a result was made; nothing for an earlier result, which does not say."""
+    if made is None:
+        return []
+    commit = "outside a checkout" if made["commit"] is None else f"at commit {made['commit'][:10]}"
+    changed = " with changes" if made["changed"] else ""
+    data = "".join(f", data `{name}` {key}" for name, key in made["data"].items())
+    return ["", f"Made {made['date']} {commit}{changed}, {made['cores']} cores of {made['processor']}{data}."]
 
 
 def _settings_in_words(settings: Mapping) -> str:

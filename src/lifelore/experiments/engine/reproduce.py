@@ -4,25 +4,24 @@ Results do not depend on the number of threads or workers, nor on whether a run 
 """
 
 import json
-import os
-import platform
 from collections.abc import Generator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import closing
-from importlib.metadata import version
 from pathlib import Path
-from time import perf_counter
+from time import thread_time
 from typing import Any
 
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
 from lifelore.experiments.engine.cell_store import CellStore, write_atomically
 from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.provenance import cores, provenance, versions
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.source_key import source_key
 
 RESULT_KEYS = (
-    "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "rows",
+    "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "made",
+    "rows",
 )  # fmt: skip
 ENGINES = ("local", "dask")
 MAX_BYTES = 200_000
@@ -68,7 +67,8 @@ def reproduce(
     Returns
     -------
     list of dict
-        The results, each with exactly `RESULT_KEYS`; `seconds` is summed over cells, whenever they were run.
+        The results, each with exactly `RESULT_KEYS`; `seconds` is the processor time of the cells' threads,
+        whenever they were run, and `made` is that of `provenance`.
 
     Raises
     ------
@@ -83,7 +83,7 @@ def reproduce(
     KeyboardInterrupt
         Ctrl-C; cells under way are finished and kept first.
     """
-    jobs = _cores() if jobs is None else jobs
+    jobs = cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
     if engine not in ENGINES:
@@ -107,11 +107,6 @@ def reproduce(
 def _part_of(progress: Progress, before: int, total: int) -> Progress:
     """Progress of one claim as a part of the cells of all claims."""
     return lambda done, _, label: progress(before + done, total, label)
-
-
-def _cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _run(
@@ -169,9 +164,9 @@ def _on_threads(claim: Claim, settings: dict, cells: list, seed: int, store: Cel
     from threadpoolctl import threadpool_limits
 
     def run(i: int) -> dict:
-        began = perf_counter()
+        began = thread_time()
         result = claim.run_cell(settings, cells[i], seed)
-        return store.put(cells[i], result, perf_counter() - began)
+        return store.put(cells[i], result, thread_time() - began)
 
     # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
     with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
@@ -207,9 +202,11 @@ def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Ma
     rows = rounded(claim.rows(settings, results)) + others
     why = claim.predicate.why(measured, claim.causes)
     seconds = round(sum(found["seconds"] for found in kept), 1)
+    module = claim.run_cell.__module__
+    data = claim.data if settings.get("real", True) else ()
     values = (
         claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why,
-        settings, seed, versions(), seconds, rows,
+        settings, seed, versions(module), seconds, provenance(module, data), rows,
     )  # fmt: skip
     return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
 
@@ -236,12 +233,6 @@ def rounded(data: Any) -> Any:
     if isinstance(data, (list, tuple)):
         return [rounded(value) for value in data]
     return data
-
-
-def versions() -> dict[str, str]:
-    """What the numbers were made with."""
-    names = ("lifelore", "numpy", "numba", "scipy")
-    return {"python": platform.python_version(), **{name: version(name) for name in names}}
 
 
 def _write(claim: Claim, result: dict, folder: Path) -> None:

@@ -7,6 +7,7 @@ Figures draw results and cannot change them, so they take no part.
 
 import ast
 import hashlib
+import sys
 from functools import cache
 from pathlib import Path
 
@@ -26,6 +27,12 @@ def source_key(module: str) -> str:
         digest.update(model.name.encode())
         digest.update(model.read_bytes())
     return digest.hexdigest()[:16]
+
+
+def foreign_modules(module: str) -> set[str]:
+    """Top names of the modules outside this package that `module` and all it rests on import, but for Python's."""
+    tops = {name.partition(".")[0] for own in _closure(module) for name in _imports(own)}
+    return tops - {PACKAGE.name} - sys.stdlib_module_names
 
 
 def _closure(module: str) -> set[str]:

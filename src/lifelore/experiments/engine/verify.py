@@ -1,0 +1,125 @@
+"""Run stored results again and compare them to the last digit (`lifelore reproduce --verify`)."""
+
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import zip_longest
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.protocols import Progress
+from lifelore.experiments.engine.registry import built_ids, claim_of
+from lifelore.experiments.engine.reproduce import own_rows, reproduce
+
+MOST_SHOWN = 20
+"""Differences that are listed for a claim."""
+ABSENT = "nothing"
+
+
+def verify(
+    ids: Sequence[str],
+    jobs: int | None = None,
+    out: str | Path = "results",
+    progress: Progress | None = None,
+    engine: str = "local",
+    scheduler: str | None = None,
+) -> list[dict[str, Any]]:
+    """Run the claims of stored results again, with their settings and seed, and compare the numbers.
+
+    Nothing stored is changed, and no finished cell is taken up.
+
+    Parameters
+    ----------
+    ids : sequence of str
+        Empty: every claim that has a result in `out`.
+    jobs, progress, engine, scheduler
+        As for `reproduce`; progress counts the cells of one claim after the other.
+    out : path
+        Folder of ``<ID>/result.json``.
+
+    Returns
+    -------
+    list of dict
+        For each claim: ``claim``; ``equal``: whether verdict, measures and rows are the same to the last digit;
+        ``n_differences`` and the first of them in ``differences``, ``{"where", "stored", "now"}``; ``changed``,
+        the same for versions, code, processor and data, which may explain them; ``verdict`` now. Measures of
+        time, whose names begin with ``seconds``, are not compared, nor the rows of a claim that measures time.
+
+    Raises
+    ------
+    NotFoundError
+        There is no result of a claim.
+    InputError
+        A result is no JSON, or was made with settings that the claim has no more.
+    """
+    results = {claim_id: _stored(Path(out), claim_id) for claim_id in ids or _with_results(Path(out))}
+    found = []
+    for claim_id, stored in results.items():
+        with TemporaryDirectory() as folder:
+            again = reproduce(
+                [claim_id], stored["mode"], stored["settings"], jobs, folder, stored["seed"], progress, engine,
+                scheduler,
+            )[0]  # fmt: skip
+        found.append(compared(stored, again))
+    return found
+
+
+def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, Any]:
+    """What `verify` gives for one claim, from the stored result and the new one."""
+    differences = list(_differences("", _numbers(stored), _numbers(again)))
+    changed = list(_differences("", _circumstances(stored), _circumstances(again)))
+    return {
+        "claim": stored["claim"],
+        "equal": not differences,
+        "verdict": again["verdict"],
+        "n_differences": len(differences),
+        "differences": differences[:MOST_SHOWN],
+        "changed": changed,
+    }
+
+
+def _with_results(out: Path) -> list[str]:
+    found = [claim_id for claim_id in built_ids() if (out / claim_id / "result.json").is_file()]
+    if not found:
+        raise NotFoundError(f"no result in {out}; name the folder of the results with --out")
+    return found
+
+
+def _stored(out: Path, claim_id: str) -> dict[str, Any]:
+    claim_of(claim_id)
+    path = out / claim_id / "result.json"
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except OSError:
+        raise NotFoundError(
+            f"no result of {claim_id} in {out}; run `lifelore reproduce {claim_id}` first"
+        ) from None
+    except ValueError:
+        raise InputError(f"{path} is not JSON; run `lifelore reproduce {claim_id}` again") from None
+
+
+def _numbers(result: Mapping[str, Any]) -> dict[str, Any]:
+    measured = {name: number for name, number in result["measured"].items() if not name.startswith("seconds")}
+    rows = [] if claim_of(result["claim"]).timed else own_rows(result)
+    return {"verdict": result["verdict"], "measured": measured, "rows": rows}
+
+
+def _circumstances(result: Mapping[str, Any]) -> dict[str, Any]:
+    """What may differ without a fault; results before the key ``made`` tell only some versions."""
+    made = {
+        name: value for name, value in result.get("made", {}).items() if name in ("source", "processor", "data")
+    }
+    return {"versions": result["versions"], **made}
+
+
+def _differences(where: str, stored: Any, now: Any) -> Iterator[dict[str, Any]]:
+    """The places where plain data differ; the order of keys does not count."""
+    if isinstance(stored, Mapping) and isinstance(now, Mapping):
+        for key in dict.fromkeys([*stored, *now]):
+            yield from _differences(f"{where}.{key}".lstrip("."), stored.get(key, ABSENT), now.get(key, ABSENT))
+    elif isinstance(stored, list) and isinstance(now, list):
+        for place, (one, other) in enumerate(zip_longest(stored, now, fillvalue=ABSENT)):
+            yield from _differences(f"{where}[{place}]", one, other)
+    elif stored != now:
+        yield {"where": where, "stored": stored, "now": now}
