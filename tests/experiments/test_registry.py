@@ -14,10 +14,12 @@ from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.predicate import VERDICTS, Predicate
 from lifelore.experiments.engine.registry import built_ids, claim_folders, claim_of, list_claims
 from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.experiments.engine.second_reading import SECOND_VERDICTS
 from lifelore.figures.style import MAX_BYTES as MAX_FIGURE_BYTES
 
 IDS = built_ids()
 FILED = Path(__file__).with_name("filed_predicates")
+READINGS = Path(__file__).with_name("filed_readings")
 """The conditions and rules of every claim as they were committed before its first full run."""
 
 
@@ -66,6 +68,11 @@ class TestEveryClaim:
         filed = json.loads((FILED / f"{claim_id}.json").read_text(encoding="utf-8"))
         assert claim_of(claim_id).predicate == Predicate.from_data(filed)
 
+    def test_second_readings_are_those_filed(self, claim_id):
+        second, path = claim_of(claim_id).second, READINGS / f"{claim_id}.json"
+        filed = json.loads(path.read_text(encoding="utf-8")) if path.exists() else None
+        assert (second and second.to_data()) == filed
+
     def test_modes_have_the_same_settings_of_the_same_types(self, claim_id):
         sizes = claim_of(claim_id).sizes
         assert set(sizes) == {"quick", "full"}
@@ -109,9 +116,11 @@ class TestEveryClaim:
         assert result["mode"] == "quick"
         assert all(set(number) == {"value", "median", "ci95", "n"} for number in result["measured"].values())
         assert result["settings"] == claim_of(claim_id).settings("quick")
+        assert (result["second"] is None) == (claim_of(claim_id).second is None)
+        assert result["second"] is None or result["second"]["verdict"] in SECOND_VERDICTS
 
     def test_predicate_asks_only_what_is_measured(self, claim_id, quick):
-        asked = {c.measure for c in claim_of(claim_id).predicate.conditions}
+        asked = claim_of(claim_id).read_measures()
         assert asked <= set(quick[0](claim_id)["measured"])
 
 

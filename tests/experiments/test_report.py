@@ -1,6 +1,7 @@
 """The page of reproductions says what the committed results say."""
 
 import json
+import subprocess
 from pathlib import Path
 
 import pytest
@@ -24,16 +25,38 @@ def test_pages_agree_with_results():
 @pytest.mark.parametrize("result", read_results(RESULTS), ids=lambda r: r["claim"])
 def test_committed_results_are_full_and_their_verdict_follows_from_their_numbers(result):
     claim = claim_of(result["claim"])
-    # Results from before 23 November 2026 do not say what they were made on.
-    assert tuple(result) in (RESULT_KEYS, tuple(key for key in RESULT_KEYS if key != "made"))
+    # Results from before 23 November 2026 have no second reading, and do not say what they were made on.
+    assert tuple(result) in (RESULT_KEYS, tuple(key for key in RESULT_KEYS if key not in ("made", "second")))
     assert result["mode"] == "full"
     assert result["settings"] == claim.settings("full")
     assert result["verdict"] == claim.predicate.verdict(result["measured"])
     assert result["why"] == claim.predicate.why(result["measured"], claim.causes)
     assert result["thesis"] == claim.thesis
-    assert set(result["measured"]) == claim.read_measures()
+    if result.get("second"):
+        assert claim.second is not None
+        assert result["second"]["verdict"] == claim.second.verdict(result["measured"])
+        assert result["second"]["why"] == claim.second.said(result["measured"])
+    assert set(result["measured"]) >= {c.measure for c in claim.predicate.conditions}
+    assert set(result["measured"]) == claim.read_measures() or "second" not in result
     assert (RESULTS / claim.id / "result.json").stat().st_size <= MAX_BYTES
     assert (RESULTS / claim.id / "figure.png").is_file()
+
+
+@pytest.mark.parametrize(
+    "result", [one for one in read_results(RESULTS) if one.get("second")], ids=lambda r: r["claim"]
+)
+def test_a_second_reading_was_filed_before_the_run_that_it_judges(result):
+    made, filed = result["made"], f"tests/experiments/filed_readings/{result['claim']}.json"
+    assert made["changed"] is False
+
+    def git(*arguments):
+        return subprocess.run(["git", "-C", str(ROOT), *arguments], capture_output=True, text=True, check=False)
+
+    if git("rev-parse", "--is-shallow-repository").stdout.strip() != "false":
+        pytest.skip("needs the history of the repository")
+    last_change = git("log", "-1", "--format=%H", "--", filed).stdout.strip()
+    assert last_change
+    assert git("merge-base", "--is-ancestor", last_change, made["commit"]).returncode == 0
 
 
 def test_every_claim_that_is_built_has_a_committed_result():
@@ -49,7 +72,9 @@ def test_pages_of_a_quick_run(tmp_path):
     assert "| [C3.1](chapter3.md#c3-1) | Fig 3.1 |" in index
     assert f"**{result['verdict']} (quick run)** |" in index
     assert "55 of 56 claims have no result yet" in index
-    assert f"**{result['verdict'].capitalize()}.** Fig 3.1" in page
+    second = result["second"]["verdict"]
+    assert f"**{second.capitalize()}**; in the first reading: {result['verdict']}. Fig 3.1" in page
+    assert "| headline | no useful action collides | at most 0 |" in page
     for condition in claim_of("C3.1").predicate.conditions:
         assert f"| {condition.words} | " in page
         assert number_in_words(result["measured"][condition.measure]) in page

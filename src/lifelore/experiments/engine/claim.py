@@ -24,6 +24,7 @@ from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.engine.limits import check_limits
 from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.second_reading import SecondReading
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -32,7 +33,7 @@ MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
 FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
-OPTIONAL = {"limits", "named", "timed", "data"}
+OPTIONAL = {"limits", "named", "timed", "data", "second"}
 """Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
@@ -72,6 +73,8 @@ class Claim:
     timed : bool
         Whether it measures time, which differs between runs of one seed: measures whose names start with
         ``seconds`` may differ then; no other may.
+    second : SecondReading, optional
+        A second reading of the verdict.
     """
 
     id: str
@@ -92,6 +95,7 @@ class Claim:
     check: Callable[[Settings], None] | None = None
     timed: bool = False
     data: tuple[str, ...] = ()
+    second: SecondReading | None = None
 
     @classmethod
     def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
@@ -121,7 +125,7 @@ class Claim:
             raise InputError(
                 f"modules of {folder} must define {', '.join(FUNCTIONS)}; missing {', '.join(absent)}"
             )
-        full = data["settings"]["full"]
+        full, predicate = data["settings"]["full"], Predicate.from_data(data)
         return cls(
             id=claim_id,
             title=data["title"],
@@ -130,17 +134,19 @@ class Claim:
             ran=data["ran"],
             sizes={"quick": full | data["settings"].get("quick", {}), "full": full},
             limits=data.get("limits", {}),
-            predicate=Predicate.from_data(data),
+            predicate=predicate,
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
             named=tuple(data.get("named", ())),
             timed=data.get("timed", False),
             data=tuple(data.get("data", ())),
+            second=SecondReading.from_data(data["second"], predicate) if "second" in data else None,
             **{name: functions[0] for name, functions in found.items() if functions},
         )
 
     def read_measures(self) -> set[str]:
         """Names of the measures that conditions, figures or pages read."""
-        return {condition.measure for condition in self.predicate.conditions} | set(self.named)
+        second = self.second.measures if self.second else set()
+        return {condition.measure for condition in self.predicate.conditions} | second | set(self.named)
 
     def settings(self, mode: str, overrides: Mapping[str, Any] | None = None) -> dict[str, Any]:
         """The settings of a mode, with some of them overridden.

@@ -16,12 +16,23 @@ from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.predicate import VERDICTS, Condition, number_in_words, short
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import own_rows
+from lifelore.experiments.engine.second_reading import SECOND_VERDICTS
 
 INTRODUCTION = """# Reproduction
 
 What the thesis reports, what we measure, and whether it holds. These pages are generated from `results/` by
 `make docs`; do not edit them by hand. The conditions of each verdict were filed before the first full run and
 stand in the `claim.toml` of the claim's folder. Intervals are 95 %; ratios and differences are paired.
+
+The first reading of a claim has rules of its own. A *second reading* has one meaning of each verdict for all
+claims. It was filed, as data, before the run that it judges, and after the first reading's result was known.
+
+- **holds**: what the thesis's sentence says holds by its 95 % intervals, with the numbers it prints, at the
+  default and in most of the choices that the thesis leaves open.
+- **holds in part**: it holds at the default or in a stated minority of these choices, or a printed number is
+  missed.
+- **undecided**: an interval spans its bound.
+- **does not hold**: otherwise. Our own extras are shown apart and never count.
 """
 CHAPTERS = {
     "2": "Chapter 2: perception",
@@ -95,18 +106,25 @@ def _index(found: list[dict]) -> str:
         lines += [
             f"## [{title}](chapter{number}.md)",
             "",
-            "| claim | thesis | what | verdict |",
-            "|---|---|---|---|",
+            "| claim | thesis | what | first reading | second reading |",
+            "|---|---|---|---|---|",
         ]
         for result in results:
             claim_id = result["claim"]
             link = f"[{claim_id}](chapter{number}.md#{_anchor(claim_id)})"
             verdict = result["verdict"] if result["mode"] == "full" else f"{result['verdict']} (quick run)"
-            lines.append(f"| {link} | {where[claim_id]} | {claim_of(claim_id).title} | **{verdict}** |")
+            second = result.get("second")
+            again = f"**{second['verdict']}**" if second else "–"
+            title = claim_of(claim_id).title
+            lines.append(f"| {link} | {where[claim_id]} | {title} | **{verdict}** | {again} |")
         lines.append("")
     counts = [f"{sum(r['verdict'] == v for r in found)} {v}" for v in VERDICTS]
+    seconds = [result["second"]["verdict"] for result in found if result.get("second")]
+    again = [f"{seconds.count(v)} {v}" for v in SECOND_VERDICTS if v in seconds]
     left = len(entries()) - len(found)
-    lines += [f"{', '.join(counts)}; {left} of {len(entries())} claims have no result yet.", ""]
+    if seconds:
+        lines += [f"Second reading: {', '.join(again)}; {len(found) - len(seconds)} claims have none yet.", ""]
+    lines += [f"First reading: {', '.join(counts)}; {left} of {len(entries())} claims have no result yet.", ""]
     return "\n".join(lines)
 
 
@@ -121,7 +139,7 @@ def _section(result: Mapping, figures: str) -> str:
         "",
         f"## {claim.id} — {claim.title}",
         "",
-        f"**{result['verdict'].capitalize()}.** {claim.where}",
+        _verdicts(result, claim),
         "",
         f"**Thesis.** {result['thesis']}",
         "",
@@ -134,6 +152,7 @@ def _section(result: Mapping, figures: str) -> str:
         f"![{claim.title}]({figures}/{claim.id}/figure.png)",
         "",
         *_causes(claim, result["measured"]),
+        *_second_reading(claim, result),
         "<details><summary>Settings</summary>",
         "",
         f"Mode {result['mode']}, seed {result['seed']}, {short(result['seconds'])} s of computing. "
@@ -146,6 +165,30 @@ def _section(result: Mapping, figures: str) -> str:
     return "\n".join(lines)
 
 
+def _verdicts(result: Mapping, claim: Claim) -> str:
+    first = result["verdict"].capitalize()
+    if not result.get("second"):
+        return f"**{first}.** {claim.where}"
+    return (
+        f"**{result['second']['verdict'].capitalize()}**; in the first reading: {result['verdict']}. {claim.where}"
+    )
+
+
+def _second_reading(claim: Claim, result: Mapping) -> list[str]:
+    """The conditions of the second reading, and how it differs from the first."""
+    if claim.second is None or not result.get("second"):
+        return []
+    rows = [
+        f"| {one.role} | {one.condition.words} | {_bounds_in_words(one.condition)} | "
+        f"{one.answer(result['measured'])} |"
+        for one in claim.second.conditions
+    ]
+    return [
+        f"**Second reading.** {claim.second.why}", "",
+        "| counts as | condition | asked | met |", "|---|---|---|---|", *rows, "",
+    ]  # fmt: skip
+
+
 def _condition_row(condition: Condition, measured: Mapping) -> str:
     number = measured.get(condition.measure)
     value = number_in_words(number) if number else "–"
@@ -153,9 +196,13 @@ def _condition_row(condition: Condition, measured: Mapping) -> str:
 
 
 def _asked(condition: Condition) -> str:
-    bounds = condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
-    words = f"{OPS[condition.op]} {' and '.join(short(bound) for bound in bounds)}"
+    words = _bounds_in_words(condition)
     return f"interval {words}" if condition.part == "interval" else words
+
+
+def _bounds_in_words(condition: Condition) -> str:
+    bounds = condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
+    return f"{OPS[condition.op]} {' and '.join(short(bound) for bound in bounds)}"
 
 
 def _causes(claim: Claim, measured: Mapping) -> list[str]:

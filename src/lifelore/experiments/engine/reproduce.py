@@ -20,8 +20,8 @@ from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.source_key import source_key
 
 RESULT_KEYS = (
-    "claim", "mode", "thesis", "measured", "verdict", "why", "settings", "seed", "versions", "seconds", "made",
-    "rows",
+    "claim", "mode", "thesis", "measured", "verdict", "why", "second", "settings", "seed", "versions", "seconds",
+    "made", "rows",
 )  # fmt: skip
 ENGINES = ("local", "dask")
 MAX_BYTES = 200_000
@@ -68,7 +68,7 @@ def reproduce(
     -------
     list of dict
         The results, each with exactly `RESULT_KEYS`; `seconds` is the processor time of the cells' threads,
-        whenever they were run, and `made` is that of `provenance`.
+        whenever they were run, `made` is that of `provenance`, and `second` the verdict of the second reading.
 
     Raises
     ------
@@ -205,10 +205,17 @@ def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Ma
     module = claim.run_cell.__module__
     data = claim.data if settings.get("real", True) else ()
     values = (
-        claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why,
+        claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why, _second(claim, measured),
         settings, seed, versions(module), seconds, provenance(module, data), rows,
     )  # fmt: skip
     return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
+
+
+def _second(claim: Claim, measured: Mapping[str, Mapping]) -> dict[str, str] | None:
+    """The verdict of the second reading; None for a claim without one."""
+    if claim.second is None:
+        return None
+    return {"verdict": claim.second.verdict(measured), "why": claim.second.said(measured)}
 
 
 def split_measures(claim: Claim, estimates: Mapping[str, Mapping]) -> tuple[dict[str, Any], list[dict]]:
