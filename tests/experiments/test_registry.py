@@ -2,6 +2,7 @@
 
 import json
 import pickle
+import re
 from functools import cache
 from itertools import pairwise
 from pathlib import Path
@@ -19,6 +20,7 @@ from lifelore.figures.style import MAX_BYTES as MAX_FIGURE_BYTES
 
 IDS = built_ids()
 FILED = Path(__file__).with_name("filed_predicates")
+ERRATA = set(re.findall(r"^## (E\d+) ", (Path(__file__).parents[2] / "docs" / "errata.md").read_text(), re.M))
 READINGS = Path(__file__).with_name("filed_readings")
 """The conditions and rules of every claim as they were committed before its first full run."""
 
@@ -96,6 +98,8 @@ class TestEveryClaim:
     def test_causes_belong_to_conditions(self, claim_id):
         claim = claim_of(claim_id)
         assert set(claim.causes) <= {c.name for c in claim.predicate.conditions}
+        assert set(claim.shown_by) <= set(claim.causes)
+        assert set(claim.shown_by.values()) <= ERRATA
 
     def test_predicate_can_return_every_verdict(self, claim_id):
         assert set(reachable_verdicts(claim_of(claim_id).predicate)) == set(VERDICTS)

@@ -62,6 +62,8 @@ class Claim:
         Conditions and rules of the verdict.
     causes : mapping
         Likely cause by condition, reported where the condition is not met.
+    shown_by : mapping
+        The erratum whose tests show a cause, by condition; a cause without one is untested.
     named : tuple of str
         Measures beside those of conditions that a figure or a page reads; all others are stored in the rows.
     cells, run_cell, measure, rows, draw : callable
@@ -96,6 +98,7 @@ class Claim:
     timed: bool = False
     data: tuple[str, ...] = ()
     second: SecondReading | None = None
+    shown_by: Mapping[str, str] = field(default_factory=dict)
 
     @classmethod
     def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
@@ -136,6 +139,7 @@ class Claim:
             limits=data.get("limits", {}),
             predicate=predicate,
             causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
+            shown_by={c["name"]: c["shown_by"] for c in data["conditions"] if "shown_by" in c},
             named=tuple(data.get("named", ())),
             timed=data.get("timed", False),
             data=tuple(data.get("data", ())),

@@ -5,7 +5,8 @@ run. A condition is
 
     {"name": …, "measure": …, "part": "value" | "interval", "op": …, "bound": …, "words": …, "cause": …}
 
-``interval`` asks it of both ends of the 95 % interval; ``cause`` is the likely cause where it is not met.
+``interval`` asks it of both ends of the 95 % interval; ``cause`` is the likely cause where it is not met, and
+``shown_by`` the erratum whose tests show this cause.
 A rule is ``{"verdict": …, "all": […]}`` or ``{"verdict": …, "any": […]}``; the first rule met decides, *does not
 hold* if none is, *cannot be tested* if a number is missing.
 """

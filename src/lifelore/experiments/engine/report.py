@@ -206,11 +206,16 @@ def _bounds_in_words(condition: Condition) -> str:
 
 
 def _causes(claim: Claim, measured: Mapping) -> list[str]:
-    """Why conditions are not met, a line each, where a cause is known."""
+    """Why conditions are likely not met, a line each, and whether a test shows it."""
     failed = [c for c in claim.predicate.conditions if c.met(measured) is False and c.name in claim.causes]
     if not failed:
         return []
-    return ["**Why not.**", "", *(f"- {c.name}: {claim.causes[c.name]}." for c in failed), ""]
+    lines = [f"- {c.name}: {claim.causes[c.name]} ({_shown(claim.shown_by.get(c.name))})." for c in failed]
+    return ["**Why not, likely.**", "", *lines, ""]
+
+
+def _shown(erratum: str | None) -> str:
+    return f"shown by tests: [{erratum}](../errata.md)" if erratum else "untested"
 
 
 def _made_in_words(made: Mapping | None) -> list[str]:
