@@ -7,10 +7,11 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.experiments.engine.predicate import number_in_words
+from lifelore.experiments.engine.predicate import VERDICTS, number_in_words
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.report import read_results, render_pages, write_pages
+from lifelore.experiments.engine.report import draw_summary, read_results, render_pages, verdicts, write_pages
 from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.experiments.engine.second_reading import SECOND_VERDICTS
 
 ROOT = Path(__file__).parents[2]
 RESULTS = ROOT / "results"
@@ -78,6 +79,16 @@ def test_pages_of_a_quick_run(tmp_path):
     for condition in claim_of("C3.1").predicate.conditions:
         assert f"| {condition.words} | " in page
         assert number_in_words(result["measured"][condition.measure]) in page
+
+
+def test_all_verdicts_at_a_glance(tmp_path):
+    reproduce(["C3.1"], "quick", {"mazes": 20}, out=tmp_path)
+    rooms = verdicts(tmp_path)
+    assert [len(tiles) for tiles in rooms.values()] == [13, 18, 17, 8]
+    ((name, first, second),) = [tile for tiles in rooms.values() for tile in tiles if tile[1]]
+    assert (name, first in VERDICTS, second in SECOND_VERDICTS) == ("C3.1", True, True)
+    draw_summary(tmp_path)
+    assert (tmp_path / "verdicts.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_a_damaged_result_is_one_line(tmp_path):

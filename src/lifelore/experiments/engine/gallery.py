@@ -73,7 +73,7 @@ def _shown_figures(docs: Path) -> Iterator[Figure]:
     for page in sorted(docs.rglob("*.md")):
         name = page.relative_to(docs).as_posix()
         text = page.read_text(encoding="utf-8")
-        if name == "gallery.md" or name.startswith("reproduction/"):
+        if name == "gallery.md" or name.startswith("reproduction/chapter"):
             continue
         titles[name] = text.partition("\n")[0].removeprefix("# ")
         for words, target in _SHOWN.findall(text):
@@ -101,7 +101,8 @@ def _claim_figures(docs: Path) -> Iterator[Figure]:
         claim, number = result["claim"], result["claim"][1]
         page = f"reproduction/chapter{number}.md"
         link = f"[{claim}]({page}#{claim.lower().replace('.', '-')})"
-        words = f"{link} {claim_of(claim).title}: {result['verdict']}"
+        verdict = (result.get("second") or result)["verdict"]
+        words = f"{link} {claim_of(claim).title}: {verdict}"
         yield Figure(results / claim / "figure.png", f"[{CHAPTERS[number]}]({page})", words)
 
 

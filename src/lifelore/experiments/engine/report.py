@@ -55,7 +55,7 @@ def render_pages(results: str | Path = "results", figures: str = "../../results"
         The same folder as the pages' links see it.
     """
     found = read_results(results)
-    pages = {"index.md": _index(found)}
+    pages = {"index.md": _index(found, figures)}
     for number, title in CHAPTERS.items():
         sections = [_section(result, figures) for result in found if _chapter(result["claim"]) == number]
         if sections:
@@ -96,9 +96,10 @@ def _chapter(claim_id: str) -> str:
     return claim_id[1:].partition(".")[0]
 
 
-def _index(found: list[dict]) -> str:
+def _index(found: list[dict], figures: str) -> str:
     where = {entry.id: entry.where for entry in entries()}
-    lines = [INTRODUCTION]
+    lines = [INTRODUCTION, f"![Verdicts of all claims]({figures}/verdicts.png)", ""]
+    lines += ["A tile is a claim: its upper half the second reading, the rest the first.", ""]
     for number, title in CHAPTERS.items():
         results = [result for result in found if _chapter(result["claim"]) == number]
         if not results:
@@ -232,6 +233,25 @@ def _settings_in_words(settings: Mapping) -> str:
     return ", ".join(f"`{key}` {json.dumps(value, ensure_ascii=False)}" for key, value in settings.items())
 
 
+def verdicts(results: str | Path) -> dict[str, list[tuple[str, str | None, str | None]]]:
+    """By chapter: id, verdict of the first and of the second reading of every claim of the ledger."""
+    found = {result["claim"]: result for result in read_results(results)}
+    rooms: dict[str, list[tuple[str, str | None, str | None]]] = {title: [] for title in CHAPTERS.values()}
+    for entry in entries():
+        result = found.get(entry.id, {})
+        second = (result.get("second") or {}).get("verdict")
+        rooms[CHAPTERS[_chapter(entry.id)]].append((entry.id, result.get("verdict"), second))
+    return rooms
+
+
+def draw_summary(results: str | Path) -> None:
+    """Draw all verdicts as ``verdicts.png`` among the results."""
+    from lifelore.figures.style import save_figure
+    from lifelore.figures.verdict_tiles import draw_verdicts
+
+    save_figure(draw_verdicts(verdicts(results)), Path(results) / "verdicts.png")
+
+
 def redraw_figures(results: str | Path, ids: Sequence[str]) -> None:
     """Draw the figures of stored results again; nothing is run."""
     from lifelore.figures.style import save_figure
@@ -244,4 +264,5 @@ def redraw_figures(results: str | Path, ids: Sequence[str]) -> None:
 
 if __name__ == "__main__":
     redraw_figures("results", sys.argv[1:])
+    draw_summary("results")
     print(write_pages())
