@@ -16,6 +16,10 @@ MOST = 64
 """Largest number of requests in a transaction; more let each of them wait longer."""
 
 
+PATIENCE = 0.002
+"""Seconds to wait for another request where the last transaction had several: a commit takes longer than that."""
+
+
 class _Job(NamedTuple):
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
@@ -52,16 +56,21 @@ class Writer:
         self._thread.join()
 
     def _work(self) -> None:
+        patience = 0.0
         while (first := self._jobs.get()) is not None:
             jobs, last = [first], False
-            while len(jobs) < MOST and not last and not self._jobs.empty():
-                following = self._jobs.get()
+            while len(jobs) < MOST and not last:
+                try:
+                    following = self._jobs.get(timeout=patience)
+                except queue.Empty:
+                    break
                 last = following is None
                 if following is not None:
                     jobs.append(following)
             _deliver(jobs, self._results(jobs))
             if last:
                 return
+            patience = PATIENCE if len(jobs) > 1 else 0.0
 
     def _results(self, jobs: Sequence[_Job]) -> list[tuple[Any, Exception | None]]:
         try:
