@@ -15,6 +15,7 @@ import struct
 import zlib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -30,6 +31,8 @@ if TYPE_CHECKING:
     from lifelore.interaction.reuse.unknown_type import UnknownType
 
 FORMAT = 2
+KEPT = 4096
+"""States that stay in main memory, some 2 kB each."""
 _HEAD = struct.Struct("<II")
 
 
@@ -139,14 +142,18 @@ def _tasks_from(body: bytes, offset: int, listed: list[Any], n: int) -> list[dic
     for place, name, kind, shape in listed:
         dtype, size = np.dtype(kind), int(np.prod(shape, dtype=np.int64))
         found[place][name] = (
-            np.frombuffer(body, dtype, size, offset).reshape(shape).astype(dtype.newbyteorder("="))
+            np.frombuffer(body, dtype, size, offset).reshape(shape).astype(dtype.newbyteorder("="), copy=False)
         )
         offset += size * dtype.itemsize
     return found
 
 
+@lru_cache(maxsize=KEPT)
 def from_bytes(content: bytes | None) -> UserState | None:
-    """The state of `UserState.to_bytes`; None for anything else, also for another format."""
+    """The state of `UserState.to_bytes`; None for anything else, also for another format.
+
+    An outcome mostly follows its decision soon, so the last states stay; their arrays are read only.
+    """
     if content is None or len(content) < _HEAD.size:
         return None
     length, checksum = _HEAD.unpack_from(content)
@@ -160,7 +167,7 @@ def from_bytes(content: bytes | None) -> UserState | None:
     numbers = np.frombuffer(body, "<i8", n, length).tolist()
     surprise = np.frombuffer(body, "<f8", n, length + 8 * n).tolist()
     n_types, offset = header["types"], length + 16 * n
-    beliefs = np.frombuffer(body, "<f8", n * n_types, offset).reshape(n, n_types).astype(np.float64)
+    beliefs = np.frombuffer(body, "<f8", n * n_types, offset).reshape(n, n_types).astype(np.float64, copy=False)
     tasks = _tasks_from(body, offset + 8 * n * n_types, header["tasks"], n)
     points = tuple(Checkpoint(*point) for point in zip(numbers, beliefs, surprise, tasks, strict=True))
     return UserState(

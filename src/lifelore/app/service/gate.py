@@ -155,8 +155,7 @@ class Gate:
     ) -> None:
         route = getattr(scope.get("route"), "path", "other")
         method = scope["method"] if scope["method"] in _METHODS else "other"
-        self._metrics.requests.labels(method, route, str(status)).inc()
-        self._metrics.seconds.labels(route).observe(seconds)
+        self._metrics.count(method, route, status, seconds)
         fields = {
             "request": identifier, "client": client, "method": method, "route": route, "status": status,
             "ms": round(1e3 * seconds, 2),

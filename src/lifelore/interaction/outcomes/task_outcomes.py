@@ -20,6 +20,8 @@ from lifelore.interaction.outcomes.spread import Spread
 Array = NDArray[np.float64]
 
 ROOT_2_PI = sqrt(2 * pi)
+SLACK = 1e-5
+"""Rounding error of probabilities that sum to 1."""
 
 
 class Predicted(NamedTuple):
@@ -106,7 +108,7 @@ class SpreadWeights:
     def restore_weights(self, log_weights: ArrayLike) -> None:
         """Take over log probabilities; InputError where they are not this spread's."""
         found = np.array(log_weights, np.float64)
-        if found.shape != self.log_weights.shape or not np.isclose(np.exp(found).sum(), 1):
+        if found.shape != self.log_weights.shape or not abs(float(np.exp(found).sum()) - 1) < SLACK:
             raise InputError(f"a task's state must have {len(self.log_weights)} probabilities of spreads")
         self.log_weights = found
 
