@@ -131,7 +131,7 @@ def test_a_condition_of_the_first_reading_is_taken_over_and_data_go_round():
     [
         ([{"role": "headline", "first": "b"}], "must name a condition of the first reading"),
         ([{"role": "main", "first": "a"}], "role must be one of headline"),
-        ([{"role": "own", "first": "a"}], "with a headline and at most one grid"),
+        ([{"role": "own", "first": "a"}], "with a headline among them"),
         ([{"role": "headline", "name": "b"}], "a condition must have bound, measure"),
     ],
 )

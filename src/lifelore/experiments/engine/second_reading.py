@@ -4,7 +4,7 @@ Each condition has a role:
 
 - ``headline``: what the thesis's sentence says, in its own terms;
 - ``printed``: a number that the thesis prints;
-- ``grid``: the share of the choices left open in which the headline holds;
+- ``grid``: the share of the choices left open in which the headline, or a part of it, holds;
 - ``detail`` and ``own``: what else the thesis says, and our own extras; shown, never counted.
 
 A condition is answered by the whole 95 % interval: yes, no, or open where the interval spans the bound. Only a
@@ -92,7 +92,7 @@ class SecondReading:
     why : str
         How it differs from the first reading.
     conditions : tuple of ReadCondition
-        One or more of them headlines, at most one the grid.
+        One or more of them headlines.
     minority : float
         Share of the grid above which a headline that fails at the default still holds in part, in (0, 1).
     """
@@ -104,9 +104,9 @@ class SecondReading:
     def __post_init__(self) -> None:
         names = [one.condition.name for one in self.conditions]
         roles = [one.role for one in self.conditions]
-        if len(set(names)) < len(names) or HEADLINE not in roles or roles.count(GRID) > 1:
+        if len(set(names)) < len(names) or HEADLINE not in roles:
             raise InputError(
-                "a second reading must have conditions of different names, with a headline and at most one grid, "
+                "a second reading must have conditions of different names, with a headline among them, "
                 f"got {', '.join(f'{name} ({role})' for name, role in zip(names, roles, strict=True))}"
             )
         if not 0 < self.minority < 1:
@@ -153,7 +153,7 @@ class SecondReading:
     def _in_a_minority(self, measured: Measured) -> bool:
         grid = [one for one in self.conditions if one.role == GRID]
         shares = [measured[one.condition.measure] for one in grid]
-        return any((share.get("ci95") or [share["value"]])[0] > self.minority for share in shares)
+        return bool(shares) and all((share.get("ci95") or [share["value"]])[0] > self.minority for share in shares)
 
     def said(self, measured: Measured) -> str:
         """Each condition that counts with its answer and number, in words."""
