@@ -25,12 +25,14 @@ export function drawMap(canvas, walk) {
   const camera = cameraOf(canvas, walk);
   const { context, side } = camera;
   const [, columns] = walk.shape;
-  for (const [key, bits] of walk.cells) {
-    const [x, y] = camera.corner(Math.floor(key / columns), key % columns);
-    context.fillStyle = walk.now.has(key) ? COLOURS.now : COLOURS.seen;
-    context.fillRect(x, y, side + 0.5, side + 0.5);
-    drawWalls(context, x, y, side, bits);
+  // In the order of the building, so that the picture does not depend on the order in which the cells were seen.
+  const cells = [...walk.cells].sort(([a], [b]) => a - b);
+  const corner = (key) => camera.corner(Math.floor(key / columns), key % columns);
+  for (const [now, colour] of [[false, COLOURS.seen], [true, COLOURS.now]]) {
+    context.fillStyle = colour;
+    for (const [key] of cells) if (walk.now.has(key) === now) context.fillRect(...corner(key), side + 0.5, side + 0.5);
   }
+  for (const [key, bits] of cells) drawWalls(context, ...corner(key), side, bits);
   drawTrail(camera, walk.trail);
   for (const [name, place] of walk.landmarks) drawPlace(camera, place, name, name === walk.goal);
   drawPerson(camera, walk.at);
