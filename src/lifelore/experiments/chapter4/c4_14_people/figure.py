@@ -36,6 +36,7 @@ def draw(result: Mapping) -> Figure:
             logarithmic="y",
             legend=False,
         )
+        _plain_ticks(right, [0.5, 1, 2, 5])
         right.axhline(1, color=GREY, linestyle=(0, (1, 2)), linewidth=1)
         right.set(xlabel="move of a round with BEAT", ylabel="most likely / true size (mean)")
         right.legend(ncols=2, fontsize=7.5)
@@ -58,5 +59,14 @@ def _draw_losses(axes: Axes, row: Mapping, sizes: list[int]) -> None:
     draw_curves(
         axes, speeds, series, looks=size_lines(sizes), title="4.18: loss by speed", logarithmic="y", legend=False
     )
+    _plain_ticks(axes, [0.1, 0.2, 0.5, 1, 2])
     axes.set(xlabel="speed (units a move)", ylabel="mean loss of a round, band 95 %", xticks=speeds)
     axes.legend(ncols=3, fontsize=7.5)
+
+
+def _plain_ticks(axes: Axes, ticks: list[float]) -> None:
+    """Ticks of a logarithmic axis as plain numbers, those within its limits."""
+    low, high = axes.get_ylim()
+    shown = [tick for tick in ticks if low <= tick <= high]
+    axes.set_yticks(shown, [f"{tick:g}" for tick in shown])
+    axes.minorticks_off()
