@@ -30,7 +30,7 @@ pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
 OFFICE = Path(__file__).parents[3] / "examples" / "data" / "office.yaml"
 ARROWS = ("ArrowUp", "ArrowDown", "ArrowRight", "ArrowLeft")
-MOVES = dict(zip(("north", "south", "east", "west"), ARROWS, strict=True))
+MOVES: dict[str, str] = dict(zip(("north", "south", "east", "west"), ARROWS, strict=True))
 MOST_BYTES = 300_000
 """Bytes of the largest picture of the documentation."""
 LOADED = 60_000

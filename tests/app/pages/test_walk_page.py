@@ -290,7 +290,10 @@ def test_routes_answer_as_documented(tmp_path: Path):
         for operation in found:
 
             @given(case=operation.ok().as_strategy())
-            @settings(max_examples=15, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+            @settings(
+                max_examples=15, derandomize=True, database=None,
+                suppress_health_check=list(HealthCheck),  # pyright: ignore[reportArgumentType]
+            )  # fmt: skip
             def answers(case):
                 case.call_and_validate(
                     headers={"Authorization": f"Bearer {token}"}, excluded_checks=[positive_data_acceptance]
