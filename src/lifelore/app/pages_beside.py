@@ -41,13 +41,16 @@ def pages_beside(serve: bool, port: int | None, memory: str | None) -> Iterator[
     if not serve:
         yield
         return
-    command = [sys.executable, "-m", "lifelore.app.command_line", "serve", "--json"]
+    command = [sys.executable, "-m", "lifelore.app.command_line", "serve", "--json", "--until-eof"]
     command += ["--port", str(PORT if port is None else port)]
     command += [] if memory is None else ["--memory", memory]
     with TemporaryFile("w+") as log:
         # A session of its own: Ctrl-C stops the life first. SIGTERM ends the block, and with it the service.
         before = signal.signal(signal.SIGTERM, lambda number, frame: sys.exit(128 + number))
-        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=log, text=True, start_new_session=True)
+        # Its standard input is a pipe that closes when this process dies, also by SIGKILL; it ends then.
+        process = subprocess.Popen(
+            command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log, text=True, start_new_session=True
+        )
         try:
             assert process.stdout is not None, "it is a pipe"
             line = process.stdout.readline()
@@ -66,5 +69,6 @@ def pages_beside(serve: bool, port: int | None, memory: str | None) -> Iterator[
             except subprocess.TimeoutExpired:
                 process.kill()
                 process.wait()
-            if process.stdout is not None:
-                process.stdout.close()
+            for pipe in (process.stdin, process.stdout):
+                if pipe is not None:
+                    pipe.close()

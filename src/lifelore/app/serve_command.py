@@ -7,6 +7,8 @@ from typing import Annotated
 import typer
 
 Option = typer.Option
+STDIN = 0
+"""Descriptor of standard input."""
 
 
 def serve(
@@ -30,6 +32,10 @@ def serve(
         list[str] | None, Option(metavar="NAME=YAML", help="A ROS map for advice; may be repeated.")
     ] = None,
     seed: Annotated[int, Option(help="Draws all random numbers.")] = 0,
+    until_eof: Annotated[
+        bool,
+        Option("--until-eof", help="Stop at the end of standard input too: when the program that opened it dies."),
+    ] = False,
     as_json: Annotated[bool, Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Answer over HTTP, and show pages in a browser.
@@ -73,4 +79,4 @@ def serve(
     def ready(url: str) -> None:
         print_json_line({"url": url}) if as_json else print(f"serving at {url} (Ctrl-C stops)", flush=True)
 
-    served(settings, host, port, ready, app_with_pages)
+    served(settings, host, port, ready, app_with_pages, until=STDIN if until_eof else None)

@@ -1,11 +1,12 @@
 """Walks of a person: errands, sight and experts of a building, and the advice of its desks step by step."""
 
 from collections import deque
+from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lifelore.agent.advise.guided_walk import begin_walk, take_step, walk_desk
+from lifelore.agent.advise.guided_walk import begin_walk, resume_walk, take_step, walk_desk
 from lifelore.agent.advise.walk_building import MOST_STATES, PLACE_NAMES, walk_building, walk_buildings
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.streams import stream
@@ -13,6 +14,7 @@ from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import open_memory
 
 MAZE = "advice:3"
+OFFICE = Path(__file__).parents[3] / "examples" / "data" / "office.yaml"
 DIRECTIONS = [(-1, 0), (1, 0), (0, 1), (0, -1)]
 """(row, column) of north, south, east and west."""
 
@@ -51,6 +53,15 @@ def test_served_maps_come_first():
     assert len(names) > 2
     for name in names[2:]:
         assert walk_building(name, {}).world.n_states <= MOST_STATES
+
+
+@pytest.mark.parametrize("name", [MAZE, "building:0", "office"])
+def test_the_shortest_way_of_an_errand_is_that_of_a_search(name):
+    building = walk_building(name, {"office": str(OFFICE)})
+    for number in range(4):
+        start, place = building.errand(f"walk-{number}")
+        found = moves_to(building.world, int(building.places[place]))
+        assert building.distance[place, start] == found[start]
 
 
 def test_places_are_apart_and_their_distances_are_those_of_a_search(maze):
@@ -179,6 +190,35 @@ def test_a_desk_that_is_opened_again_goes_on(memory, maze, desk):
     again = walk_desk(memory, maze, True, {})
     assert take_step(maze, again, "dora", 21, before["state"], "north")["step"] == 21
     assert again.id == desk.id
+
+
+@pytest.mark.parametrize("advice", [True, False])
+def test_a_walk_goes_on_as_it_was_left(memory, maze, advice):
+    desk = walk_desk(memory, maze, advice, {})
+    views = [begin_walk(maze, desk, "eva")]
+    random = stream(0, "a walk that goes on")
+    for number in range(1, 41):
+        move = MOVE_NAMES[int(random.integers(4))]
+        views.append(views[0] | take_step(maze, desk, "eva", number, views[-1]["state"], move))
+    assert any(view["advise"] for view in views) is advice
+    again = walk_desk(memory, maze, advice, {})  # as after a restart of the service
+    for opened in (desk, again):
+        resumed = resume_walk(maze, opened, "eva")
+        way, known = resumed.pop("way"), resumed.pop("known")
+        assert resumed == views[-1]
+        assert way == [{name: view[name] for name in ("at", "p_normal", "gain", "advise")} for view in views]
+        for name in ("seen", "places"):
+            assert {str(one) for one in known[name]} == {str(one) for view in views for one in view[name]}
+            assert len(known[name]) == len({str(one) for one in known[name]})
+    after = [take_step(maze, opened, "eva", 41, views[-1]["state"], "north") for opened in (desk, again)]
+    assert after[0] == after[1]
+    assert after[0]["step"] == 41
+
+
+def test_a_walk_that_nobody_has_begun_cannot_go_on(maze, desk):
+    with pytest.raises(NotFoundError, match="no walk 'fay' has begun in advice:3; begin it first"):
+        resume_walk(maze, desk, "fay")
+    assert begin_walk(maze, desk, "fay")["step"] == 0
 
 
 @pytest.mark.slow

@@ -1,7 +1,9 @@
 """The page life as a person uses it: an empty memory, both kinds of lives, keys, and a life that goes on."""
 
+import signal
 import subprocess
 import sys
+import time
 import urllib.error
 import urllib.request
 from collections.abc import Callable
@@ -219,6 +221,28 @@ def test_live_serves_the_pages_as_long_as_it_lives(where: Path, open_page: Opene
         life.communicate()
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(address, timeout=5)
+
+
+@pytest.mark.parametrize("domain", [FACTORY, "lattice"])
+def test_the_service_of_a_life_that_is_killed_ends(where: Path, domain: str):
+    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", domain, "--tasks", "200"]
+    options = ["--memory", str(where), "--robot", "bo", "--serve", "--port", "0"]
+    with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
+        assert life.stderr is not None
+        address = next(line for line in life.stderr if line.startswith("pages at ")).split()[2]
+        with urllib.request.urlopen(address, timeout=30) as answer:
+            assert answer.status == 200
+        life.kill()
+        assert life.wait() == -signal.SIGKILL
+        ends = time.monotonic() + 20  # an idle service needs less than a second; the machine may be busy
+        while time.monotonic() < ends:
+            try:
+                urllib.request.urlopen(address, timeout=5).close()
+            except urllib.error.URLError:
+                break
+            time.sleep(0.1)
+        with pytest.raises(urllib.error.URLError):
+            urllib.request.urlopen(address, timeout=5)
 
 
 def test_a_port_needs_serve(where: Path):

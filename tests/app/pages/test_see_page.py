@@ -127,9 +127,10 @@ def test_own_files_are_analysed_with_their_warnings(
 ):
     page = open_page(serve_pages() + "/see")
     shown(page, TOWER)
+    own = perceive(str(EXAMPLES / "without_labels.pcd"))
     page.set_input_files("#file", EXAMPLES / "without_labels.pcd")
-    shown(page, "4 objects")
-    expect(page.locator("#warnings li")).to_contain_text("4 objects were cut automatically")
+    shown(page, f"{len(own['objects'])} objects")
+    expect(page.locator("#warnings li")).to_contain_text(own["warnings"][0]["message"])
     page.get_by_role("button", name="Object 2").click()
     expect(page.locator("#details")).to_contain_text("sure (cut automatically)")
     side = np.stack(np.meshgrid(np.arange(40), np.arange(40)), -1).reshape(-1, 2)
@@ -145,6 +146,122 @@ def test_own_files_are_analysed_with_their_warnings(
     message = page.locator("#message")
     expect(message).to_contain_text("notes.txt is no PCD, PLY, npz or npy file")
     expect(message).to_have_attribute("role", "alert")
+
+
+def depth_image(folder: Path) -> dict[str, Path]:
+    """Files of a table seen from above with two blocks that touch: depth, camera, colours and masks."""
+    from PIL import Image
+
+    depth, masks = np.full((240, 320), 1000, np.uint16), np.zeros((240, 320), np.uint8)
+    depth[80:160, 100:160], depth[80:160, 160:220] = 900, 860
+    masks[80:160, 100:160], masks[80:160, 160:220] = 5, 9
+    colours = np.full((240, 320, 3), 200, np.uint8)
+    colours[80:160, 100:160] = (200, 30, 30)
+    paths = {
+        name: folder / name
+        for name in ("depth.png", "camera.json", "camera.yaml", "colour.png", "masks.png", "depth.npy")
+    }
+    Image.fromarray(depth).save(paths["depth.png"])
+    Image.fromarray(masks).save(paths["masks.png"])
+    Image.fromarray(colours).save(paths["colour.png"])
+    np.save(paths["depth.npy"], (depth / 1000).astype(np.float32))
+    camera = {"fx": 260, "fy": 260, "cx": 159.5, "cy": 119.5, "width": 320, "height": 240}
+    paths["camera.json"].write_text(json.dumps(camera))
+    matrix = "camera_matrix: {rows: 3, cols: 3, data: [260, 0, 159.5, 0, 260, 119.5, 0, 0, 1]}"
+    paths["camera.yaml"].write_text(f"image_width: 320\nimage_height: 240\n{matrix}\n")
+    return paths
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_a_depth_image_is_analysed_with_its_camera_colours_and_masks(
+    serve_pages: Callable[..., str], open_page: Opened, tmp_path: Path, size: dict[str, int]
+):
+    from axe_playwright_python.sync_playwright import Axe
+
+    files = depth_image(tmp_path)
+    page = open_page(serve_pages() + "/see", size)
+    shown(page, TOWER)
+    page.set_input_files(
+        "#file", [files["depth.png"], files["camera.json"], files["colour.png"], files["masks.png"]]
+    )
+    shown(page, "2 objects")
+    expect(page.locator("#files")).to_have_text(
+        "depth.png: depth; camera.json: camera; colour.png: colours; masks.png: masks of the objects."
+    )
+    expect(page.locator("#relations")).to_contain_text("Object 6 is on the table")
+    expect(page.locator("#units")).to_be_hidden()
+    expect(page.get_by_label("Unit of depth")).to_be_visible()
+    before = pixels(page, (200, 30, 30), 60)
+    page.select_option("#colours", "camera")
+    assert pixels(page, (200, 30, 30), 60) > before + 500
+    found = Axe().run(page)
+    assert found.violations_count == 0, found.generate_report()
+    assert page.evaluate("document.documentElement.scrollWidth - document.documentElement.clientWidth") <= 0
+    with page.expect_download() as saved:
+        page.get_by_role("button", name="Save the graph").click()
+    assert "digraph" in Path(saved.value.path()).read_text()
+    # A cloud is a source of its own again.
+    page.select_option("#example", "crowded_table")
+    shown(page, "6 objects")
+    expect(page.locator("#files")).to_have_text("")
+    expect(page.locator("#units")).to_be_visible()
+
+
+def test_the_parts_of_a_depth_image_are_dropped_one_by_one(
+    serve_pages: Callable[..., str], open_page: Opened, tmp_path: Path
+):
+    files = depth_image(tmp_path)
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+    message = page.locator("#message")
+
+    def dropped(name: str) -> None:
+        drop(page, name, files[name].read_bytes())
+
+    dropped("camera.yaml")
+    expect(message).to_contain_text("camera.yaml belongs to a depth image: choose or drop the image too")
+    shown(page, TOWER)  # the earlier scene stays
+    dropped("depth.npy")
+    shown(page, "2 objects")
+    expect(page.locator("#warnings")).to_contain_text("2 objects were cut automatically")
+    dropped("masks.png")
+    expect(page.locator("#relations")).to_contain_text("Object 10 is on the table", timeout=LOADED)
+    expect(page.locator("#warnings")).not_to_contain_text("cut automatically")
+    expect(page.locator("#files")).to_have_text(
+        "camera.yaml: camera; depth.npy: depth; masks.png: masks of the objects."
+    )
+    dropped("depth.png")  # the next picture of the same camera
+    expect(page.locator("#files")).to_have_text("camera.yaml: camera; depth.png: depth.")
+    expect(page.locator("#warnings")).to_contain_text("2 objects were cut automatically", timeout=LOADED)
+    page.select_option("#example", "tower")
+    shown(page, TOWER)
+    dropped("depth.png")
+    expect(message).to_contain_text("depth.png is a depth image: choose or drop the file of its camera too")
+    drop(page, "second.png", files["depth.png"].read_bytes())
+    expect(message).to_contain_text("second.png is a depth image")
+
+
+def test_the_thumb_of_the_confidence_is_at_the_end_of_its_track(
+    serve_pages: Callable[..., str], open_page: Opened
+):
+    from io import BytesIO
+
+    from PIL import Image
+
+    page = open_page(serve_pages() + "/see")
+    shown(page, TOWER)
+
+    def blue() -> np.ndarray:
+        """Share of the track's width at which each blue pixel lies: the thumb, and the track up to it."""
+        picture = np.asarray(Image.open(BytesIO(page.locator("#least").screenshot())).convert("RGB"), int)
+        columns = np.flatnonzero(((picture[..., 2] - picture[..., 0]) > 100).any(axis=0))
+        return columns / picture.shape[1]
+
+    assert blue().max() < 0.16  # a thumb is 16 of some 130 pixels wide
+    page.locator("#least").focus()
+    page.keyboard.press("End")
+    expect(page.locator("#least-value")).to_have_text("100 %")
+    assert blue().max() > 0.97
 
 
 def test_a_damaged_file_is_one_line_and_the_scene_stays(serve_pages: Callable[..., str], browser: Browser):

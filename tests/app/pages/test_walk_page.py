@@ -23,7 +23,7 @@ from lifelore.memory import open_memory
 
 pytestmark = [pytest.mark.browser, pytest.mark.slow]
 
-PHONE = {"width": 390, "height": 844}
+DESKTOP, PHONE = {"width": 1280, "height": 800}, {"width": 390, "height": 844}
 MAZE = "advice:3"
 OFFICE = Path(__file__).parents[3] / "examples" / "data" / "office.yaml"
 KEYS = {"north": "ArrowUp", "south": "ArrowDown", "east": "ArrowRight", "west": "ArrowLeft"}
@@ -38,7 +38,7 @@ class Walker:
 
     def _note(self, request) -> None:
         found = re.search(r"/v1/walks/(walk-[0-9-]+)$", request.url)
-        if found:
+        if found and request.method == "PUT":
             self.walk, self.steps = found.group(1), 0
 
     def ready(self) -> None:
@@ -114,6 +114,92 @@ def test_a_person_gets_lost_is_advised_and_finds_the_place(
     assert answer["step"] == walker.steps + 1
 
 
+def painted(page: Page) -> bytes:
+    """The bytes of the map and the curves as they are drawn."""
+    return page.evaluate(
+        "document.getElementById('map').toDataURL() + document.getElementById('curves').innerHTML"
+    )
+
+
+@pytest.mark.parametrize("size", [DESKTOP, PHONE], ids=["desktop", "phone"])
+def test_a_reload_goes_on_with_the_walk_in_progress(
+    serve_pages: Callable[..., str], open_page: Callable[..., Page], size: dict[str, int]
+):
+    page = open_page(serve_pages() + "/walk", size)
+    walker = Walker(page)
+    page.get_by_label("Advice when I seem lost").uncheck()
+    walker.begin(MAZE)
+    name, building = walker.walk, walk_building(MAZE, {})
+    moves = way(building, name)
+    for move in moves[:12]:
+        walker.press(move)
+    heading, before = page.locator("#errand").inner_text(), painted(page)
+    for leave in (page.reload, lambda: page.goto(page.url.replace("walk", "life")) and page.go_back()):
+        leave()
+        expect(page.locator("#errand")).to_have_text(heading)
+        assert painted(page) == before
+        expect(page.get_by_role("combobox", name="Building")).to_have_value(MAZE)
+        expect(page.get_by_label("Advice when I seem lost")).not_to_be_checked()
+    # The answer to a step is lost: the service has the step, the page has not.
+    page.evaluate(
+        "() => { const own = window.fetch; window.fetch = async (...asked) => { await own(...asked); throw 0; }; }"
+    )
+    page.keyboard.press(KEYS[moves[12]])
+    expect(page.get_by_role("alert")).to_contain_text("does not answer")
+    page.reload()
+    expect(page.locator("#errand")).to_contain_text("· 13 steps")
+    walker.steps = 13
+    for move in moves[13:]:
+        walker.press(move)
+    words = f"in {len(moves)} steps; the shortest way has {len(moves)}"
+    expect(page.get_by_role("status").filter(has_text="You found")).to_contain_text(words)
+    row = page.locator("#walks tbody tr").all_inner_texts()
+    page.reload()
+    expect(page.get_by_role("status").filter(has_text="You found")).to_contain_text(words)
+    assert page.locator("#walks tbody tr").all_inner_texts() == row
+    assert walker.walk == name
+    walker.begin("advice:3")
+    assert walker.walk != name
+
+
+def test_a_walk_that_the_memory_has_lost_begins_anew(
+    serve_pages: Callable[..., str], browser: Browser, tmp_path: Path
+):
+    # Not by `open_page`: the browser itself logs each answer that is an error.
+    with browser.new_context() as context:
+        page = context.new_page()
+        page.goto(serve_pages() + "/walk")
+        walker = Walker(page)
+        walker.begin(MAZE)
+        name = walker.walk
+        page.evaluate(
+            "sessionStorage['lifelore walks'] = sessionStorage['lifelore walks'].replace(/walk-[0-9-]+/, 'walk-0')"
+        )
+        page.reload()
+        walker.ready()
+        assert walker.walk not in (name, "walk-0")
+        expect(page.get_by_role("alert")).to_have_count(0)
+
+
+def test_two_tabs_of_one_walk_agree(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
+    page = open_page(serve_pages() + "/walk")
+    walker = Walker(page)
+    walker.begin(MAZE)
+    twin = page.context.new_page()
+    twin.goto(page.url.replace("/walk", "/life"))
+    twin.evaluate(
+        "(text) => sessionStorage.setItem('lifelore walks', text)",
+        page.evaluate("sessionStorage['lifelore walks']"),
+    )
+    twin.goto(page.url)
+    expect(twin.locator("#errand")).to_contain_text("· 0 steps")
+    for move in way(walk_building(MAZE, {}), walker.walk)[:3]:
+        walker.press(move)
+    twin.keyboard.press("ArrowUp")
+    expect(twin.locator("#errand")).to_contain_text("· 3 steps")
+    assert painted(twin) == painted(page)
+
+
 def test_without_advice_there_are_no_arrows_and_the_curve_goes_on(
     serve_pages: Callable[..., str], open_page: Callable[..., Page]
 ):
@@ -181,6 +267,11 @@ def test_routes_check_what_they_are_given(tmp_path: Path):
             answer = client.put("/v1/walks/ben", json={"building": name})
             assert answer.status_code == 404
             assert answer.json()["error"]["message"].startswith("building must be one of")
+            assert client.get("/v1/walks/ada", params={"building": name}).status_code == 404
+        assert client.get("/v1/walks/ada", params={"building": MAZE}).json()["step"] == 1
+        assert client.get("/v1/walks/ada", params={"building": MAZE, "advice": False}).status_code == 404
+        assert client.get("/v1/walks/ben", params={"building": MAZE}).status_code == 404
+        assert client.get("/v1/walks/ada", params={"building": MAZE, "extra": 1}).status_code == 422
         assert client.put("/v1/walks/ada", json={"building": MAZE}).status_code == 422
 
 
@@ -195,11 +286,14 @@ def test_routes_answer_as_documented(tmp_path: Path):
     with TestClient(app):
         routes = schemathesis.openapi.from_asgi("/openapi.json", app).include(path_regex="^/v1/walks")
         found = list(routes.get_all_operations())
-        assert len(found) == 3
+        assert len(found) == 4
         for operation in found:
 
             @given(case=operation.ok().as_strategy())
-            @settings(max_examples=15, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+            @settings(
+                max_examples=15, derandomize=True, database=None,
+                suppress_health_check=list(HealthCheck),  # pyright: ignore[reportArgumentType]
+            )  # fmt: skip
             def answers(case):
                 case.call_and_validate(
                     headers={"Authorization": f"Bearer {token}"}, excluded_checks=[positive_data_acceptance]

@@ -7,6 +7,7 @@ import json
 import os
 import random
 import signal
+import subprocess
 import threading
 import time
 from pathlib import Path
@@ -69,6 +70,23 @@ def test_it_serves_and_stops_by_a_signal(started, study, tmp_path):
         assert child.wait(60) == status
     lines = [json.loads(line) for line in (tmp_path / "log").read_text().splitlines() if line.startswith("{")]
     assert [one["status"] for one in lines if one["message"] == "request"] == [200] * 4
+
+
+def test_it_stops_where_its_standard_input_ends(start, study, tmp_path):
+    memory = tmp_path / "lifelore.db"
+    child = start("serve", "--port", 0, "--memory", memory, "--json", "--until-eof", stdin=subprocess.PIPE)
+    with Client(json.loads(child.stdout.readline())["url"]) as client:
+        client.ask("PUT", "/v1/studies/s", study)
+        child.stdin.write("bytes are no end")
+        child.stdin.flush()
+        made = client.ask("POST", "/v1/studies/s/decisions", {"user": "ada"})
+    assert child.poll() is None
+    child.stdin.close()
+    child.stdin = None  # `communicate` of the fixture would write to it
+    assert child.wait(60) == 0
+    with open_memory(memory) as opened:
+        history = open_history(opened, open_study(opened, "s"), parse_identifier(made["decision"])[0])
+    assert [history.identifier(decision) for decision in history.decisions] == [made["decision"]]
 
 
 def test_a_host_that_others_reach_needs_tokens(ask):

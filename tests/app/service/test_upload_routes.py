@@ -2,10 +2,12 @@
 
 import base64
 import io
+import json
 import os
 import random
 import signal
 import sqlite3
+import struct
 import time
 
 import numpy as np
@@ -69,19 +71,55 @@ def test_a_cloud_becomes_a_scene_with_pddl(serve, cloud, tmp_path):
     assert document["dot"].startswith("digraph")
 
 
-def test_a_depth_image_becomes_a_scene(serve):
-    depth = np.full((120, 160), 1000, np.uint16)
-    depth[40:80, 60:100] = 900
-    file = io.BytesIO()
-    Image.fromarray(depth).save(file, "PNG")
-    document = {
-        "depth": base64.b64encode(file.getvalue()).decode(), "depth_scale": 0.001,
+@pytest.fixture(scope="module")
+def depth():
+    """A block on a table seen from above, as the body of a question."""
+    image = np.full((120, 160), 1000, np.uint16)
+    image[40:80, 60:100] = 900
+    return {
+        "depth": encoded(image), "depth_scale": 0.001,
         "intrinsics": {"fx": 130.0, "fy": 130.0, "cx": 79.5, "cy": 59.5, "width": 160, "height": 120},
     }  # fmt: skip
-    answer = serve().post("/v1/perceive/depth", json=document)
+
+
+def encoded(image):
+    file = io.BytesIO()
+    Image.fromarray(image).save(file, "PNG")
+    return base64.b64encode(file.getvalue()).decode()
+
+
+def test_a_depth_image_becomes_a_scene(serve, depth):
+    client = serve()
+    answer = client.post("/v1/perceive/depth", json=depth)
     assert answer.status_code == 200, answer.text
     assert len(answer.json()["objects"]) == 1
-    assert serve().post("/v1/perceive/depth", json=document | {"depth": "no base64!"}).status_code == 422
+    for wrong in (
+        {"depth": "no base64!"},
+        {"masks": "?"},
+        {"intrinsics": "no camera"},
+        {"intrinsics": "/etc/passwd"},
+    ):
+        refused = client.post("/v1/perceive/depth", json=depth | wrong)
+        assert refused.status_code == 422, wrong
+        assert "/tmp" not in refused.text
+
+
+def test_a_depth_image_comes_with_the_file_of_its_camera_and_masks(serve, depth):
+    client = serve()
+    camera = "image_width: 160\nimage_height: 120\ncamera_matrix:\n  rows: 3\n  cols: 3\n"
+    camera += "  data: [130.0, 0, 79.5, 0, 130.0, 59.5, 0, 0, 1]\n"
+    masks = np.zeros((120, 160), np.uint8)
+    masks[40:80, 60:80], masks[40:80, 80:100] = 1, 2  # a segmenter that cuts the block in two
+    asked = depth | {"intrinsics": camera, "masks": encoded(masks)}
+    document = client.post("/v1/perceive/depth", json=asked).json()
+    assert [one["id"] for one in document["objects"]] == [2, 3]
+    body = client.post("/v1/perceive/depth/points", json=asked).content
+    (n,) = struct.unpack("<I", body[:4])
+    labels = np.frombuffer(body, "<i4", n, 4 + 12 * n)
+    assert {1, 2, 3} <= set(labels.tolist())
+    behind = json.loads(body[4 + 19 * n :])
+    for key in document.keys() - {"seconds", "source"}:
+        assert behind[key] == document[key], key
 
 
 def test_damaged_clouds_are_refused_in_one_line(serve, cloud, tmp_path):

@@ -8,10 +8,11 @@ from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.agent.advise.advice_desk import AdviceDesk, register_desk
 from lifelore.agent.advise.walk_building import PLACE_NAMES, WalkBuilding
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import Memory
 
@@ -78,14 +79,35 @@ def begin_walk(building: WalkBuilding, desk: AdviceDesk, walk: str) -> dict[str,
     view = _answer(building, desk, walk, 0, start, None)
     if view["step"]:
         raise InputError(f"walk must be new, got '{walk}', which has {view['step']} steps; choose another name")
-    world = building.world
-    return view | {
-        "shape": list(world.shape),
-        "cell": world.frame.cell,
-        "goal": PLACE_NAMES[place],
-        "shortest": int(building.distance[place, start]),
-        "kappa": KAPPA,
-    }
+    return view | _errand(building, start, place)
+
+
+def resume_walk(building: WalkBuilding, desk: AdviceDesk, walk: str) -> dict[str, Any]:
+    """A walk that has begun, as the person left it.
+
+    Returns
+    -------
+    dict
+        As `begin_walk`, but after the last step; and ``way``, {"at", "p_normal", "gain", "advise"} at the start
+        and after each step; ``known``, {"seen", "places"}, all that has been in sight, as in `take_step`.
+
+    Raises
+    ------
+    NotFoundError
+        Nobody has begun this walk in this building.
+    """
+    steps = desk.retrace(walk)
+    if not steps:
+        raise NotFoundError(f"no walk '{walk}' has begun in {building.name}; begin it first")
+    states = [state for state, _ in steps]
+    now, cells = states[-1], building.world.cells
+    seen = np.unique(np.concatenate([building.in_sight(state) for state in states]))
+    way = [
+        {"at": cells[state].tolist()} | {name: advice[name] for name in ("p_normal", "gain", "advise")}
+        for state, advice in steps
+    ]
+    view = _with_advice(building, walk, len(steps) - 1, now, steps[-1][1])
+    return view | _errand(building, *building.errand(walk)) | {"way": way, "known": _cells(building, seen)}
 
 
 def take_step(
@@ -128,27 +150,50 @@ def _answer(
     # The desk counts the beginning of the walk as its first step, without an action.
     advice = desk.answer(walk, number, [{"state": state, "action": move}])
     after = int(building.world.neighbour[state, MOVE_NAMES.index(move)]) if move else state
-    after = state if after < 0 else after
+    return _with_advice(building, walk, advice["step"] - 1, state if after < 0 else after, advice)
+
+
+def _with_advice(
+    building: WalkBuilding, walk: str, step: int, state: int, advice: Mapping[str, Any]
+) -> dict[str, Any]:
     _, place = building.errand(walk)
     return {
         "walk": walk,
-        "step": advice["step"] - 1,
-        **_view(building, after),
-        "reached": bool(after == building.places[place]),
+        "step": step,
+        **_view(building, state),
+        "reached": bool(state == building.places[place]),
         **{name: advice[name] for name in ("advise", "theta", "p_normal", "gain")},
     }
 
 
+def _errand(building: WalkBuilding, start: int, place: int) -> dict[str, Any]:
+    world = building.world
+    return {
+        "shape": list(world.shape),
+        "cell": world.frame.cell,
+        "goal": PLACE_NAMES[place],
+        "shortest": int(building.distance[place, start]),
+        "kappa": KAPPA,
+    }
+
+
 def _view(building: WalkBuilding, state: int) -> dict[str, Any]:
-    world, seen = building.world, building.in_sight(state)
-    is_open = world.neighbour >= 0
-    bits = (is_open[seen] << np.arange(len(MOVE_NAMES))).sum(axis=1)
-    places = np.flatnonzero(np.isin(building.places, seen))
+    world = building.world
     return {
         "state": state,
         "at": world.cells[state].tolist(),
-        "open": [name for name, leads in zip(MOVE_NAMES, is_open[state], strict=True) if leads],
-        "seen": np.column_stack([world.cells[seen], bits]).tolist(),
+        "open": [name for name, leads in zip(MOVE_NAMES, world.neighbour[state] >= 0, strict=True) if leads],
+        **_cells(building, building.in_sight(state)),
+    }
+
+
+def _cells(building: WalkBuilding, states: NDArray[np.integer]) -> dict[str, Any]:
+    """The cells of states with their open moves, and the places among them."""
+    world = building.world
+    bits = ((world.neighbour[states] >= 0) << np.arange(len(MOVE_NAMES))).sum(axis=1)
+    places = np.flatnonzero(np.isin(building.places, states))
+    return {
+        "seen": np.column_stack([world.cells[states], bits]).tolist(),
         "places": [
             {"name": PLACE_NAMES[place], "at": world.cells[building.places[place]].tolist()} for place in places
         ],

@@ -28,7 +28,7 @@ def perceive_upload(
     kind : str
         One of `KINDS`, or ``depth``.
     parts : mapping of str to bytes
-        ``cloud``; or ``depth`` with ``intrinsics`` (JSON or YAML) and, if known, ``colour``.
+        ``cloud``; or ``depth`` with ``intrinsics`` (JSON or YAML) and, if known, ``colour`` and ``masks``.
     options : mapping
         Fields of `PerceiveSettings`: ``up``, ``units``, ``labels``, ``min_confidence``, ``goal``.
     depth_scale : float, optional
@@ -49,9 +49,11 @@ def perceive_upload(
     return _perceived(kind, parts, options, depth_scale)[1]
 
 
-def perceive_upload_with_points(kind: str, parts: Mapping[str, bytes], options: Mapping[str, Any]) -> bytes:
+def perceive_upload_with_points(
+    kind: str, parts: Mapping[str, bytes], options: Mapping[str, Any], depth_scale: float | None = None
+) -> bytes:
     """The points of an uploaded scene and its document, see `scene_bytes`; errors as in `perceive_upload`."""
-    return scene_bytes(*_perceived(kind, parts, options, None))
+    return scene_bytes(*_perceived(kind, parts, options, depth_scale))
 
 
 def _perceived(
@@ -65,11 +67,12 @@ def _perceived(
             "depth": "depth.png",
             "intrinsics": "intrinsics",
             "colour": "colour",
+            "masks": "masks",
         }
         paths = {part: str(Path(folder) / names[part]) for part in parts}
         for part, path in paths.items():
             Path(path).write_bytes(parts[part])
-        beside = SourceFiles(paths.get("intrinsics"), paths.get("colour"), depth_scale)
+        beside = SourceFiles(paths.get("intrinsics"), paths.get("colour"), depth_scale, paths.get("masks"))
         settings = PerceiveSettings(beside=beside, **options)
         source = paths["cloud" if kind != "depth" else "depth"]
         _, scene, document = scene_and_document(source, settings=settings)

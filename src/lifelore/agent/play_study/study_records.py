@@ -46,19 +46,26 @@ def robot_of(session: str) -> str:
     return f"play: {session}"
 
 
-def open_new_session(memory: Memory, settings: StudySettings, *, consent: bool, seed: int = 0) -> StudySession:
+def open_new_session(
+    memory: Memory, settings: StudySettings, *, consent: bool, seed: int = 0, name: str | None = None
+) -> StudySession:
     """Begin a session and store it.
+
+    Parameters
+    ----------
+    name : str, optional
+        Identifier, letters and digits; default: drawn at random. A name and a seed give the same rounds again.
 
     Raises
     ------
     InputError
-        The player does not consent.
+        The player does not consent, or the memory has a session of the name.
     """
     if consent is not True:
         raise InputError(
             "consent must be given before anything is recorded; agree to the text, or play a free round"
         )
-    name = secrets.token_hex(8)
+    name = secrets.token_hex(8) if name is None else name
     others = other_players(memory, settings)
     about = {
         "settings": settings.document,
@@ -68,9 +75,9 @@ def open_new_session(memory: Memory, settings: StudySettings, *, consent: bool, 
         "consent": CONSENT,
         "time": int(time.time()),
     }
-    _contribute(
-        memory, name, [Record(SESSION, name, VERSION, "newest", _ONE, _ONE, about)], 0, {"play": "session"}
-    )
+    record = Record(SESSION, name, VERSION, "newest", _ONE, _ONE, about)
+    if not _contribute(memory, name, [record], 0, {"play": "session"}):
+        raise InputError(f"name must be new, got '{name}', which memory has; choose another name or seed")
     return StudySession(name, settings, others, first=about["first"], seed=seed)
 
 

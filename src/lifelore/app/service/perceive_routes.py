@@ -16,6 +16,8 @@ from lifelore.core.errors import InputError
 
 SHARE = 0.9
 """Share of the time limit of a request that perception may take."""
+LONGEST_CAMERA = 20_000
+"""Characters of the file of a camera; files of ROS have some hundred."""
 BODY = {
     "requestBody": {
         "required": True,
@@ -72,7 +74,10 @@ class DepthImage(SceneOptions):
     )  # fmt: skip
     depth: str = Field(description="PNG of 16 bits, or an npy file.")
     colour: str | None = Field(None, description="PNG or JPEG of the same size.")
-    intrinsics: Intrinsics
+    masks: str | None = Field(None, description="Masks of the objects: a label image (PNG), npz or npy.")
+    intrinsics: Intrinsics | Annotated[str, Field(max_length=LONGEST_CAMERA)] = Field(
+        description="The numbers of the camera, or the text of its file: camera_info YAML or JSON."
+    )
     depth_scale: FiniteFloat | None = Field(None, description="Metres for each unit of depth.")
 
 
@@ -99,14 +104,27 @@ def router(service: Service) -> APIRouter:
     async def points(request: Request, options: Annotated[CloudOptions, Query()]) -> Response:
         return Response(await of_cloud(perceive_upload_with_points, request, options), media_type=BYTES)
 
+    def of_depth(function: Callable[..., Any], document: DepthImage) -> Any:
+        camera = document.intrinsics
+        text = camera if isinstance(camera, str) else json.dumps(camera.model_dump())
+        parts = {"depth": _decoded("depth", document.depth), "intrinsics": text.encode("utf-8", "replace")}
+        for name in ("colour", "masks"):
+            image = getattr(document, name)
+            if image is not None:
+                parts[name] = _decoded(name, image)
+        given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
+        return called(function, "depth", parts, given, document.depth_scale)
+
     @routes.post("/depth", summary="Perceive the scene of a depth image")
     def depth(document: DepthImage) -> dict[str, Any]:
-        parts = {"depth": _decoded("depth", document.depth)}
-        parts["intrinsics"] = json.dumps(document.intrinsics.model_dump()).encode()
-        if document.colour is not None:
-            parts["colour"] = _decoded("colour", document.colour)
-        given = document.model_dump(include=set(SceneOptions.model_fields), exclude_none=True)
-        return called(perceive_upload, "depth", parts, given, document.depth_scale)
+        return of_depth(perceive_upload, document)
+
+    @routes.post(
+        "/depth/points", summary="As /depth, with the points of the scene before the document, as bytes",
+        response_class=Response, responses=_POINTS,
+    )  # fmt: skip
+    def depth_points(document: DepthImage) -> Response:
+        return Response(of_depth(perceive_upload_with_points, document), media_type=BYTES)
 
     return routes
 

@@ -1,8 +1,11 @@
 """Runs the application with uvicorn until a signal stops it; requests in progress are answered first."""
 
+import os
 import signal
 import socket
+import threading
 from collections.abc import Callable
+from typing import Any
 
 from fastapi import FastAPI
 
@@ -21,6 +24,7 @@ def serve(
     port: int,
     ready: Callable[[str], None],
     create: Callable[[ServiceSettings], FastAPI] = create_app,
+    until: int | None = None,
 ) -> None:
     """Serve until SIGINT or SIGTERM.
 
@@ -33,6 +37,8 @@ def serve(
         Called with the URL once connections are accepted.
     create : callable
         Makes the application; by default without pages.
+    until : int, optional
+        Descriptor of a file at whose end the service stops too: of a pipe that closes when its other process dies.
 
     Raises
     ------
@@ -62,7 +68,19 @@ def serve(
     # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then.
     signal.signal(signal.SIGTERM, lambda number, frame: None)
     ready(f"http://{name}:{listening.getsockname()[1]}")
-    uvicorn.Server(config).run(sockets=[listening])
+    server = uvicorn.Server(config)
+    if until is not None:
+        threading.Thread(target=_stop_at_end, args=(until, server), daemon=True).start()
+    server.run(sockets=[listening])
+
+
+def _stop_at_end(file: int, server: Any) -> None:
+    try:
+        while os.read(file, 1024):
+            pass
+    except OSError:
+        pass  # no open file has ended too
+    server.should_exit = True
 
 
 def _listening(host: str, port: int) -> socket.socket:

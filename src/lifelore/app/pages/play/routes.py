@@ -1,8 +1,8 @@
 """Routes of the page /play: sessions of the study, the record of a player, results, and the socket of a round."""
 
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from fastapi import APIRouter, Path, Response, WebSocket
+from fastapi import APIRouter, WebSocket
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
@@ -19,8 +19,8 @@ from lifelore.agent.play_study.study_records import (
     store_round,
 )
 from lifelore.agent.play_study.study_results import study_results
-from lifelore.agent.play_study.study_session import StudySession
 from lifelore.agent.play_study.study_settings import FRAMES_A_SECOND, LENGTHS, StudySettings
+from lifelore.app.pages.open_sessions import CsvResponse, Name, OpenSessions, add_record_routes
 from lifelore.app.pages.play.live_round import LiveRound
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import InputError, LifeloreError
@@ -28,11 +28,8 @@ from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
 from lifelore.domains.ball_game.layouts import SIDE, layout_of
 
 LAYOUT = "s-maze 160"
-MOST_OPEN = 200
-"""Largest number of sessions held in main memory; others are read again from memory when their player returns."""
 REFUSED = 4400
 """Code with which a socket closes after an error that its last message explains."""
-Name = Annotated[str, Path(description="Anonymous identifier of the session.", min_length=1, max_length=100)]
 
 
 class SessionRequest(BaseModel):
@@ -51,17 +48,8 @@ def router(service: Service) -> APIRouter:
     """The routes of the page."""
     routes = APIRouter(prefix="/v1/play", tags=["play"])
     memory, run = service.memory, service.writer.run
-    sessions: dict[str, StudySession] = {}
+    sessions = OpenSessions(memory, open_session)
     playing: set[str] = set()
-
-    def remember(session: StudySession) -> StudySession:
-        sessions[session.name] = session
-        while len(sessions) > MOST_OPEN:
-            del sessions[next(iter(sessions))]
-        return session
-
-    def session_of(name: str) -> StudySession:
-        return sessions.get(name) or remember(open_session(memory, name))
 
     @routes.get("/game", summary="The game, the lengths of a session and the text of consent")
     def game() -> dict[str, Any]:
@@ -80,27 +68,14 @@ def router(service: Service) -> APIRouter:
         await run_in_threadpool(scripted_others, LAYOUT)
         seed = service.settings.seed
         opened = await run(lambda: open_new_session(memory, settings, consent=document.consent, seed=seed))
-        return JSONResponse(remember(opened).view())
+        return JSONResponse(sessions.add(opened).view())
 
-    @routes.get("/sessions/{session}", summary="The state of a session")
-    def show(session: Name) -> dict[str, Any]:
-        return session_of(session).view()
+    @routes.get("/sessions/{name}", summary="The state of a session")
+    def show(name: Name) -> dict[str, Any]:
+        return sessions.of(name).view()
 
-    @routes.get("/sessions/{session}/record", summary="All that is stored of a session")
-    def record(session: Name) -> dict[str, Any]:
-        return export_session(memory, session)
-
-    @routes.get(
-        "/sessions/{session}/record.csv", summary="The rounds of a session as CSV", response_class=Response
-    )
-    def record_csv(session: Name) -> Response:
-        return Response(export_csv(memory, session), media_type="text/csv")
-
-    @routes.delete("/sessions/{session}", summary="Delete all that is stored of a session, for ever")
-    async def delete(session: Name) -> Any:
-        forgotten = await run(forget_session, memory, session)
-        sessions.pop(session, None)
-        return JSONResponse({"session": session, "forgotten": forgotten})
+    exports = {"": (JSONResponse, export_session), ".csv": (CsvResponse, export_csv)}
+    add_record_routes(routes, service, "session", sessions, exports, forget_session)
 
     @routes.get("/results", summary="Numbers of Figures 4.18-4.20 from the recorded rounds")
     def results() -> dict[str, Any]:
@@ -110,7 +85,7 @@ def router(service: Service) -> APIRouter:
     async def live(socket: WebSocket, session: str) -> None:
         await socket.accept(subprotocol="lifelore")
         try:
-            opened = await run_in_threadpool(session_of, session)
+            opened = await run_in_threadpool(sessions.of, session)
             if session in playing:
                 raise InputError(
                     "the session is open in another window; close that window, then load this page again"

@@ -1,9 +1,9 @@
 """Routes of the page /teach: a lesson, its steps, learning curves with and without its prior, its record."""
 
 from threading import Lock
-from typing import Annotated, Any
+from typing import Any
 
-from fastapi import APIRouter, Path, Response
+from fastapi import APIRouter
 from fastapi.responses import JSONResponse
 from pydantic import BaseModel, ConfigDict, Field
 
@@ -18,12 +18,9 @@ from lifelore.agent.factory_lesson.lesson_records import (
     store_demonstration,
 )
 from lifelore.agent.factory_lesson.lesson_task import MOST_COMPONENTS
+from lifelore.app.pages.open_sessions import JsonLinesResponse, Name, OpenSessions, add_record_routes
 from lifelore.app.service.service_state import Service
 from lifelore.core.errors import StoreError
-
-MOST_OPEN = 200
-"""Largest number of lessons held in main memory; others are read again from memory when their person returns."""
-Name = Annotated[str, Path(description="Anonymous identifier of the lesson.", min_length=1, max_length=100)]
 
 
 class LessonRequest(BaseModel):
@@ -51,17 +48,8 @@ def router(service: Service) -> APIRouter:
     """The routes of the page."""
     routes = APIRouter(prefix="/v1/teach", tags=["teach"])
     memory, run = service.memory, service.writer.run
-    lessons: dict[str, FactoryLesson] = {}
+    lessons = OpenSessions(memory, open_lesson)
     stepping = Lock()
-
-    def remember(lesson: FactoryLesson) -> FactoryLesson:
-        lessons[lesson.name] = lesson
-        while len(lessons) > MOST_OPEN:
-            del lessons[next(iter(lessons))]
-        return lesson
-
-    def lesson_of(name: str) -> FactoryLesson:
-        return lessons.get(name) or remember(open_lesson(memory, name))
 
     def view(lesson: FactoryLesson) -> dict[str, Any]:
         return {**lesson.view(), "floor": lesson.floor(), "memory": demonstrations_in(memory)}
@@ -69,24 +57,22 @@ def router(service: Service) -> APIRouter:
     @routes.post("/lessons", summary="Begin a lesson")
     async def begin(document: LessonRequest) -> Any:
         seed = service.settings.seed
-        return JSONResponse(view(remember(await run(open_new_lesson, memory, document.components, seed))))
+        return JSONResponse(view(lessons.add(await run(open_new_lesson, memory, document.components, seed))))
 
-    @routes.get("/lessons/{lesson}", summary="The state of a lesson")
-    def show(lesson: Name) -> dict[str, Any]:
-        return view(lesson_of(lesson))
+    @routes.get("/lessons/{name}", summary="The state of a lesson")
+    def show(name: Name) -> dict[str, Any]:
+        return view(lessons.of(name))
 
-    @routes.post(
-        "/lessons/{lesson}/steps", summary="Take a step; the last step of a task stores its demonstration"
-    )
-    async def step(lesson: Name, document: Step) -> Any:
+    @routes.post("/lessons/{name}/steps", summary="Take a step; the last step of a task stores its demonstration")
+    async def step(name: Name, document: Step) -> Any:
         try:
-            return JSONResponse(await run(take, lesson, document.action))
+            return JSONResponse(await run(take, name, document.action))
         except StoreError:
-            lessons.pop(lesson, None)  # it may hold a demonstration that is not stored
+            lessons.close(name)  # it may hold a demonstration that is not stored
             raise
 
     def take(name: str, action: int) -> dict[str, Any]:
-        opened = lesson_of(name)
+        opened = lessons.of(name)
         with stepping:
             opened.act(action)
             if opened.over:
@@ -95,29 +81,19 @@ def router(service: Service) -> APIRouter:
                 opened.accept(shown)
             return opened.view()
 
-    @routes.post("/lessons/{lesson}/next", summary="Go on to the next task; a task that is not over is dropped")
-    def go_on(lesson: Name) -> dict[str, Any]:
-        opened = lesson_of(lesson)
+    @routes.post("/lessons/{name}/next", summary="Go on to the next task; a task that is not over is dropped")
+    def go_on(name: Name) -> dict[str, Any]:
+        opened = lessons.of(name)
         with stepping:
             opened.go_on()
         return view(opened)
 
-    @routes.post("/lessons/{lesson}/curves", summary="Learning curves with and without the prior of the lesson")
-    def curves(lesson: Name, document: Learning) -> dict[str, Any]:
-        opened = lesson_of(lesson)
+    @routes.post("/lessons/{name}/curves", summary="Learning curves with and without the prior of the lesson")
+    def curves(name: Name, document: Learning) -> dict[str, Any]:
+        opened = lessons.of(name)
         arguments = (opened.name, opened.components, opened.seed, list(opened.shown), document.episodes)
         return service.worker.call(lesson_curves, arguments, service.settings.seconds)
 
-    @routes.get(
-        "/lessons/{lesson}/record", summary="The demonstrations of a lesson as JSON lines", response_class=Response
-    )
-    def record(lesson: Name) -> Response:
-        return Response(export_lesson(memory, lesson), media_type="application/jsonl")
-
-    @routes.delete("/lessons/{lesson}", summary="Delete all that is stored of a lesson, for ever")
-    async def delete(lesson: Name) -> Any:
-        forgotten = await run(forget_lesson, memory, lesson)
-        lessons.pop(lesson, None)
-        return JSONResponse({"lesson": lesson, "forgotten": forgotten})
-
+    exports = {"": (JsonLinesResponse, export_lesson)}
+    add_record_routes(routes, service, "lesson", lessons, exports, forget_lesson)
     return routes

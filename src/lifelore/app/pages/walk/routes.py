@@ -1,14 +1,14 @@
-"""Routes of the page `/walk`: buildings, the beginning of a walk, and its steps."""
+"""Routes of the page `/walk`: buildings, the beginning of a walk, its steps, and a walk that goes on."""
 
 import threading
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Path
+from fastapi import APIRouter, Path, Query
 from pydantic import BaseModel, ConfigDict, Field
 from starlette.concurrency import run_in_threadpool
 
 from lifelore.agent.advise.advice_desk import AdviceDesk
-from lifelore.agent.advise.guided_walk import begin_walk, take_step, walk_desk, walk_desk_name
+from lifelore.agent.advise.guided_walk import begin_walk, resume_walk, take_step, walk_desk, walk_desk_name
 from lifelore.agent.advise.walk_building import WalkBuilding, walk_building, walk_buildings
 from lifelore.app.service.service_state import Service
 
@@ -60,6 +60,10 @@ def router(service: Service) -> APIRouter:
         building = building_of(document.building)
         return begin_walk(building, desk_of(building, document.advice), walk)
 
+    def resumed(walk: str, document: BeginRequest) -> dict[str, Any]:
+        building = building_of(document.building)
+        return resume_walk(building, desk_of(building, document.advice), walk)
+
     def stepped(walk: str, document: MoveRequest) -> dict[str, Any]:
         building = building_of(document.building)
         desk = desk_of(building, document.advice)
@@ -74,6 +78,11 @@ def router(service: Service) -> APIRouter:
         # The first walk in a building takes seconds, which must not hold up the thread that stores.
         await run_in_threadpool(prepare, document)
         return await service.writer.run(begun, walk, document)
+
+    @routes.get("/{walk}", summary="A walk that has begun: its errand, its way so far, and all that was in sight")
+    async def resume(walk: Walk, document: Annotated[BeginRequest, Query()]) -> dict[str, Any]:
+        await run_in_threadpool(prepare, document)
+        return await service.writer.run(resumed, walk, document)
 
     @routes.post("/{walk}/steps", summary="Take a step: what is in sight then, and advice where the rule fires")
     async def step(walk: Walk, document: MoveRequest) -> dict[str, Any]:

@@ -1,21 +1,21 @@
 // The page /see: opens clouds, shows the scene that the service perceives in them, and lets a person choose objects.
 
 import { ask, make, say } from "/static/shell/shell.js";
+import { describeSource, lackOf, questionOf, sourceOf } from "./source_files.js";
 import { colourOf, drawingOf, nameOf, NONE, relationColour, relationsOf, sceneOf, sentenceOf } from "./scene.js";
 
 const EXAMPLES = "/static/see/examples/";
-const KINDS = ["pcd", "ply", "npz", "npy"];
 const BOXES = ["points", "contacts", "networks", "relations", "holes"];
 const $ = (id) => document.getElementById(id);
 
-const state = { scene: null, selected: null, cloud: null, asked: 0 };
+const state = { scene: null, selected: null, source: new Map(), asked: 0 };
 let view = null;
 
 async function start() {
   view = await openView();
   $("example").addEventListener("change", openExample);
-  $("file").addEventListener("change", () => $("file").files.length && openFile($("file").files[0]));
-  for (const id of ["up", "units"]) $(id).addEventListener("change", analyse);
+  $("file").addEventListener("change", () => openFiles($("file").files));
+  for (const id of ["up", "units", "scale"]) $(id).addEventListener("change", analyse);
   for (const id of [...BOXES.map((box) => `show-${box}`), "colours"]) $(id).addEventListener("change", () => draw());
   $("least").addEventListener("input", () => draw());
   $("plan").addEventListener("click", () => save("problem.pddl", (document) => document.pddl.problem, "domain.pddl", (document) => document.pddl.domain));
@@ -51,17 +51,22 @@ async function openExample() {
   if (!name) return;
   $("file").value = "";
   const answer = await fetch(`${EXAMPLES}${name}.pcd`);
-  state.cloud = { kind: "pcd", content: await answer.arrayBuffer(), name };
-  await analyse();
+  await openFiles([new File([await answer.blob()], `${name}.pcd`)]);
 }
 
-async function openFile(file) {
-  const kind = file.name.split(".").pop().toLowerCase();
-  if (!KINDS.includes(kind)) {
-    say($("message"), `${file.name} is no PCD, PLY, npz or npy file; choose another file.`, "error");
+/** Look at files that a person gives, once they are a whole source. */
+async function openFiles(files) {
+  if (!files.length) return;
+  try {
+    state.source = await sourceOf([...files], state.source);
+  } catch (error) {
+    say($("message"), error.message, "error");
     return;
   }
-  state.cloud = { kind, content: await file.arrayBuffer(), name: file.name };
+  const isCloud = state.source.has("cloud");
+  $("units-label").hidden = !isCloud;
+  $("scale-label").hidden = isCloud;
+  $("files").textContent = isCloud ? "" : describeSource(state.source);
   await analyse();
 }
 
@@ -74,23 +79,24 @@ function dropping(area) {
   area.addEventListener("dragleave", over(false));
   area.addEventListener("drop", (event) => {
     over(false)(event);
-    if (event.dataTransfer.files.length) openFile(event.dataTransfer.files[0]);
+    openFiles(event.dataTransfer.files);
   });
 }
 
-function question(route, options = {}) {
-  const { kind, content } = state.cloud;
-  const query = new URLSearchParams({ format: kind, up: $("up").value, units: $("units").value, ...options });
-  const headers = { "Content-Type": "application/octet-stream" };
-  return ask(`/v1/perceive/${route}?${query}`, { method: "POST", body: content, headers, raw: route === "points" });
+/** Ask for the scene of the source: its document, or with `points` an answer in bytes. */
+async function question(points, options = {}) {
+  const read = { up: $("up").value, units: $("units").value, scale: $("scale").value, ...options };
+  const [route, asked] = await questionOf(state.source, read, points);
+  return ask(`/v1/perceive/${route}`, { ...asked, raw: points });
 }
 
 async function analyse() {
-  if (!state.cloud) return;
   const asked = (state.asked += 1);
-  say($("message"), `Looking at ${state.cloud.name} …`);
+  const lack = lackOf(state.source);
+  say($("message"), lack || `Looking at ${[...state.source.values()].map(({ name }) => name).join(", ")} …`, lack ? "warning" : "");
+  if (lack) return;
   try {
-    const answer = await question("points");
+    const answer = await question(true);
     const scene = sceneOf(await answer.arrayBuffer());
     if (asked !== state.asked) return; // a later question has been asked
     state.scene = scene;
@@ -229,7 +235,7 @@ function showRelations(scene, least) {
 /** Ask again with the least confidence of the page, and save texts of the answer as files. */
 async function save(...namesAndTexts) {
   try {
-    const document = await question("cloud", { min_confidence: $("least").value });
+    const document = await question(false, { min_confidence: Number($("least").value) });
     for (let i = 0; i < namesAndTexts.length; i += 2) download(namesAndTexts[i], namesAndTexts[i + 1](document));
   } catch (error) {
     say($("message"), error.message, "error");

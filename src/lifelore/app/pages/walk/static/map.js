@@ -25,12 +25,14 @@ export function drawMap(canvas, walk) {
   const camera = cameraOf(canvas, walk);
   const { context, side } = camera;
   const [, columns] = walk.shape;
-  for (const [key, bits] of walk.cells) {
-    const [x, y] = camera.corner(Math.floor(key / columns), key % columns);
-    context.fillStyle = walk.now.has(key) ? COLOURS.now : COLOURS.seen;
-    context.fillRect(x, y, side + 0.5, side + 0.5);
-    drawWalls(context, x, y, side, bits);
+  // In the order of the building, so that the picture does not depend on the order in which the cells were seen.
+  const cells = [...walk.cells].sort(([a], [b]) => a - b);
+  const corner = (key) => camera.corner(Math.floor(key / columns), key % columns);
+  for (const [now, colour] of [[false, COLOURS.seen], [true, COLOURS.now]]) {
+    context.fillStyle = colour;
+    for (const [key] of cells) if (walk.now.has(key) === now) context.fillRect(...corner(key), Math.ceil(side), Math.ceil(side));
   }
+  for (const [key, bits] of cells) drawWalls(context, ...corner(key), side, bits);
   drawTrail(camera, walk.trail);
   for (const [name, place] of walk.landmarks) drawPlace(camera, place, name, name === walk.goal);
   drawPerson(camera, walk.at);
@@ -51,7 +53,7 @@ function cameraOf(canvas, walk) {
   context.scale(scale, scale);
   const left = shift(walk.at[1], columns, width / side);
   const top = shift(walk.at[0], rows, height / side);
-  const corner = (row, column) => [(column - left) * side, (row - top) * side];
+  const corner = (row, column) => [Math.round((column - left) * side), Math.round((row - top) * side)]; // no seams
   const centre = ([row, column]) => corner(row + 0.5, column + 0.5);
   return { context, side, corner, centre, width, height };
 }

@@ -7,18 +7,20 @@ import { drawMap, newMap, remember } from "/static/walk/map.js";
 const MOVES = ["north", "south", "east", "west"];
 const KEYS = { ArrowUp: "north", ArrowDown: "south", ArrowRight: "east", ArrowLeft: "west" };
 const at = (id) => document.getElementById(id);
+const WALKS = "lifelore walks"; // the walk in progress and the finished ones, in this tab until it is closed
 const percent = (share) => `${Math.round(100 * share)}\u00a0%`;
 
 let walk = null;
 let busy = false;
 let renewal = false; // whether a new start waits for the present request
-let finished = 0;
+let { current, finished } = JSON.parse(sessionStorage.getItem(WALKS)) ?? { current: null, finished: [] };
 
 async function main() {
   const { buildings } = await ask("/v1/walks");
   at("building").replaceChildren(...buildings.map(({ name, title }) => make("option", { value: name }, title)));
   at("controls").addEventListener("submit", (event) => {
     event.preventDefault();
+    current = null;
     renew();
     at("map").focus();
   });
@@ -27,6 +29,13 @@ async function main() {
     button.addEventListener("click", () => guarded(() => move(button.dataset.move)));
   }
   new ResizeObserver(() => walk && drawMap(at("map"), walk)).observe(at("map").parentElement);
+  showFinished();
+  if (buildings.some(({ name }) => name === current?.building)) {
+    at("building").value = current.building;
+    at("advice").checked = current.advice;
+  } else {
+    current = null;
+  }
   renew();
 }
 
@@ -37,12 +46,12 @@ function onKey(event) {
   guarded(() => move(direction));
 }
 
-/** Begin a new walk, after the present request if there is one. */
+/** Go on with the current walk or begin a new one, after the present request if there is one. */
 function renew() {
   walk = null;
   at("errand").textContent = "Preparing the building …";
   renewal = busy;
-  if (!busy) guarded(begin);
+  if (!busy) guarded(enter);
 }
 
 /** Run one action at a time; an error becomes a line on the page, and the next action may go on. */
@@ -60,22 +69,49 @@ async function guarded(action) {
   }
 }
 
-async function begin() {
-  const building = at("building").value;
-  const advice = at("advice").checked;
-  const name = `walk-${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
-  let view;
+/** Go on with the walk of this tab, or begin a new one. */
+async function enter() {
   try {
-    view = await ask(`/v1/walks/${name}`, { method: "PUT", body: { building, advice } });
+    await (current ? resume() : begin());
   } catch (error) {
     at("errand").textContent = "No building is open";
     throw error;
   }
+}
+
+async function begin() {
+  const building = at("building").value;
+  const advice = at("advice").checked;
+  const name = `walk-${crypto.getRandomValues(new Uint32Array(2)).join("-")}`;
+  const view = await ask(`/v1/walks/${name}`, { method: "PUT", body: { building, advice } });
   if (renewal) return;
-  walk = { name, building, advice, ...newMap(view.shape), history: [], trail: [view.at] };
-  Object.assign(walk, { goal: view.goal, shortest: view.shortest, kappa: view.kappa });
+  current = { name, building, advice };
+  store();
+  openWalk({ ...view, way: [view], known: view });
+}
+
+/** Go on with the current walk; the service has its steps. Where it has none, a new walk begins. */
+async function resume() {
+  const { name, building, advice } = current;
+  let view;
+  try {
+    view = await ask(`/v1/walks/${name}?${new URLSearchParams({ building, advice })}`);
+  } catch (error) {
+    if (error.status !== 404) throw error;
+    await begin();
+    return;
+  }
+  if (!renewal) openWalk(view);
+}
+
+/** Open a walk as it is now, with its way of {at, p_normal, gain, advise} so far and all cells and places known. */
+function openWalk({ way, known, ...view }) {
+  walk = { ...current, ...newMap(view.shape), trail: [], history: [] };
   say(at("found"), "");
+  for (const step of way.slice(0, -1)) note(step);
+  remember(walk, known);
   show(view);
+  if (walk.reached) finish();
 }
 
 async function move(direction) {
@@ -84,7 +120,7 @@ async function move(direction) {
   const body = { building, advice, step: step + 1, state, move: direction };
   const view = await ask(`/v1/walks/${name}/steps`, { method: "POST", body });
   if (walk?.name !== name) return;
-  walk.trail.push(view.at);
+  if (view.step !== body.step) return resume(); // another tab or a lost answer: the service knows more steps
   show(view);
   if (view.reached) finish();
 }
@@ -93,7 +129,7 @@ async function move(direction) {
 function show(view) {
   Object.assign(walk, view);
   remember(walk, view);
-  walk.history.push({ p: view.p_normal, gain: view.gain, advise: view.advise });
+  note(view);
   drawMap(at("map"), walk);
   drawCurves(at("curves"), walk.history, walk.kappa);
   const errand = walk.reached ? `You found the ${walk.goal}` : `Find the ${walk.goal}`;
@@ -106,6 +142,12 @@ function show(view) {
     button.querySelector(".share").textContent = share > 0 ? percent(share) : "";
     button.disabled = walk.reached;
   }
+}
+
+/** Take a step into the trail and the curves. */
+function note({ at: cell, p_normal: p, gain, advise }) {
+  walk.trail.push(cell);
+  walk.history.push({ p, gain, advise });
 }
 
 function surroundings() {
@@ -123,17 +165,26 @@ function counsel() {
 }
 
 function finish() {
-  const ratio = (walk.step / walk.shortest).toFixed(1);
-  const cells = [[walk.step, "number"], [walk.shortest, "number"], [ratio, "number"]];
-  const row = make("tr", {}, make("td", {}, walk.advice ? "on" : "off"), make("td", {}, walk.goal));
-  row.append(...cells.map(([text, kind]) => make("td", { class: kind }, String(text))));
-  const body = at("walks").tBodies[0];
-  if (!finished) body.replaceChildren();
-  finished += 1;
-  body.prepend(row);
-  const words = `You found the ${walk.goal} in ${counted(walk.step, "step")}; the shortest way has ${walk.shortest}.`;
-  say(at("found"), `${words} Press New start for another errand; turn the advice ${walk.advice ? "off" : "on"} to compare.`);
+  const { name, advice, goal, step, shortest } = walk;
+  if (!finished.some((earlier) => earlier.name === name)) finished.unshift({ name, advice, goal, step, shortest });
+  store();
+  showFinished();
+  const words = `You found the ${goal} in ${counted(step, "step")}; the shortest way has ${shortest}.`;
+  say(at("found"), `${words} Press New start for another errand; turn the advice ${advice ? "off" : "on"} to compare.`);
   at("start").focus();
+}
+
+function showFinished() {
+  const row = ({ advice, goal, step, shortest }) => {
+    const cells = [step, shortest, (step / shortest).toFixed(1)];
+    return make("tr", {}, make("td", {}, advice ? "on" : "off"), make("td", {}, goal),
+      ...cells.map((text) => make("td", { class: "number" }, String(text))));
+  };
+  if (finished.length) at("walks").tBodies[0].replaceChildren(...finished.map(row));
+}
+
+function store() {
+  sessionStorage.setItem(WALKS, JSON.stringify({ current, finished }));
 }
 
 const counted = (number, noun) => `${number} ${noun}${number === 1 ? "" : "s"}`;
