@@ -11,8 +11,9 @@ def bench(
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
             "perceive, reuse, long_user, serve, log. Benefit: fleet, courier, recognition, lidar, destinations, "
-            "tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, pictures, deep, "
-            "deep_layouts, novelty, changing_types, bands, long_lived_worlds. Statistics: evaluation."
+            "tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, registration, "
+            "pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds. "
+            "Statistics: evaluation."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

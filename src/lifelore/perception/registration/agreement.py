@@ -60,7 +60,7 @@ def _counts(own: HeightMap, other: HeightMap) -> tuple[int, int, int]:
     lowest and highest: at a rim, the top, the side and the table share cells.
     """
     objects = own.objects
-    shown = ndimage.minimum_filter(other.seen, 3, mode="constant", cval=False) & objects
+    shown = np.asarray(ndimage.minimum_filter(other.seen, 3, mode="constant", cval=False), bool) & objects
     lowest, highest = (limit(other.heights, 3) for limit in (ndimage.minimum_filter, ndimage.maximum_filter))
     same = (own.heights > lowest - SAME) & (own.heights < highest + SAME)
     agreeing = int(np.count_nonzero(shown & same))

@@ -54,7 +54,8 @@ def _step(
     target: TabletopView, points: NDArray[np.float64], normals: NDArray[np.float64], radius: float
 ) -> NDArray[np.float64] | None:
     """(6,): small rotation vector and shift that bring points nearest to their partners' planes."""
-    distances, partners = target.tree.query(points, distance_upper_bound=radius)
+    distances, nearest = target.tree.query(points, distance_upper_bound=radius)
+    partners = np.asarray(nearest, np.int64)
     found = np.flatnonzero(np.isfinite(distances))
     facing = np.einsum("ij,ij->i", normals[found], target.surface_normals[partners[found]]) > _ALIKE
     found = found[facing]

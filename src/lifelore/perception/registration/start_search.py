@@ -5,6 +5,7 @@ same height count for it, cells where they contradict each other against it.
 """
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,14 +73,14 @@ def find_starts(target: TabletopView, source: TabletopView, most: int = STARTS) 
     n_layers = int(max(target.objects[:, 2].max(), source.objects[:, 2].max()) / LAYER) + 2
     low, shape = cells_spanned(target.surface, cell)
     widest = int(np.hypot(*np.ptp(source.surface[:, :2], axis=0)) / cell) + 3
-    sides = [fft.next_fast_len(span + widest, real=True) for span in shape]
-    still = fft.rfft2(_layers(height_map(target.objects, target.table, cell, low, shape), n_layers), sides)
+    sides = [cast(int, fft.next_fast_len(span + widest, real=True)) for span in shape]
+    still = _spectra(_layers(height_map(target.objects, target.table, cell, low, shape), n_layers), sides)
     found = []
     for turn in np.arange(0.0, 2 * np.pi - TURN / 2, TURN):
         objects, table = moved_surface(source, turned(turn))
         corner, span = cells_spanned(np.concatenate([objects, table]), cell)
         layers = _layers(height_map(objects, table, cell, corner, span), n_layers)
-        scores = fft.irfft2(_spectrum(still, fft.rfft2(layers, sides).conj()), sides)
+        scores = np.asarray(fft.irfft2(_spectrum(still, _spectra(layers, sides).conj()), sides))
         found += [
             Start(score, float(turn), *((shift + low - corner) * cell).tolist())
             for score, shift in _peaks(scores, shape)
@@ -98,6 +99,11 @@ def _layers(map: HeightMap, n: int) -> NDArray[np.float32]:
     layers[:n] = np.maximum(0.0, 1.0 - np.abs(map.heights / LAYER - np.arange(n)[:, None, None])) * objects
     layers[n], layers[n + 1] = objects, map.seen & ~objects
     return layers
+
+
+def _spectra(layers: NDArray[np.float32], sides: list[int]) -> NDArray[np.complex64]:
+    """Spectrum of each layer, padded to `sides`."""
+    return np.asarray(fft.rfft2(layers, sides))
 
 
 def _spectrum(still: NDArray[np.complex64], moving: NDArray[np.complex64]) -> NDArray[np.complex64]:
