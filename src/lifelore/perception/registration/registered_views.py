@@ -73,5 +73,5 @@ def _unsure(tried: dict[tuple[int, int], Registration | None], names: Sequence[s
     doubt = "they show nothing in common" if found is None else found.doubt
     return InputError(
         f"the views {names[to]} and {names[number]} cannot be registered surely: {doubt}; give poses"
-        " (--poses FILE), or views from cameras nearer to each other"
+        " (--poses FILE), or views that show more of the same objects"
     )
