@@ -92,6 +92,35 @@ def test_views():
         assert [float(told[n]) for n in (1, 2, 3)] == pytest.approx([row["value"], *row["ci95"]], abs=6e-4)
 
 
+def test_registration():
+    found = rows("registration")
+    angles = re.findall(
+        r"^  \| (20°|45°|90°|all) \| (\d+) \| (.+?) \| (.+?) \| (.+?), (.+?) \| (.+?), (.+?) \|$", PAGE, flags=re.M
+    )
+    assert len(angles) == 4
+    for angle, pairs, refused, wrong, *errors in angles:
+        where = "all angles" if angle == "all" else f"cameras {angle} apart"
+        for word, cell in (("refused", refused), ("wrong", wrong)):
+            row = found[f"registration {word}, {where}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert (int(pairs), value) == (row["n"], pytest.approx(row["value"], abs=6e-4))
+            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+        levels = [(word, level) for word in ("turn", "shift") for level in ("median", "95th percentile")]
+        for (word, level), cell in zip(levels, errors, strict=True):
+            row = found[f"registration error of {word}, {level}, {where}"]
+            assert float(cell) == pytest.approx(row["value"], abs=0.06)
+    gains = re.findall(
+        r"^  \| (1 view|2 views, true poses|2 views, registered) \| (0\.\d{3} .+) \|$", PAGE, flags=re.M
+    )
+    assert len(gains) == 3
+    for how, cells in gains:
+        for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
+            row = found[f"{measure}, {how}"]
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(row["value"], abs=6e-4)
+            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+
+
 def test_arrangements():
     found = rows("relations")
     lines = re.search(r"^\| arrangement \| pairs .*\n\|[-|]*\n((?:\|.*\n)+)", PAGE, flags=re.M)

@@ -12,7 +12,7 @@ def bench(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
             "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, courier, recognition, lidar, "
             "destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, "
-            "pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds. "
+            "registration, pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds. "
             "Statistics: evaluation."
         ),
     ],

@@ -59,6 +59,10 @@ def perceive(
         str | None,
         Option(metavar="FILE", help="The clouds are views of one scene with these camera-to-world poses."),
     ] = None,
+    register: Annotated[
+        bool,
+        Option("--register", help="The clouds are views of one scene; their poses are found from its objects."),
+    ] = False,
     roi: Annotated[
         str | None,
         Option(
@@ -105,7 +109,7 @@ def perceive(
 
     Use it to turn a cloud into facts for a planner, a graph or a picture. Several clouds in one call are much
     faster than a call for each; --json then gives {"scenes": [{"source", ...}], "failed": [{"source", "error"}]}.
-    With --poses, the clouds are views of one scene and give one document.
+    With --poses or --register, the clouds are views of one scene and give one document.
     A cloud that cannot be perceived gives one line on stderr and exit status 2; the other clouds are still
     perceived. In the FILE of --pddl, --dot and --plot, {name} stands for the name of the cloud without its suffix;
     several clouds, and --watch, need it.
@@ -133,8 +137,10 @@ def perceive(
         _region(roi, max_range),
     )
     files = {"pddl": pddl, "dot": dot, "plot": plot}
-    if watch is not None and poses is not None:
-        raise typer.BadParameter("--watch perceives each cloud alone: leave --poses out")
+    if watch is not None and (poses is not None or register):
+        raise typer.BadParameter("--watch perceives each cloud alone: leave --poses and --register out")
+    if poses is not None and register:
+        raise typer.BadParameter("--register finds the poses that --poses gives: leave one of them out")
     for cloud in [watch] if watch is not None else clouds or []:
         _check_bag_options(cloud, topic, index)
     if watch is not None:
@@ -143,7 +149,7 @@ def perceive(
     def source(cloud: str):
         return _out_of_bag(cloud, topic, index or 0, units, labels) if is_bag(cloud) else cloud
 
-    if poses is not None:
+    if poses is not None or register:
         return _views(clouds or [], source, settings, files, poses, as_json)
     if clouds and len(clouds) > 1:
         return _several(clouds, source, settings, files, as_json)
@@ -192,7 +198,7 @@ def _views(
     source: Callable[[str], Any],
     settings: Any,
     files: Files,
-    poses: str,
+    poses: str | None,
     as_json: bool,
 ) -> int:
     from lifelore.agent.perceive.scene_files import named_files

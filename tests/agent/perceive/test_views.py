@@ -1,4 +1,4 @@
-"""Several views of a simulated scene: fused with their true poses, they give the scene's relations once."""
+"""Several views of a simulated scene: with true or registered poses, they give the scene's relations once."""
 
 import json
 from pathlib import Path
@@ -28,13 +28,14 @@ def matrix(pose: Pose) -> np.ndarray:
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Two views of a scene in their own frames, and the poses of their cameras."""
+    """Two views of a scene in their own frames, the same without labels, and their poses."""
     path = tmp_path_factory.mktemp("views")
     scene = sample_scene(5, 0)
     photos = views_around(scene, [0.0, 2.0], KINECT, stream(5, "tests", "views"))
     for name, photo in zip("ab", photos, strict=True):
         local = (photo.cloud.points - photo.view.position) @ photo.view.rotation
         np.savez(path / f"{name}.npz", points=local, labels=photo.cloud.labels, camera=np.zeros(3))
+        np.savez(path / f"{name}-bare.npz", points=local, camera=np.zeros(3))
     (path / "poses.json").write_text(json.dumps([matrix(photo.view).tolist() for photo in photos]))
     return path
 
@@ -68,6 +69,31 @@ def test_two_views_give_one_scene(folder: Path) -> None:
     first, second = np.array(json.loads((folder / "poses.json").read_text()))
     np.testing.assert_allclose(document["views"][1]["pose"], np.linalg.inv(first) @ second, atol=1e-6)
     assert all(view["points"] > 10_000 for view in document["views"])
+
+
+def test_views_without_labels_are_registered(folder: Path) -> None:
+    said: list[str] = []
+    bare = [str(folder / "a-bare.npz"), str(folder / "b-bare.npz")]
+    document = perceive_views(bare, notice=said.append)
+    first, second = np.array(json.loads((folder / "poses.json").read_text()))
+    # Cameras 115° apart: 2° and 1 cm at 0.8 m are three times the errors of most pairs.
+    error = np.linalg.inv(np.linalg.inv(first) @ second) @ np.array(document["views"][1]["pose"])
+    assert np.degrees(np.arccos((np.trace(error[:3, :3]) - 1) / 2)) < 2.0
+    assert np.linalg.norm(error[:3, :3] @ [0, 0, 0.8] + error[:3, 3] - [0, 0, 0.8]) < 0.01
+    assert [view["registered_to"] for view in document["views"]] == [None, bare[0]]
+    assert document["views"][0]["agreement"] is None
+    assert document["views"][1]["agreement"] > 0.96
+    assert said == [f"{bare[1]} is registered to {bare[0]}: {document['views'][1]['agreement']:.1%} of what both"
+                    " show agrees"]  # fmt: skip
+
+
+def test_views_that_cannot_be_registered_are_named(folder: Path, tmp_path: Path) -> None:
+    rng = np.random.default_rng(0)
+    np.savez(tmp_path / "noise.npz", points=rng.normal(size=(5000, 3)), camera=np.zeros(3))
+    with pytest.raises(InputError, match=r"noise\.npz cannot be registered: no table was found.*--poses FILE"):
+        perceive_views([str(folder / "a-bare.npz"), str(tmp_path / "noise.npz")])
+    with pytest.raises(InputError, match=r"registration \(--register\) joins two or more clouds, got 1"):
+        perceive_views([str(folder / "a-bare.npz")])
 
 
 def test_views_of_the_turned_camera_see_the_objects_where_they_are() -> None:

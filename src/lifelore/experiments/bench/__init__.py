@@ -22,6 +22,7 @@ BENCHES = {
     "plans": "perception",
     "pictures": "perception",
     "views": "perception",
+    "registration": "perception",
     "segmentation": "perception",
     "raw_frames": "perception",
     "factory": "action",
@@ -64,11 +65,11 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         One of `BENCHES`.
     repeats : int
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
-        lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``
-        and ``views``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``:
-        runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``: three lives
-        each; for ``long_lived_worlds``: lives, half as many outside the factory; for ``evaluation``: 60
-        simulated studies each; for ``novelty``: libraries of each case.
+        lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``,
+        ``views`` and ``registration``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind;
+        for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
+        three lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
+        ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

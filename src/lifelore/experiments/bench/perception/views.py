@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
-from lifelore.core.relations import ADJACENT_GAP, SYMMETRIC
+from lifelore.core.relations import ADJACENT_GAP, SYMMETRIC, PairLabel
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import Photograph
@@ -72,22 +72,31 @@ def judged_views(scene: TabletopScene, number: int, model: RelationClassifier) -
     rng = stream(SEED, "tabletop views", number)
     photos = views_around(scene, TURNS[1:], CAMERAS["kinect"], rng)
     clouds = [scene.cloud, *(photo.cloud for photo in photos)]
-    truth = [label for label in scene.truth if TABLE not in (label.a, label.b)]
-    kept = [
-        label for label in truth if label.relation not in SYMMETRIC or _same_gap(scene, photos, label.a, label.b)
-    ]
+    kept = lasting_labels(scene, photos)
     places = true_contacts(scene)
     judged, contacts = {}, {}
     for views in range(1, len(clouds) + 1):
-        seen = perceived_scene(_together(clouds[:views]), model).without_unrelated_contacts
+        seen = perceived_scene(together(clouds[:views]), model).without_unrelated_contacts
         judged[views] = judged_scene(scene.name, kept, seen.relations)
         contacts[views] = contacts_found(seen, places)
     return ViewsOfScene(judged, contacts)
 
 
-def _together(clouds: Sequence[LabelledCloud]) -> LabelledCloud:
+def lasting_labels(scene: TabletopScene, photos: Sequence[Photograph]) -> list[PairLabel]:
+    """The labels of pairs of objects that are the same in the scene's view and in all `photos` beside it."""
+    truth = [label for label in scene.truth if TABLE not in (label.a, label.b)]
+    return [
+        label for label in truth if label.relation not in SYMMETRIC or _same_gap(scene, photos, label.a, label.b)
+    ]
+
+
+def together(clouds: Sequence[LabelledCloud], last: NDArray[np.float64] | None = None) -> LabelledCloud:
+    """Clouds as one; a rigid motion `last` (4, 4) moves the last of them first."""
     views = [PointCloud(cloud.points, cloud.labels, cloud.colours, camera=cloud.camera) for cloud in clouds]
-    whole = fused(views, np.stack([np.eye(4)] * len(views)))
+    poses = np.stack([np.eye(4)] * len(views))
+    if last is not None:
+        poses[-1] = last
+    whole = fused(views, poses)
     assert whole.labels is not None
     return LabelledCloud(
         whole.points.astype(np.float64), whole.labels, whole.colours, whole.camera, whole.other_cameras
