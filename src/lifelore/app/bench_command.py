@@ -10,9 +10,10 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
-            "perceive, reuse, long_user, serve, log. Benefit: fleet, courier, recognition, lidar, destinations, "
-            "tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, pictures, deep, "
-            "deep_layouts, novelty, changing_types, bands, long_lived_worlds. Statistics: evaluation."
+            "perceive, reuse, long_user, serve, log. Benefit: fleet, courier, recognition, lidar, "
+            "destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, "
+            "pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds, changing_customers. "
+            "Statistics: evaluation."
         ),
     ],
     repeats: Annotated[int, typer.Option(help="Interleaved rounds; the medians are reported.")] = 7,

@@ -47,6 +47,7 @@ BENCHES = {
     "novelty": "interaction",
     "log": "interaction",
     "long_lived_worlds": "agent",
+    "changing_customers": "agent",
     "serve": "service",
 }
 """Each benchmark and its folder; the function is ``bench_NAME(repeats, progress)`` in the module of that name."""
@@ -66,8 +67,9 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``
         and ``views``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind; for ``deep``:
         runs of learning; for ``serve``: at most 5; for ``tabletop_lives``: three lives each; for
-        ``long_lived_worlds``: lives, half as many outside the factory; for ``evaluation``: 60 simulated studies
-        each; for ``novelty``: libraries of each case.
+        ``long_lived_worlds``: lives, half as many outside the factory; for ``changing_customers``: lives; for
+        ``customer_fleet``: worlds; for ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of
+        each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional
