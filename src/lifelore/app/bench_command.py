@@ -10,7 +10,7 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
-            "perceive, reuse, long_user, serve, log. Benefit: fleet, courier, recognition, lidar, "
+            "perceive, reuse, long_user, serve, log. Benefit: fleet, customer_fleet, courier, recognition, lidar, "
             "destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, "
             "pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds, changing_customers. "
             "Statistics: evaluation."

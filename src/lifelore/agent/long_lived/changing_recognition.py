@@ -114,7 +114,8 @@ class ChangingRecognition:
     @property
     def belief(self) -> Array:
         """In the known types and, last, in an unknown one, (n_types + 1,)."""
-        return self._weight @ np.array([one.belief for one in self._starts])
+        beliefs: Array = np.array([one.belief for one in self._starts], np.float64)
+        return np.dot(self._weight, beliefs)
 
     @property
     def own(self) -> Array:

@@ -33,6 +33,7 @@ BENCHES = {
     "capacity": "fleet",
     "large_memory": "fleet",
     "fleet": "fleet",
+    "customer_fleet": "fleet",
     "recognition": "lives",
     "lidar": "lives",
     "destinations": "lives",
