@@ -122,7 +122,7 @@ class ChangingRecognition:
         """What the task has shown of each type, as far as it was there, (n_types + 1, n_causes, n_effects)."""
         beliefs = np.array([one.belief for one in self._starts]) + 1e-12
         joint = self._weight[:, None] * beliefs
-        return np.tensordot((joint / joint.sum(axis=0)).T, np.array([one.own for one in self._starts]), axes=1)
+        return np.einsum("ri,rce->ice", joint / joint.sum(axis=0), np.array([one.own for one in self._starts]))
 
     @property
     def alarmed(self) -> bool:
