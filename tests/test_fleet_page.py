@@ -17,6 +17,19 @@ def number(value: float) -> str:
     return f"{value:,.0f}" if value >= 100 else f"{value:.2g}" if value < 10 else f"{value:.0f}"
 
 
+def customers_table() -> str:
+    rows = {row["name"]: row for row in result("customer_fleet")["rows"]}
+    lines = ["| robots | rounds to competence | of one robot | tasks of all |", "|---|---|---|---|"]
+    for robots in (1, 2, 4, 8):
+        own = rows[f"{robots} robots: rounds to competence"]
+        low, high = own["ci95"]
+        lines.append(
+            f"| {robots} | {own['value']:.1f} [{low:.1f}, {high:.1f}] | {own['ratio']:.2f}"
+            f" | {rows[f'{robots} robots: tasks of all until then']['value']:.1f} |"
+        )
+    return "\n".join(lines)
+
+
 def fleet_table() -> str:
     rows = {row["name"]: row for row in result("fleet")["rows"]}
     lines = ["| robots | rounds to competence | of one robot | tasks of all |", "|---|---|---|---|"]
@@ -30,9 +43,9 @@ def fleet_table() -> str:
     return "\n".join(lines)
 
 
-def goals_table() -> str:
+def goals_table(name: str = "fleet") -> str:
     lines = ["| goal | asked | measured | met |", "|---|---|---|---|"]
-    for goal in result("fleet")["goals"]:
+    for goal in result(name)["goals"]:
         asked = goal["goal"].replace("<=", "≤").replace(">=", "≥")
         met = "yes" if goal["met"] else "no"
         lines.append(f"| {goal['name']} | {asked} | {number(goal['measured'])} | {met} |")
@@ -73,7 +86,14 @@ def pairs_line() -> str:
     )
 
 
-PARTS = {"fleet": fleet_table, "fleet goals": goals_table, "large memory": memory_table, "pairs": pairs_line}
+PARTS = {
+    "fleet": fleet_table,
+    "fleet goals": goals_table,
+    "customers": customers_table,
+    "customers goals": lambda: goals_table("customer_fleet"),
+    "large memory": memory_table,
+    "pairs": pairs_line,
+}
 
 
 @pytest.mark.parametrize("part", PARTS)
@@ -82,10 +102,13 @@ def test_the_page_shows_its_results(part):
 
 
 def test_the_settings_are_those_of_the_benchmark():
-    from lifelore.experiments.bench.fleet import fleet
+    from lifelore.experiments.bench.fleet import customer_fleet, fleet
     from lifelore.memory import leases, sqlite_file
 
     assert f"`lifelore bench fleet --repeats {len(result('fleet')['rounds_to_competence']['1'])}`" in PAGE
+    worlds = len(result("customer_fleet")["rounds_to_competence"]["1"])
+    assert f"`lifelore bench customer_fleet --repeats {worlds}`" in PAGE
+    assert (customer_fleet.COMPETENT, customer_fleet.WINDOW, customer_fleet.TESTS) == (0.5, 2, 8)
     assert f"one episode of {fleet.MOVES} moves" in PAGE
     assert (fleet.COMPETENT, fleet.WINDOW, leases.LEASE_SECONDS) == (0.1, 3, 3600)
     assert f"up to {sqlite_file.CHECKED_BYTES // 2**20} MiB" in PAGE

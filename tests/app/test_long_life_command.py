@@ -52,6 +52,21 @@ def test_spare_time_is_for_jobs_with_hidden_types(ask, where):
     assert "applies to jobs with hidden types alone" in refused.err
 
 
+def test_customers_who_change_are_followed(ask, where):
+    document = live(ask, where, "--change", "0.9", "--episodes", "4", tasks=3)
+    assert [set(task) for task in document["tasks"]] == [TASK | {"changes", "hidden_types", "best_returns"}] * 3
+    hidden = [task["hidden_types"] for task in document["tasks"]]
+    assert [len(one) for one in hidden] == [4] * 3
+    assert [one[0] for one in hidden] == [task["hidden_type"] for task in document["tasks"]]
+    assert any(len(set(one)) > 1 for one in hidden)
+    number, changes = next((task["task"], task["changes"]) for task in document["tasks"] if task["changes"])
+    words = ask("explain", str(number), "--memory", where).out
+    assert f"from episode {changes[0][0] + 1} on it believed another type to be there, {changes[0][1]}" in words
+    assert f"the task until episode {changes[0][0]} " in words
+    last = [task["best_returns"][-1] - task["returns"][-1] for task in document["tasks"][1:]]
+    assert document["summary"]["second half"]["last_episode_below_best"] == pytest.approx(sum(last) / 2, abs=1e-3)
+
+
 def test_an_ablation_teaches_nobody(ask, where):
     live(ask, where, "--agent", "scratch", "--robot", "bob")
     with open_memory(where) as memory:
@@ -75,6 +90,9 @@ def test_explain_says_why(ask, where):
     [
         (["live", "--domain", "factory-customers", "--map", "a.yaml"], "--map does not apply to domain"),
         (["live", "--domain", "factory-customers", "--agent", "lore"], "agent must be one of full"),
+        (["live", "--domain", "building-days", "--change", "0.1"], "take domain factory-customers"),
+        (["live", "--domain", "factory-customers", "--change", "1"], "change must be at least 0 and below 1"),
+        (["live", "--domain", "building", "--change", "0.1"], "--change applies to factory-customers alone"),
         (["live", "--domain", "building-days", "--tasks", "0"], "tasks must be at least 1"),
         (["explain", "9"], "has no task 9"),
     ],

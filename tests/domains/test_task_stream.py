@@ -1,5 +1,7 @@
 """Streams of tasks: frequencies by hand, late types, changes, random access."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -43,8 +45,42 @@ def test_usual_types_change_on_time():
 
 @pytest.mark.parametrize(
     "wrong",
-    [{"n_contexts": 0}, {"loyalty": 1.5}, {"arrivals": {"z": 3}}, {"arrivals": {"a": 3, "b": 3}}, {"zipf": -1.0}],
+    [
+        {"n_contexts": 0},
+        {"loyalty": 1.5},
+        {"arrivals": {"z": 3}},
+        {"arrivals": {"a": 3, "b": 3}},
+        {"zipf": -1.0},
+        {"change": 1.1},
+    ],
 )
 def test_wrong_settings_are_refused(wrong):
     with pytest.raises(InputError):
         TaskStream(TYPES, **wrong)
+
+
+def test_the_type_changes_between_episodes_as_often_as_stated():
+    jobs, still = TaskStream(TYPES, seed=3, loyalty=0.5, change=0.2), TaskStream(TYPES, seed=3, loyalty=0.5)
+    rows = [[jobs.draw(k, episode=e).hidden_type for e in range(6)] for k in range(1000)]
+    assert [row[0] for row in rows] == [still.draw(k).hidden_type for k in range(1000)]
+    assert len({still.draw(7, episode=e) for e in range(6)}) == 1
+    changed = [a != b for row in rows for a, b in itertools.pairwise(row)]
+    # Four standard errors of 5000 draws are 4 * sqrt(0.2 * 0.8 / 5000) = 0.023.
+    assert np.mean(changed) == pytest.approx(0.2, abs=0.023)
+    # From a type that is not usual: 0.5 + 0.125 usual, 0.125 each of two others.
+    following = [
+        (jobs.usual_type(jobs.draw(k).context, k), b)
+        for k, row in enumerate(rows)
+        for a, b in itertools.pairwise(row)
+        if a != b and a != jobs.usual_type(jobs.draw(k).context, k)
+    ]
+    usual = np.mean([b == name for name, b in following])
+    assert usual == pytest.approx(0.625 / 0.875, abs=4 * 0.5 / len(following) ** 0.5)
+
+
+def test_a_wholly_loyal_context_goes_to_any_other_type():
+    jobs = TaskStream(TYPES, loyalty=1.0, change=1.0, n_contexts=1)
+    found = [[jobs.draw(k, episode=e).hidden_type for e in range(4)] for k in range(60)]
+    usual = jobs.usual_type(0, 0)
+    assert {row[0] for row in found} == {row[2] for row in found} == {usual}
+    assert {row[1] for row in found} == set(TYPES) - {usual}

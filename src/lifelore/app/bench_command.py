@@ -10,9 +10,10 @@ def bench(
         str,
         typer.Argument(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
-            "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, courier, recognition, lidar, "
-            "destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, views, "
-            "registration, pictures, deep, deep_layouts, novelty, changing_types, bands, long_lived_worlds. "
+            "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, customer_fleet, courier, recognition, "
+            "lidar, destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, "
+            "views, registration, pictures, deep, deep_layouts, novelty, changing_types, bands, "
+            "long_lived_worlds, changing_customers. "
             "Statistics: evaluation."
         ),
     ],

@@ -112,6 +112,13 @@ def live(
         int,
         Option(help="Jobs with hidden types: further tasks, in contexts that the agent is curious about."),
     ] = 0,
+    change: Annotated[
+        float,
+        Option(
+            help="factory-customers: probability that another customer comes between two episodes of a task; the "
+            "agent knows it and follows."
+        ),
+    ] = 0.0,
     episodes: Annotated[
         int | None,
         Option(
@@ -157,13 +164,15 @@ def live(
     stores what the agent learnt after each task: the next run continues the life, in this building or in another
     one.
     """
-    from lifelore.agent.long_lived.families.by_name import FAMILIES
+    from lifelore.agent.long_lived.families.by_name import CHANGING, FAMILIES
     from lifelore.core.errors import InputError
 
     if domain in FAMILIES:
         from lifelore.app.long_life_command import live_long_life
 
         return live_long_life(context)
+    if change:
+        raise InputError(f"--change applies to {', '.join(CHANGING)} alone, not to {domain}; leave it out")
     if labels or spare:
         name = "--labels" if labels else "--spare"
         raise InputError(

@@ -7,8 +7,8 @@ import typer
 Option = typer.Option
 
 APPLY = {
-    "domain", "tasks", "agent", "robot", "memory", "episodes", "labels", "spare", "seed", "serve", "port",
-    "as_json",
+    "domain", "tasks", "agent", "robot", "memory", "refresh", "episodes", "labels", "spare", "change", "seed",
+    "serve", "port", "as_json",
 }  # fmt: skip
 """Options of `lifelore live` that apply to these domains."""
 
@@ -27,7 +27,8 @@ def live_long_life(context: typer.Context) -> int:
     if foreign := sorted(typed - APPLY):
         names = ", ".join(f"--{name.replace('_', '-')}" for name in foreign)
         raise InputError(f"{names} does not apply to domain {given['domain']}; leave it out")
-    living = LivingSettings() if given["episodes"] is None else LivingSettings(n_episodes=given["episodes"])
+    episodes = {} if given["episodes"] is None else {"n_episodes": given["episodes"]}
+    living = LivingSettings(**episodes, change=given["change"])
     settings = LongLifeSettings(
         given["domain"],
         given["agent"] or "full",
@@ -38,6 +39,7 @@ def live_long_life(context: typer.Context) -> int:
         living,
         given["labels"],
         given["spare"],
+        given["refresh"],
     )
     beside = pages_beside(given["serve"], given["port"], given["memory"])
     with beside, stop_on_interrupt() as stop, progress_bar("living") as progress:
@@ -59,6 +61,8 @@ def _print_report(report: dict[str, Any], robot: str) -> None:
     for task in report["tasks"]:
         returns = [f"{task[name]:.2f}" for name in ("best_return",)]
         new = ", ".join(["spare time"] * task["spare"] + ["a new type"] * task["new_type"])
+        if changes := [str(episode + 1) for episode, _ in task.get("changes", [])]:
+            new += f"{', ' if new else ''}another type from episode {', '.join(changes)}"
         row = (str(task["task"]), str(task["context"]), f"{task['returns'][0]:.2f}", f"{task['returns'][-1]:.2f}")
         table.add_row(*row, *returns, task["learnt"], new)
     console.print(table)

@@ -183,3 +183,28 @@ def test_context_and_reuse_and_memory_pay():
     assert missed["full"] < missed["no-prior"] < missed["scratch"]
     assert missed["full"] < 0.3 * missed["no-reuse"]
     assert missed["full"] < 0.3 * missed["scratch"]
+
+
+def test_another_customer_may_come_between_episodes():
+    stream_ = TaskStream(("carts", "lamps"), n_contexts=1, loyalty=1.0, change=1.0)
+    family = FactoryFamily(stream_, changing=True)
+    drawn, task = family.meet(3, FULL)
+    (one, best), (two, other_best) = family.episodes(3, 2)
+    assert {one, two} == {"carts", "lamps"}
+    assert one == drawn.hidden_type
+    factory = family.order(3)[1].factory
+    assert (best, other_best) == (family.best_return(3), CustomerOrder(factory, two).best_return)
+    for name in (one, two, one):
+        task.begin()
+        assert (task.known == UNKNOWN).all()
+        assert task.act(CUSTOMERS[name][0]).effects == ((CUSTOMERS[name][0], PAID),)
+
+
+def test_answers_hold_for_the_whole_task_where_customers_stay():
+    _, task = FactoryFamily(ALWAYS).meet(0, FULL)
+    task.begin()
+    task.act(0)
+    known = task.known.copy()
+    task.begin()
+    assert (task.known == known).all()
+    assert (known != UNKNOWN).sum() == 1

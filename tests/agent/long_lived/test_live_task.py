@@ -6,7 +6,7 @@ from tests.agent.long_lived.doors import Doors
 
 from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
 from lifelore.agent.long_lived.explanation import explained, task_document
-from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
+from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.core.errors import InputError
@@ -157,7 +157,7 @@ def test_few_tasks_are_a_cause_of_doubt_of_their_own():
     kind = knowledge.known_types().types[0].members[0]
     seldom = {kind: 1.0}
     nothing = np.zeros((0, 4), np.bool_)
-    knowledge.learn(TaskNews(7, 31, seldom, [], [], np.zeros(0, np.int64), nothing))
+    knowledge.learn(TaskNews(7, 31, [SpanNews(seldom, [])], [], np.zeros(0, np.int64), nothing))
     (once,) = [one for one in curious_contexts(knowledge) if one.context == 7]
     assert once.disagreement == 0
     assert once.unsure > 2 * often

@@ -4,9 +4,9 @@ All of it is counts that add up: effects of causes and sightings for each type, 
 can therefore merge them in any order. Types that are alike are joined when knowledge is read, never in memory.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Self
+from typing import NamedTuple, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,19 @@ LEAST_BELIEF = 0.01
 """Types of less belief learn nothing from a task."""
 
 
+class SpanNews(NamedTuple):
+    """What a span of episodes of one type has taught.
+
+    belief : mapping of str to float
+        Belief in each type, by name, at the end of the span: as much does each learn from it.
+    effects : sequence of (int, int)
+        Causes and effects, in their order.
+    """
+
+    belief: Mapping[str, float]
+    effects: Effects
+
+
 @dataclass(frozen=True, eq=False)
 class TaskNews:
     """What a task has taught.
@@ -32,10 +45,8 @@ class TaskNews:
     Parameters
     ----------
     context, date : int
-    belief : mapping of str to float
-        Belief in each type, by name, at the end of the task: as much does each learn from it.
-    effects : sequence of (int, int)
-        Causes and effects, in their order.
+    spans : sequence of SpanNews
+        At least one; the context's usual types are learnt from the first, with which the task began.
     moves : sequence of (int, int)
         Codes and results of `AgentTask.moved`.
     contexts, best : (n,) int64, (n, n_acts) bool
@@ -44,8 +55,7 @@ class TaskNews:
 
     context: int
     date: int
-    belief: Mapping[str, float]
-    effects: Effects
+    spans: Sequence[SpanNews]
     moves: Effects
     contexts: NDArray[np.int64]
     best: NDArray[np.bool_]
@@ -116,13 +126,18 @@ class Knowledge:
     def _parts(self, news: TaskNews) -> dict[str, ActionPrior]:
         family, parts = self.family, dict[str, ActionPrior]()
         code = news.date * MOST_CONTEXTS + news.context
-        for name, belief in news.belief.items():
-            if belief >= LEAST_BELIEF:
-                parts[f"type/{name}"] = effect_counts(family, news.effects, belief)
-                parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
+        for place, span in enumerate(news.spans):
+            for name, belief in span.belief.items():
+                if belief < LEAST_BELIEF:
+                    continue
+                counts, earlier = effect_counts(family, span.effects, belief), parts.get(f"type/{name}")
+                parts[f"type/{name}"] = counts if earlier is None else ActionPrior.merged([earlier, counts])
+                if not place:
+                    parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
         codes, results = np.array(news.moves, np.int64).reshape(-1, 2).T
         parts["moves"] = _counted(codes, results, family.n_results)
-        causes = np.unique([*(cause for cause, _ in news.effects), family.n_causes])
+        shown = {cause for span in news.spans for cause, _ in span.effects}
+        causes = np.array([*sorted(shown), family.n_causes])
         parts["causes"] = _counted(causes, np.zeros_like(causes), 1)
         acts = ActionPrior(len(family.acts))
         acts.update(news.contexts, news.best)

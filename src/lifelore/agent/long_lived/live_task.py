@@ -10,20 +10,28 @@ for each episode:
         β, p and the task's own counts take in the effects of the act
 an alarm, or effects that tell the task from its type: a new type; else as believed    learn
 count the effects, the best acts, and the belief in this context                       remember
+
+Where types may change between the episodes of a task, the belief follows them (`changing_recognition`), and types
+learn by span: from the episodes between two changes.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.knowledge import Knowledge, TaskNews
-from lifelore.agent.long_lived.recognition import Recognition
+from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
+from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
+from lifelore.agent.long_lived.known_types import Effects, KnownTypes
+from lifelore.agent.long_lived.recognition import Recognition, Span
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -38,6 +46,8 @@ class LivingSettings:
         Probability of an alarm in a task of a known type, in (0, 1).
     unknown : float
         Prior probability that no known type fits, in (0, 1).
+    change : float
+        Probability that the type changes between two episodes, in [0, 1); with 0 it is taken to stay.
 
     Raises
     ------
@@ -48,10 +58,13 @@ class LivingSettings:
     n_episodes: int = 8
     false_alarm: float = 0.05
     unknown: float = 0.05
+    change: float = 0.0
 
     def __post_init__(self) -> None:
         if self.n_episodes < 1:
             raise InputError(f"episodes must be at least 1, got {self.n_episodes}")
+        if not 0 <= self.change < 1:
+            raise InputError(f"change must be at least 0 and below 1, got {self.change}")
         for name in ("false_alarm", "unknown"):
             if not 0 < getattr(self, name) < 1:
                 raise InputError(f"{name} must lie between 0 and 1, got {getattr(self, name)}")
@@ -106,14 +119,17 @@ def attempt_task(
     lived.prior = np.full(len(known), 1 / max(len(known), 1))
     if abilities.prior and len(known):
         lived.prior = knowledge.type_prior().prior(drawn.context, drawn.number)
-    recognition = Recognition(knowledge, lived.prior, settings.false_alarm, settings.unknown, seed)
+    recognition = recognition_of(knowledge, lived.prior, settings, seed)
     shared.guided = abilities.prior
 
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
     effects: list[tuple[int, int]] = []
+    began: list[int] = []  # number of effects before each episode
     moves: list[tuple[int, int]] = []
     for episode in range(settings.n_episodes):
         task.begin()
+        recognition.begin_episode()
+        began.append(len(effects))
         between = 0 < episode < settings.n_episodes - 1
         decisions, ended = [], False
         while not ended:
@@ -131,25 +147,53 @@ def attempt_task(
 
     # Notice: does any known type fit?
     lived.alarm, lived.alarm_score = recognition.alarmed, recognition.highest
-    believed = recognition.belief[:-1] / max(float(recognition.belief[:-1].sum()), 1e-300)
-    fits = len(known) > 0 and not lived.alarm and not known.differs(int(believed.argmax()), effects)
-    if not fits and (abilities.reuse or not len(known)):
-        row, belief = len(known), {name: 1.0}
-    else:
-        row = int(believed.argmax()) if abilities.reuse else 0
-        believed = believed if abilities.reuse else np.ones(1)
-        belief = {one.members[0]: value for one, value in zip(known.types, believed.tolist(), strict=True)}
-    lived.learnt = max(belief, key=belief.__getitem__)
+    spans, taught = recognition.spans(), list[SpanNews]()
+    began.append(len(effects))
+    for span, last in zip(spans, [*(one.first for one in spans[1:]), settings.n_episodes], strict=True):
+        own = effects[began[span.first] : began[last]]
+        own_name = f"{name}.{span.first}" if span.first else name
+        taught.append(SpanNews(_learning(known, span, own, own_name, abilities), own))
+    learners = [max(one.belief, key=one.belief.__getitem__) for one in taught]
+    lived.learnt = learners[0]
+    lived.changes = [(span.first, learnt) for span, learnt in zip(spans, learners, strict=True)][1:]
 
     # Learn and remember: types learn the effects as far as they are believed, contexts their best acts and types.
+    row = _row(known, learners[-1])
     contexts, best = task.best_acts(known.laws(recognition.own)[row], shared)
-    return lived, TaskNews(drawn.context, drawn.number, belief, effects, moves, contexts, best)
+    return lived, TaskNews(drawn.context, drawn.number, tuple(taught), moves, contexts, best)
+
+
+def recognition_of(
+    knowledge: Knowledge, prior: Array, settings: LivingSettings, seed: int
+) -> Recognition | ChangingRecognition:
+    """The recognition of a task whose type stays, or may change."""
+    given = knowledge, prior, settings.false_alarm, settings.unknown, seed
+    if not settings.change:
+        return Recognition(*given)
+    return ChangingRecognition(*given, settings.change, settings.n_episodes)
+
+
+def _learning(
+    known: KnownTypes, span: Span, effects: Effects, name: str, abilities: Abilities
+) -> dict[str, float]:
+    """How much each type, by name, learns from the effects of a span; a type that is new has the given name."""
+    believed = span.belief[:-1] / max(float(span.belief[:-1].sum()), 1e-300)
+    fits = len(known) > 0 and not span.alarmed and not known.differs(int(believed.argmax()), effects)
+    if not fits and (abilities.reuse or not len(known)):
+        return {name: 1.0}
+    believed = believed if abilities.reuse else np.ones(1)
+    return {one.members[0]: value for one, value in zip(known.types, believed.tolist(), strict=True)}
+
+
+def _row(known: KnownTypes, name: str) -> int:
+    """The row of a type, by the name of its first member, in `KnownTypes.laws`; the last of a new one."""
+    return next((row for row, one in enumerate(known.types) if one.members[0] == name), len(known))
 
 
 def decide(
     knowledge: Knowledge,
     task: AgentTask,
-    recognition: Recognition,
+    recognition: Recognition | ChangingRecognition,
     generator: np.random.Generator | None = None,
     trying: bool = False,
 ) -> Decision:

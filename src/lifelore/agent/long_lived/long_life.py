@@ -2,6 +2,7 @@
 
 import os
 import uuid
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from threading import Event
 from typing import Any
@@ -10,11 +11,11 @@ import numpy as np
 
 from lifelore.action.priors.action_prior import KIND
 from lifelore.agent.long_lived.curiosity import context_to_practise
-from lifelore.agent.long_lived.explanation import task_document
+from lifelore.agent.long_lived.explanation import episodes_document, task_document
 from lifelore.agent.long_lived.families.by_name import family_named
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
-from lifelore.agent.long_lived.task_family import AGENTS, TaskFamily
+from lifelore.agent.long_lived.task_family import AGENTS, ChangingFamily, TaskFamily
 from lifelore.agent.long_lived.task_log import TaskLog
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.protocols import Progress, Record
@@ -41,10 +42,13 @@ class LongLifeSettings:
     memory : str, optional
         A file or a ``postgresql://`` URL; default: the user's own memory.
     living : LivingSettings
+        With its `change` above 0, the hidden type does change within tasks so often (factory-customers alone).
     labelled : bool
         tabletop: whether the points of the pictures carry the objects' labels.
     n_spare : int
         Tasks of spare time after those, in contexts that the agent is curious about, at least 0.
+    refresh : bool
+        Whether to recall before each task what other robots and processes have stored.
 
     Raises
     ------
@@ -61,6 +65,7 @@ class LongLifeSettings:
     living: LivingSettings = field(default_factory=LivingSettings)
     labelled: bool = False
     n_spare: int = 0
+    refresh: bool = False
 
     def __post_init__(self) -> None:
         if self.agent not in AGENTS:
@@ -76,11 +81,15 @@ class LongLifeSettings:
 
     def family(self) -> TaskFamily:
         """The family of tasks."""
-        return family_named(self.domain, self.seed, labelled=self.labelled)
+        return family_named(self.domain, self.seed, labelled=self.labelled, change=self.living.change)
 
 
 def live_long(
-    settings: LongLifeSettings, progress: Progress | None = None, stop: Event | None = None
+    settings: LongLifeSettings,
+    progress: Progress | None = None,
+    stop: Event | None = None,
+    watch: Callable[[dict[str, Any]], None] | None = None,
+    family: TaskFamily | None = None,
 ) -> dict[str, Any]:
     """Live through tasks of a family, and store after each what it taught.
 
@@ -91,6 +100,10 @@ def live_long(
         Called as ``progress(done, total, label)`` before the first task and after each.
     stop : threading.Event, optional
         Set it to stop after the present task.
+    watch : callable, optional
+        Called with the document of each task after memory has stored it.
+    family : TaskFamily, optional
+        Tasks to live through, in place of those of the settings.
 
     Returns
     -------
@@ -105,7 +118,7 @@ def live_long(
     StoreError
         Memory cannot store a task; earlier tasks stay stored.
     """
-    family, abilities = settings.family(), AGENTS[settings.agent]
+    family, abilities = family or settings.family(), AGENTS[settings.agent]
     process = f"{os.getpid()}-{uuid.uuid4().hex[:12]}"
     documents: list[dict[str, Any]] = []
     with open_memory(settings.memory) as memory:
@@ -119,6 +132,8 @@ def live_long(
             with memory.taken_task(settings.robot, process=process) as number:
                 if not abilities.memory:
                     knowledge = Knowledge.empty(family)
+                elif settings.refresh and settings.agent == "full" and done:
+                    knowledge = recalled(family, memory)
                 context = None
                 if done >= settings.n_tasks:
                     context = context_to_practise(knowledge, stream(settings.seed, "spare time", number))
@@ -127,8 +142,14 @@ def live_long(
                 lived, records = live_task(knowledge, drawn, task, abilities, settings.living, name, settings.seed)
                 best = family.best_return(number, context)
                 document = task_document(lived, family, best) | {"spare": context is not None}
+                if isinstance(family, ChangingFamily) and settings.living.change:
+                    document |= episodes_document(
+                        lived, family.episodes(number, settings.living.n_episodes, context)
+                    )
                 _store(memory, settings, records, process, done, number, document)
             documents.append(document)
+            if watch:
+                watch(document)
             if progress:
                 progress(done + 1, n_tasks, f"task {number}: {_headline(lived, best)}")
     return {
@@ -188,7 +209,10 @@ def summary(tasks: list[dict[str, Any]]) -> dict[str, Any]:
 
 
 def _below(tasks: list[dict[str, Any]], episode: int) -> float:
-    return round(float(np.mean([task["best_return"] - task["returns"][episode] for task in tasks])), 4)
+    best = [task.get("best_returns", [task["best_return"]])[episode] for task in tasks]
+    return round(
+        float(np.mean([high - task["returns"][episode] for high, task in zip(best, tasks, strict=True)])), 4
+    )
 
 
 def stored_task(number: int, robot: str = "robot", memory: str | None = None) -> dict[str, Any]:

@@ -16,7 +16,7 @@ from lifelore.interaction.novelty.novelty_statistics import NoveltyStatistics
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
 
 N_TASKS = 400
-"""Simulated tasks behind the threshold; more cost time and state the rate more precisely."""
+"""Simulated tasks behind the threshold, at least; more cost time and state the rate more precisely."""
 
 
 def calibrated_alarm(
@@ -26,6 +26,7 @@ def calibrated_alarm(
     false_alarm: float,
     generator: np.random.Generator,
     mass: float = 0.05,
+    n_tasks: int = N_TASKS,
 ) -> NoveltyDetector:
     """A detector for one task.
 
@@ -39,16 +40,18 @@ def calibrated_alarm(
         Number of different causes that a task usually shows; at most n_causes count.
     false_alarm : float
         Probability of an alarm in a task of a known type, in (0, 1).
+    n_tasks : int
+        Simulated tasks behind the threshold, at least 20 / false_alarm.
     """
     n_causes = len(frequency)
     horizon = min(horizon, n_causes)
     # The largest of log frequency + Gumbel noise come first: a draw without replacement, by frequency.
-    noise = generator.gumbel(size=(N_TASKS, n_causes))
+    noise = generator.gumbel(size=(n_tasks, n_causes))
     order = np.argsort(-(np.log(frequency) + noise), axis=1)[:, :horizon]
-    statistics, tasks = NoveltyStatistics(library), known_tasks(library, N_TASKS, generator)
-    users = UserBeliefs(library, N_TASKS, "f8", seed=generator, models="plug-in")
-    sums, every = statistics.sums(N_TASKS), np.arange(N_TASKS)
-    found = np.empty((N_TASKS, horizon))
+    statistics, tasks = NoveltyStatistics(library), known_tasks(library, n_tasks, generator)
+    users = UserBeliefs(library, n_tasks, "f8", seed=generator, models="plug-in")
+    sums, every = statistics.sums(n_tasks), np.arange(n_tasks)
+    found = np.empty((n_tasks, horizon))
     for place in range(horizon):
         causes = order[:, place]
         belief = users.algorithm.belief(users.log_belief)

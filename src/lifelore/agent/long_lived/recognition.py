@@ -1,12 +1,16 @@
 """Which type a task has: the belief over the known types, and the alarm that none fits."""
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.novelty_alarm import calibrated_alarm
+from lifelore.agent.long_lived.novelty_alarm import N_TASKS, calibrated_alarm
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.novelty.calibration import LEAST_ALARMS
 from lifelore.interaction.novelty.novelty_detector import NoveltyDetector
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 
@@ -16,8 +20,27 @@ ALARMED = 0.99
 """Least belief in an unknown type after an alarm; the known types then hardly count."""
 
 
+@dataclass(frozen=True, eq=False)
+class Span:
+    """Successive episodes of a task in which its type stays.
+
+    Parameters
+    ----------
+    first : int
+        Number of the first of these episodes.
+    belief : (n_types + 1,) float64
+        At their end.
+    alarmed : bool
+        Whether no known type fits.
+    """
+
+    first: int
+    belief: Array
+    alarmed: bool
+
+
 class Recognition:
-    """The belief over types in one task.
+    """The belief over types in a task whose type stays.
 
     Parameters
     ----------
@@ -39,11 +62,9 @@ class Recognition:
 
     def __init__(self, knowledge: Knowledge, prior: Array, false_alarm: float, unknown: float, seed: int) -> None:
         self.known = knowledge.known_types()
-        self.own = np.zeros((knowledge.family.n_causes, knowledge.family.n_effects))
         self.agent: BayesianPolicyReuse | None = None
         self.alarm: NoveltyDetector | None = None
-        self.highest = 0.0
-        self._judged: set[int] = set()
+        self._place: dict[int, int] = {}
         if len(self.known):
             library, judged = self.known.library(prior), self.known.judged
             self._place = {int(cause): place for place, cause in enumerate(judged)}
@@ -56,7 +77,26 @@ class Recognition:
                 false_alarm,
                 stream(seed, "long-lived", "alarm", knowledge.n_tasks),
                 unknown,
+                max(N_TASKS, int(np.ceil(LEAST_ALARMS / false_alarm))),
             )
+        self._forget_task()
+
+    def _forget_task(self) -> None:
+        family = self.known.family
+        self.own = np.zeros((family.n_causes, family.n_effects))
+        self.highest = 0.0
+        self._judged: set[int] = set()
+
+    def restarted(self, prior: Array, unknown: float) -> Self:
+        """Another task's recognition, with the same laws and the same threshold of the alarm."""
+        other = type(self).__new__(type(self))
+        other.known, other.agent, other.alarm, other._place = self.known, None, None, self._place
+        if self.agent is not None and self.alarm is not None:
+            library = self.agent.library
+            other.agent = BayesianPolicyReuse(library, prior=prior, dynamics=TypeDynamics.static())
+            other.alarm = NoveltyDetector(library, self.alarm.calibration, unknown)
+        other._forget_task()
+        return other
 
     @property
     def belief(self) -> Array:
@@ -65,6 +105,9 @@ class Recognition:
             return np.ones(1)
         unknown = max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0)
         return np.append((1 - unknown) * self.agent.belief, unknown)
+
+    def begin_episode(self) -> None:
+        """Begin an episode; the type stays."""
 
     def observe(self, effects: tuple[tuple[int, int], ...]) -> None:
         """Take in the effects of an act; a cause tells of the type at its first effect alone.
@@ -87,3 +130,7 @@ class Recognition:
     def alarmed(self) -> bool:
         """Whether the alarm was raised, or no type is known."""
         return self.alarm is None or self.alarm.alarm
+
+    def spans(self) -> list[Span]:
+        """The whole task."""
+        return [Span(0, self.belief, self.alarmed)]

@@ -6,7 +6,7 @@ causes is what the agent learns of each type. A *behaviour* acts best if the tas
 """
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -214,4 +214,13 @@ class TaskFamily(Protocol):
 
     def effect_name(self, cause: int, effect: int) -> str:
         """An effect in words."""
+        ...
+
+
+@runtime_checkable
+class ChangingFamily(TaskFamily, Protocol):
+    """Tasks whose type may change between episodes."""
+
+    def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
+        """Hidden type and best possible return of each episode, for scoring; the agent never asks."""
         ...

@@ -34,6 +34,7 @@ BENCHES = {
     "capacity": "fleet",
     "large_memory": "fleet",
     "fleet": "fleet",
+    "customer_fleet": "fleet",
     "recognition": "lives",
     "lidar": "lives",
     "destinations": "lives",
@@ -48,6 +49,7 @@ BENCHES = {
     "novelty": "interaction",
     "log": "interaction",
     "long_lived_worlds": "agent",
+    "changing_customers": "agent",
     "serve": "service",
     "soak": "service",
 }
@@ -69,7 +71,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         ``views`` and ``registration``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind;
         for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
         three lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
-        ``evaluation``: 60 simulated studies each; for ``novelty``: libraries of each case.
+        ``changing_customers``: lives; for ``customer_fleet``: worlds; for ``evaluation``: 60 simulated studies
+        each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
 from lifelore.agent.long_lived.task_family import TaskFamily
-from lifelore.core.errors import NotFoundError
+from lifelore.core.errors import InputError, NotFoundError
 from lifelore.domains.task_stream import TaskStream
 
 TABLETOP_TYPES = (
@@ -18,20 +18,20 @@ TABLETOP_TYPES = (
 """Hidden types of the default stream: each user and each way of gripping comes up, but not each pair."""
 
 
-def _tabletop(seed: int, labelled: bool) -> TaskFamily:
+def _tabletop(seed: int, labelled: bool, change: float) -> TaskFamily:
     from lifelore.agent.long_lived.families.tabletop import TabletopFamily
 
     return TabletopFamily(TaskStream(TABLETOP_TYPES, seed=seed), seed, labelled)
 
 
-def _factory_customers(seed: int, labelled: bool) -> TaskFamily:
+def _factory_customers(seed: int, labelled: bool, change: float) -> TaskFamily:
     from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
     from lifelore.domains.factory.customer_orders import CUSTOMERS
 
-    return FactoryFamily(TaskStream(tuple(CUSTOMERS), seed=seed), seed)
+    return FactoryFamily(TaskStream(tuple(CUSTOMERS), seed=seed, change=change), seed, changing=change > 0)
 
 
-def _building_days(seed: int, labelled: bool) -> TaskFamily:
+def _building_days(seed: int, labelled: bool, change: float) -> TaskFamily:
     from lifelore.agent.long_lived.families.building_days import BuildingFamily
     from lifelore.domains.buildings.building_days import DAYS, BuildingDays
     from lifelore.domains.worlds import WorldSettings, world_from_settings
@@ -40,20 +40,37 @@ def _building_days(seed: int, labelled: bool) -> TaskFamily:
     return BuildingFamily(BuildingDays(world, TaskStream(tuple(DAYS), seed=seed), seed))
 
 
-FAMILIES: Mapping[str, Callable[[int, bool], TaskFamily]] = MappingProxyType(
+FAMILIES: Mapping[str, Callable[[int, bool, float], TaskFamily]] = MappingProxyType(
     {"tabletop": _tabletop, "factory-customers": _factory_customers, "building-days": _building_days}
 )
-"""Name to a function of seed and `labelled`."""
+"""Name to a function of seed, `labelled` and `change`."""
+CHANGING = ("factory-customers",)
+"""Families whose hidden type may change between the episodes of a task."""
 
 
-def family_named(name: str, seed: int, *, labelled: bool = False) -> TaskFamily:
+def family_named(name: str, seed: int, *, labelled: bool = False, change: float = 0.0) -> TaskFamily:
     """The family of a name, with its default stream.
+
+    Parameters
+    ----------
+    labelled : bool
+        See `TabletopFamily`.
+    change : float
+        Probability that the hidden type changes between two episodes of a task, in [0, 1); above 0 only for the
+        families of `CHANGING`.
 
     Raises
     ------
     NotFoundError
         No family has this name.
+    InputError
+        The family's types stay within a task, but `change` is above 0.
     """
     if name not in FAMILIES:
         raise NotFoundError(f"domain must be one of {', '.join(FAMILIES)}, got {name!r}")
-    return FAMILIES[name](seed, labelled)
+    if change and name not in CHANGING:
+        raise InputError(
+            f"change must be 0 in domain {name}, whose types stay within a task, got {change}; leave it out, or "
+            f"take domain {' or '.join(CHANGING)}"
+        )
+    return FAMILIES[name](seed, labelled, change)

@@ -3,9 +3,11 @@
 The floor and its points are known, the components that a customer wants are not. An act walks the shortest way to
 a point and uses it: "procure component k", or "assemble component k". Each act is a cause, whose effect is that it
 is paid or refused. An order answers the same act alike in all its episodes, so only new answers are effects; and
-when an order ends, all components that it did not ask for are known to be unwanted.
+when an order ends, all components that it did not ask for are known to be unwanted. Where the customer may change
+between episodes, answers are sure for one episode: every episode shows its effects anew.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -29,6 +31,8 @@ Array = NDArray[np.float64]
 ACTS = tuple(f"{use} component {k}" for use in ("procure", "assemble") for k in range(N_COMPONENTS))
 EFFECTS = ("paid", "refused")
 PAID, REFUSED = range(2)
+MOST_TABLES = 32
+"""Tables of best acts that a family keeps, 6 MB each; an older order's is computed again."""
 
 
 @dataclass(frozen=True)
@@ -43,11 +47,14 @@ class FactoryFamily:
         Of the layouts.
     tables : dict, optional
         Best acts by number of the order, which agents share.
+    changing : bool
+        Whether the customer may change between the episodes of an order.
     """
 
     stream: TaskStream
     seed: int = 0
     tables: dict[int, OrderTable] = field(default_factory=dict)
+    changing: bool = False
 
     name = "factory-customers"
     acts = ACTS
@@ -58,20 +65,39 @@ class FactoryFamily:
     groups = np.arange(len(ACTS)) // N_COMPONENTS
     judges = np.ones(len(ACTS), np.bool_)
 
-    def order(self, number: int, context: int | None = None) -> tuple[DrawnTask, CustomerOrder]:
-        """Order `number`, drawn and as the world has it."""
-        return FactoryCustomers(self.stream, self.seed).task(number, context)
+    def order(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
+        """Order `number` in an episode, drawn and as the world has it."""
+        return FactoryCustomers(self.stream, self.seed).task(number, context, episode)
 
     def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
         drawn, order = self.order(number, context)
         if number not in self.tables:
+            if len(self.tables) >= MOST_TABLES:
+                del self.tables[next(iter(self.tables))]
             self.tables[number] = OrderTable.of(order.factory)
-        return drawn, OrderTask(order, self.tables[number])
+        if not self.changing:
+            return drawn, OrderTask(order, self.tables[number])
+
+        def in_episode(episode: int) -> CustomerOrder:
+            return self.order(number, context, episode)[1]
+
+        return drawn, OrderTask(order, self.tables[number], in_episode)
 
     def best_return(self, number: int, context: int | None = None) -> float:
-        """The best discounted return."""
+        """The best discounted return, in the first episode."""
         return self.order(number, context)[1].best_return
+
+    def episodes(self, number: int, n_episodes: int, context: int | None = None) -> list[tuple[str, float]]:
+        """See `ChangingFamily`."""
+        best: dict[str, float] = {}
+        found = []
+        for episode in range(n_episodes):
+            drawn, order = self.order(number, context, episode)
+            if drawn.hidden_type not in best:
+                best[drawn.hidden_type] = order.best_return
+            found.append((drawn.hidden_type, best[drawn.hidden_type]))
+        return found
 
     def smoothed(self, counts: Array) -> Array:
         """The counts: being paid and being refused are not similar."""
@@ -95,18 +121,29 @@ class OrderTask:
         Of its hidden list nothing is read.
     table : OrderTable
         Of the order's factory.
+    in_episode : callable, optional
+        The order in an episode, by its number, where the customer may change between episodes.
     """
 
     context = 0
     moved: tuple[int, int] | None = None
 
-    def __init__(self, order: CustomerOrder, table: OrderTable) -> None:
-        self.order, self.table = order, table
+    def __init__(
+        self, order: CustomerOrder, table: OrderTable, in_episode: Callable[[int], CustomerOrder] | None = None
+    ) -> None:
+        self.order, self.table, self._in_episode, self._n_begun = order, table, in_episode, 0
         self.known = np.full(order.factory.n_components, UNKNOWN)
-        self.begin()
+        self._start()
 
     def begin(self) -> None:
         """Begin an episode at the start."""
+        if self._in_episode is not None:
+            self.order = self._in_episode(self._n_begun)
+            self.known = np.full(self.order.factory.n_components, UNKNOWN)
+            self._n_begun += 1
+        self._start()
+
+    def _start(self) -> None:
         self.seen = self.order.reset()
         self._place, self._discount = self.table.start, 1.0
 

@@ -17,7 +17,11 @@ _COLOURS = (GREY, BLUE, GREEN, VERMILION)
 
 
 def draw_fleet(
-    curves: Mapping[int, Sequence[NDArray[np.float64]]], needed: Mapping[int, Sequence[int]], competent: float
+    curves: Mapping[int, Sequence[NDArray[np.float64]]],
+    needed: Mapping[int, Sequence[int]],
+    competent: float,
+    title: str = "A fleet learns a building",
+    measure: str = "refused moves a task",
 ) -> "Figure":
     """The figure: curves on the left, rounds to competence on the right, with 95 % intervals over buildings.
 
@@ -27,7 +31,9 @@ def draw_fleet(
         Mean refused moves a task by round, of the fleet and of robots that know nothing, one array a building.
     needed : mapping of number of robots to rounds to competence, one a building
     competent : float
-        Share of the refused moves of a robot that knows nothing at which a fleet is competent.
+        Share of the measure of a robot that knows nothing at which a fleet is competent.
+    title, measure : str
+        Of the left panel: what is learnt, and what the curves show.
     """
     with house_style():
         figure = new_figure(9.8, 3.9)
@@ -40,8 +46,8 @@ def draw_fleet(
             looks[label] = {"color": colour}
         nothing = float(np.mean([curve[:, 1].mean() for each in curves.values() for curve in each]))
         draw_curves(
-            left, None, series, looks=looks, title="A fleet learns a building", xlabel="task of each robot",
-            ylabel="refused moves a task",
+            left, None, series, looks=looks, title=title, xlabel="task of each robot",
+            ylabel=measure,
             level=(competent * nothing, f"{competent:.0%} of a robot that knows nothing"),
         )  # fmt: skip
         sizes = list(needed)

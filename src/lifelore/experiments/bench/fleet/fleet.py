@@ -62,6 +62,7 @@ def bench_fleet(repeats: int, progress: Progress, out: Path = OUT) -> dict:
             processes[place] = lived
         progress(total - 2 + len(processes), total, f"processes on {place}")
     kills = killed_processes()
+    assert kills is not None, "a file needs no server"
     progress(total, total, "kills")
     needed = {robots: [rounds_to_competence(curve) for curve in each] for robots, each in curves.items()}
     result = {

