@@ -65,8 +65,10 @@ class Recognition:
         self.agent: BayesianPolicyReuse | None = None
         self.alarm: NoveltyDetector | None = None
         self._place: dict[int, int] = {}
-        if len(self.known):
-            library, judged = self.known.library(prior), self.known.judged
+        self._before = _with_unknown(prior, unknown)
+        # Without a cause that tells types apart, such as after tasks in which nothing was tried, the prior stays.
+        if (judged := self.known.judged).size:
+            library = self.known.library(prior)
             self._place = {int(cause): place for place, cause in enumerate(judged)}
             self.agent = BayesianPolicyReuse(library, dynamics=TypeDynamics.static())
             frequency = knowledge.shared.causes.counts(judged)[:, 0]
@@ -91,6 +93,7 @@ class Recognition:
         """Another task's recognition, with the same laws and the same threshold of the alarm."""
         other = type(self).__new__(type(self))
         other.known, other.agent, other.alarm, other._place = self.known, None, None, self._place
+        other._before = _with_unknown(prior, unknown)
         if self.agent is not None and self.alarm is not None:
             library = self.agent.library
             other.agent = BayesianPolicyReuse(library, prior=prior, dynamics=TypeDynamics.static())
@@ -102,9 +105,8 @@ class Recognition:
     def belief(self) -> Array:
         """In the known types and, last, in an unknown one, (n_types + 1,)."""
         if self.agent is None or self.alarm is None:
-            return np.ones(1)
-        unknown = max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0)
-        return np.append((1 - unknown) * self.agent.belief, unknown)
+            return self._before
+        return _with_unknown(self.agent.belief, max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0))
 
     def begin_episode(self) -> None:
         """Begin an episode; the type stays."""
@@ -129,8 +131,13 @@ class Recognition:
     @property
     def alarmed(self) -> bool:
         """Whether the alarm was raised, or no type is known."""
-        return self.alarm is None or self.alarm.alarm
+        return len(self.known) == 0 if self.alarm is None else self.alarm.alarm
 
     def spans(self) -> list[Span]:
         """The whole task."""
         return [Span(0, self.belief, self.alarmed)]
+
+
+def _with_unknown(known: Array, unknown: float) -> Array:
+    """A law over known types (n_types,), and an unknown type last; certainly unknown where none is known."""
+    return np.append((1 - unknown) * known, unknown) if len(known) else np.ones(1)
