@@ -1,4 +1,4 @@
-"""docs/long_lived.md holds the numbers of results/bench_long_lived_worlds.json."""
+"""docs/long_lived.md holds the numbers of results/bench_long_lived_worlds.json and bench_tabletop_lives.json."""
 
 import json
 from pathlib import Path
@@ -55,3 +55,23 @@ def test_the_late_type():
         for name in ("alarm at the first task of the late type", "alarms in the quarter before")
     )
     assert f"Alarm at the late type's first task: {noticed:.0%}; alarms in the tasks before: {before:.0%}." in PAGE
+
+
+TABLETOP = {
+    row["name"]: row
+    for row in json.loads((ROOT / "results" / "bench_tabletop_lives.json").read_text(encoding="utf-8"))["rows"]
+}
+
+
+@pytest.mark.parametrize("agent", [name.partition(":")[0] for name in TABLETOP if "last episodes" in name])
+def test_the_table_of_tabletop_lives(agent):
+    parts = (
+        "first episodes of the first forty tasks",
+        "first episodes on new trays",
+        "last episodes on new trays",
+    )
+    cells = [TABLETOP[f"{agent}: {part}"] for part in (*parts, "spills in first episodes on new trays")]
+    if agent != "full":
+        cells.append(TABLETOP[f"full less {agent}: first episodes on new trays"])
+    line = " | ".join([agent, *(shown(cell, digits=2) for cell in cells), *(["–"] if agent == "full" else [])])
+    assert f"| {line} |" in PAGE

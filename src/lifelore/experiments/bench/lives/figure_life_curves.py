@@ -28,7 +28,7 @@ def draw_life_curves(curves: Mapping[str, tuple[Any, Any]], new_from: int, n_liv
     n_lives : number of lives behind each curve
     """
     with house_style():
-        figure = new_figure(6.6, 3.8)
+        figure = new_figure(6.6, 4.0)
         axes = figure.subplots()
         axes.axhline(1, color=GREY, linewidth=0.8, linestyle=(0, (2, 2)))
         axes.axvline(new_from, color=GREY, linewidth=0.8, linestyle=(0, (2, 2)))
@@ -42,5 +42,5 @@ def draw_life_curves(curves: Mapping[str, tuple[Any, Any]], new_from: int, n_liv
             ylim=(max(-1.0, low - 0.05), 1.1),
             title=f"Tabletop jobs: ten tasks up to each, {n_lives} lives",
         )
-        axes.legend(loc="lower right", fontsize=8)
+        figure.legend(loc="outside lower center", ncols=len(curves), fontsize=8)
     return figure

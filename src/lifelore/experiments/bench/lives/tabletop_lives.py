@@ -32,8 +32,8 @@ from lifelore.experiments.engine.source_key import source_key
 
 Array = NDArray[np.float64]
 
-LIVES = 3
-"""Lives of a round."""
+LIVES = 2
+"""Lives of a round. The first takes some 25 minutes of a core, each other one 5: they share the trays."""
 N_TASKS = 40
 """Tasks of the first part of a life, and of the second on new trays."""
 RAW = "full, raw clouds"
@@ -148,7 +148,7 @@ def n_spills(task: TaskLog) -> int:
 
 
 def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
-    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is three lives on eighty trays of its own.
+    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is two lives on eighty trays of its own.
 
     Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`. A bench that
     was stopped goes on with the life that it was in.
