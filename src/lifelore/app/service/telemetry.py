@@ -62,7 +62,7 @@ def log_to_stderr() -> None:
     """Write the service's log, and that of the web server, as JSON lines to stderr."""
     # No line says where in the code it was written, nor in which thread: that takes a third of its time.
     logging._srcfile = None  # pyright: ignore[reportAttributeAccessIssue]
-    logging.logThreads = logging.logProcesses = logging.logMultiprocessing = logging.logAsyncioTasks = False
+    logging.logThreads = logging.logProcesses = logging.logMultiprocessing = False
     handler = logging.StreamHandler(sys.stderr)
     handler.setFormatter(_JsonLines())
     for name in ("lifelore.service", "uvicorn.error"):

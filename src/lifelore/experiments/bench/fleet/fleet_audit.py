@@ -9,7 +9,7 @@ from lifelore.memory import Memory, open_memory
 
 def task_numbers(memory: Memory, robot: str) -> list[int]:
     """Numbers of a robot's stored tasks, ascending."""
-    return sorted(task.get("index", task.get("task")) for task in memory.task_descriptions(robot))
+    return sorted(int(task["index" if "index" in task else "task"]) for task in memory.task_descriptions(robot))
 
 
 def wrong_sums(memory: Memory) -> int:
