@@ -32,7 +32,7 @@ def test_goals_are_those_of_the_result(name):
 
 
 def test_every_part_has_its_goals_and_its_command():
-    assert MARKS == ["kernels", "start", "buildings", "merge", "serve"]
+    assert MARKS == ["kernels", "start", "buildings", "merge", "serve", "soak"]
     for name in [*MARKS, "capacity"]:
         assert f"`lifelore bench {name} --repeats" in PAGE
         assert (ROOT / "results" / f"bench_{name}.json").exists()
