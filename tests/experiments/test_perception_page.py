@@ -168,11 +168,11 @@ def test_everybody_is_in_the_table():
 def test_what_the_goals_measured_is_told():
     told = {
         "perceive": (
-            "0.86 s (goal 0.4: **missed**)",
-            "1.30 s (goal 0.4: **missed**)",
-            "0.41, 0.61 and 0.84 s (goal 0.4",
-            "1.27, 1.55 and 1.68 s (goal 0.8",
-            "0.49 s (goal 0.3",
+            "0.53 s (goal 0.4: **missed**)",
+            "0.80 s (goal 0.4: **missed**)",
+            "0.24, 0.37 and 0.51 s (goal 0.4",
+            "0.85, 1.07 and 1.12 s (goal 0.8",
+            "0.31 s (goal 0.3",
         ),
         "separator": ("6.4, 18.8, 52 times", "17.8, 54, 129 times", "4.0 and 3.6 ms", "3.0 and 0.24 s"),
     }
