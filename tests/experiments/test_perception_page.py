@@ -75,16 +75,21 @@ def test_valid_plans_at_the_default(how, words):
     assert told[5] == ("met" if row["value"] >= float(told[4]) else "**missed**")
 
 
+def check_views(found, how, cells):
+    """The cells of a line: what is told of scenes seen so."""
+    for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
+        row = found[f"{measure}, {how}"]
+        value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+        assert value == pytest.approx(row["value"], abs=6e-4)
+        assert ends == pytest.approx(row["ci95"], abs=6e-3)
+
+
 def test_views():
     found = rows("views")
     lines = re.findall(r"^  \| ([123]) \| (0\.\d{3} .+) \|$", PAGE, flags=re.M)
     assert len(lines) == 3
     for number, cells in lines:
-        for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
-            row = found[f"{measure}, {number} view{'s' if number != '1' else ''}"]
-            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
-            assert value == pytest.approx(row["value"], abs=6e-4)
-            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+        check_views(found, f"{number} view{'s' if number != '1' else ''}", cells)
     for number, words in ((2, "two views less one view are"), (3, "three views less one")):
         told = re.search(rf"{words} \+(0\.\d+) \[(0\.\d+), (0\.\d+)\]", PAGE)
         row = found[f"exact, {number} views less 1 view, the same pairs"]
@@ -114,11 +119,7 @@ def test_registration():
     )
     assert len(gains) == 3
     for how, cells in gains:
-        for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):
-            row = found[f"{measure}, {how}"]
-            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
-            assert value == pytest.approx(row["value"], abs=6e-4)
-            assert ends == pytest.approx(row["ci95"], abs=6e-3)
+        check_views(found, how, cells)
 
 
 def test_arrangements():

@@ -1,6 +1,5 @@
 """Examines the installation for `lifelore doctor`: packages, speed of the kernels, kernel cache and memory."""
 
-import os
 import platform
 import shutil
 import tempfile
@@ -15,6 +14,7 @@ from lifelore.core.errors import LifeloreError
 from lifelore.core.learning.curve import TOTAL
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.streams import stream
+from lifelore.core.usable_cores import usable_cores
 from lifelore.domains.worlds import make_world
 from lifelore.memory import open_memory
 from lifelore.memory.location import locate
@@ -57,7 +57,7 @@ def examine(memory: str | None = None) -> dict:
         "lifelore": version("lifelore"),
         "python": platform.python_version(),
         "system": platform.platform(terse=True),
-        "cores": len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count(),
+        "cores": usable_cores(),
         "packages": [{"name": name, "version": _version(name), "for": use} for name, use in PACKAGES.items()],
         "checks": [_kernels(), _kernel_cache(), _memory(memory), _compiler()],
     }

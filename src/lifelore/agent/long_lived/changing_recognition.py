@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge
-from lifelore.agent.long_lived.recognition import Recognition, Span
+from lifelore.agent.long_lived.recognition import Recognition, Span, with_unknown
 
 Array = NDArray[np.float64]
 
@@ -63,8 +63,8 @@ class ChangingRecognition:
         n_episodes: int,
     ) -> None:
         share = false_alarm / (1 + change * (n_episodes - 1))
-        self.known, self.change, self.unknown = knowledge.known_types(), change, unknown
-        self._law = np.append((1 - unknown) * prior, unknown) if len(prior) else np.ones(1)
+        self.known, self.change = knowledge.known_types(), change
+        self._law = with_unknown(prior, unknown)
         self._starts = [Recognition(knowledge, prior, share, unknown, seed)]
         self._first, self._weight = [0], np.ones(1)
         self._past: list[_Past] = []

@@ -65,7 +65,7 @@ class Recognition:
         self.agent: BayesianPolicyReuse | None = None
         self.alarm: NoveltyDetector | None = None
         self._place: dict[int, int] = {}
-        self._before = _with_unknown(prior, unknown)
+        self._before = with_unknown(prior, unknown)
         # Without a cause that tells types apart, such as after tasks in which nothing was tried, the prior stays.
         if (judged := self.known.judged).size:
             library = self.known.library(prior)
@@ -93,7 +93,7 @@ class Recognition:
         """Another task's recognition, with the same laws and the same threshold of the alarm."""
         other = type(self).__new__(type(self))
         other.known, other.agent, other.alarm, other._place = self.known, None, None, self._place
-        other._before = _with_unknown(prior, unknown)
+        other._before = with_unknown(prior, unknown)
         if self.agent is not None and self.alarm is not None:
             library = self.agent.library
             other.agent = BayesianPolicyReuse(library, prior=prior, dynamics=TypeDynamics.static())
@@ -106,7 +106,7 @@ class Recognition:
         """In the known types and, last, in an unknown one, (n_types + 1,)."""
         if self.agent is None or self.alarm is None:
             return self._before
-        return _with_unknown(self.agent.belief, max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0))
+        return with_unknown(self.agent.belief, max(self.alarm.probability, ALARMED if self.alarm.alarm else 0.0))
 
     def begin_episode(self) -> None:
         """Begin an episode; the type stays."""
@@ -138,6 +138,6 @@ class Recognition:
         return [Span(0, self.belief, self.alarmed)]
 
 
-def _with_unknown(known: Array, unknown: float) -> Array:
+def with_unknown(known: Array, unknown: float) -> Array:
     """A law over known types (n_types,), and an unknown type last; certainly unknown where none is known."""
     return np.append((1 - unknown) * known, unknown) if len(known) else np.ones(1)

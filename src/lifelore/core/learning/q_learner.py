@@ -1,6 +1,5 @@
 """`QLearning`: the settings of ε-greedy Q-learning, and runs of one learner or of many on tables in chunks."""
 
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -20,13 +19,10 @@ from lifelore.core.learning.q_learning import (
     uniform_rows,
 )
 from lifelore.core.mdp import Tables
+from lifelore.core.usable_cores import usable_cores
 
 CHUNK = 1_000_000
 """Steps between two checks for Ctrl-C and for `watch`: well under 0.2 s."""
-
-
-def _cores() -> int:
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @dataclass(frozen=True)
@@ -160,7 +156,7 @@ class QLearning:
             raise InputError(f"threads must be at least 1, got {threads}")
         if chunk < 1:
             raise InputError(f"chunk must be at least 1, got {chunk}")
-        threads = threads or _cores()
+        threads = threads or usable_cores()
         chunk = chunk if watch else min(chunk, CHUNK)
         rows, schedule = rows or uniform_rows(tables), self.schedule(discount)
         learners = new_learners(int(rows.q_row.max()) + 1, tables.n_actions, worlds, owns)

@@ -11,6 +11,7 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
+from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.engine.source_key import PACKAGE, foreign_modules, source_key
 
 DATA = "LIFELORE_DATA"
@@ -40,15 +41,10 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
         "commit": commit,
         "changed": changed,
         "source": source_key(module),
-        "processor": _processor(),
-        "cores": cores(),
+        "processor": processor(),
+        "cores": usable_cores(),
         "data": {name: _hash_of(Path(os.environ.get(DATA, "")) / name) for name in data},
     }
-
-
-def cores() -> int:
-    """Cores this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 @cache
@@ -80,7 +76,8 @@ def _commit() -> tuple[str | None, bool | None]:
 
 
 @cache
-def _processor() -> str:
+def processor() -> str:
+    """The processor's name, as far as the system knows it."""
     try:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:

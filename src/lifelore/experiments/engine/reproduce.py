@@ -13,9 +13,10 @@ from typing import Any
 
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
+from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.engine.cell_store import CellStore, write_atomically
 from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.provenance import cores, provenance, versions
+from lifelore.experiments.engine.provenance import provenance, versions
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.source_key import source_key
 
@@ -83,7 +84,7 @@ def reproduce(
     KeyboardInterrupt
         Ctrl-C; cells under way are finished and kept first.
     """
-    jobs = cores() if jobs is None else jobs
+    jobs = usable_cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
     if engine not in ENGINES:

@@ -14,6 +14,7 @@ from pathlib import Path
 from statistics import median
 
 from lifelore.core.protocols import Progress
+from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.bench.fleet.capacity_case import (
     TURN,
     Contexts,
@@ -50,7 +51,7 @@ def bench_capacity(repeats: int, progress: Progress, out: Path = OUT) -> dict:
         progress(done, total, label)
 
     machine = {
-        "cores": len(os.sched_getaffinity(0)),
+        "cores": usable_cores(),
         "bytes": os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"),
     }
     learners = {n: _learners(n, repeats, after) for n in LEARNERS}

@@ -73,7 +73,10 @@ def bench_soak(repeats: int, progress: Progress) -> dict[str, Any]:
         with service(empty, core) as small, service(large, core) as ours:
             first = [_loaded(small, users, 0), _loaded(ours, users, 1)]
             step("load")
-            found = [_loaded(ours, users, number + 2) for number in _counted(pieces, step)]
+            found = []
+            for number in range(pieces):
+                found.append(_loaded(ours, users, number + 2))
+                step("load")
             last = _loaded(small, users, pieces + 2)
             step("load")
         size = sum(path.stat().st_size for path in Path(folder).glob("large.db*"))
@@ -100,12 +103,6 @@ def bench_soak(repeats: int, progress: Progress) -> dict[str, Any]:
             at_most("processor time of a pair, beside an empty store", SLOWER, cpu / on_empty),
         ],
     }
-
-
-def _counted(pieces: int, step: Callable[[str], None]) -> Any:
-    for number in range(pieces):
-        yield number
-        step("load")
 
 
 def _fill(path: Path, users: int, step: Callable[[str], None]) -> None:

@@ -5,11 +5,8 @@ the timing starts. Pictures are timed one after another, whatever the number of 
 thread. The seconds of a picture are the median of some repeats. Thesis: §2.4.1.
 """
 
-import platform
 import time
 from collections.abc import Mapping
-from functools import cache
-from pathlib import Path
 from threading import Lock
 
 import numpy as np
@@ -21,6 +18,7 @@ from lifelore.domains.tabletop.tabletop import TabletopSettings, sample_scene
 from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import MIX
 from lifelore.experiments.chapter2.scoring.perception_stages import STAGES, timed_stages
+from lifelore.experiments.engine.provenance import processor
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 
@@ -96,14 +94,3 @@ def made_dense(cloud: LabelledCloud, n_points: int, rng: np.random.Generator) ->
     points[len(rest) :] += rng.normal(0, JITTER, (len(rows) - len(rest), 3))
     colours = None if cloud.colours is None else cloud.colours[rows]
     return LabelledCloud(points, cloud.labels[rows], colours, cloud.camera)
-
-
-@cache
-def processor() -> str:
-    """The processor's name, as far as the system knows it."""
-    try:
-        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
-    except OSError:
-        lines = []
-    named = (line.partition(":")[2].strip() for line in lines if line.startswith("model name"))
-    return next(named, "") or platform.processor() or platform.machine()
