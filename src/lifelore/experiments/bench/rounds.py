@@ -4,6 +4,8 @@ from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 from typing import Any
 
+from lifelore.core.metrics import Estimate
+
 Rates = dict[str, list[float]]
 
 
@@ -27,6 +29,11 @@ def paired_ratio(top: Sequence[float], bottom: Sequence[float]) -> float:
 def row(name: str, value: float | None, unit: str, ratio_to: str | None = None, ratio=None) -> dict[str, Any]:
     """One line of the table; `ratio` is this row's value over that of the row `ratio_to`."""
     return {"name": name, "value": value, "unit": unit, "ratio_to": ratio_to, "ratio": ratio}
+
+
+def estimated_row(name: str, estimate: Estimate, unit: str) -> dict[str, Any]:
+    """One line of the table from an estimate, with its interval and the number of values behind it."""
+    return row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
 
 
 def at_least(name: str, goal: float, measured: float | None) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.experiments.bench.action import deep_learning
 from lifelore.experiments.bench.action.deep_worlds import crossing_prior, layout_seed, new_world, one_layout
-from lifelore.experiments.bench.rounds import at_least, row
+from lifelore.experiments.bench.rounds import at_least, estimated_row
 
 WORLD = "SimpleCrossingS9N1"
 MASKABLE_PPO, DQN = "MaskablePPO", "DQN"
@@ -144,11 +144,11 @@ def layout_rows(runs: Mapping[Case, Mapping[str, Sequence[Mapping[str, Any]]]]) 
         for measure, unit in (("score at the end", "of optimal"), ("goals reached while learning", "goals")):
             values = {who: _values(of, measure) for who, of in by_who.items()}
             for who, of in values.items():
-                rows.append(_row(f"{case} {who}, {measure}", mean_estimate(of), unit))
+                rows.append(estimated_row(f"{case} {who}, {measure}", mean_estimate(of), unit))
             gained = values[PRIOR] - values[PLAIN]
-            rows.append(_row(f"{case}, {measure}, gain by prior, mean", mean_estimate(gained), unit))
+            rows.append(estimated_row(f"{case}, {measure}, gain by prior, mean", mean_estimate(gained), unit))
             middle = interquartile_mean_estimate(gained[:, None])
-            rows.append(_row(f"{case}, {measure}, gain by prior, interquartile mean", middle, unit))
+            rows.append(estimated_row(f"{case}, {measure}, gain by prior, interquartile mean", middle, unit))
     return rows
 
 
@@ -156,8 +156,3 @@ def _values(runs: Sequence[Mapping[str, Any]], measure: str) -> np.ndarray:
     if measure.startswith("score"):
         return np.array([run["scores"][-1] for run in runs])
     return np.array([float(run["goals"]) for run in runs])
-
-
-def _row(name: str, estimate: Any, unit: str) -> dict:
-    plain = estimate.to_dict()
-    return row(name, estimate.value, unit) | {"ci95": plain["ci95"], "n": estimate.n}

@@ -17,11 +17,11 @@ from lifelore.agent.long_lived.families.factory_customers import FactoryFamily, 
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS, AgentTask
-from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
+from lifelore.core.metrics import difference_estimate, mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.factory.customer_orders import CUSTOMERS
 from lifelore.domains.task_stream import DrawnTask, TaskStream
-from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row, row
 
 Array = NDArray[np.float64]
 
@@ -174,16 +174,11 @@ def _rows(world: str, lives: dict[str, list[dict[str, Array]]]) -> list[dict]:
         for name, own in lives.items():
             missed = mean_missed(own, span)
             if had.any():
-                rows.append(_estimated(f"{world}, {span}: {name}", mean_estimate(missed[had])))
+                rows.append(estimated_row(f"{world}, {span}: {name}", mean_estimate(missed[had]), UNIT))
                 if name != FOLLOWING:
                     more = difference_estimate(missed[had], base[had])
-                    rows.append(_estimated(f"{world}, {span}: {name}, more than {FOLLOWING}", more))
+                    rows.append(estimated_row(f"{world}, {span}: {name}, more than {FOLLOWING}", more, UNIT))
     return rows
-
-
-def _estimated(name: str, estimate: Estimate) -> dict:
-    plain = estimate.to_dict()
-    return row(name, estimate.value, UNIT) | {"ci95": plain["ci95"], "n": plain["n"]}
 
 
 def _goals(missed: dict[str, dict[str, list[dict[str, Array]]]]) -> list[dict]:

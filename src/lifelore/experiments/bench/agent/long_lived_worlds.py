@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
+from lifelore.core.metrics import difference_estimate, mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.agent.world_lives import (
     AGENT_NAMES,
@@ -24,7 +24,7 @@ from lifelore.experiments.bench.agent.world_lives import (
     cases,
     live,
 )
-from lifelore.experiments.bench.rounds import at_least, row
+from lifelore.experiments.bench.rounds import at_least, estimated_row
 
 Array = NDArray[np.float64]
 
@@ -80,11 +80,11 @@ def _rows_of_halves(case: Case, lives: dict[str, list[Life]], best: Sequence[Arr
     for half, tasks in _halves(case).items():
         scratch = _missed(lives[SCRATCH], *tasks)
         possible = np.array([returns[slice(*tasks)].mean() for returns in best])
-        rows.append(_estimated(f"{case.name}, {half}: best possible return", mean_estimate(possible), "points"))
+        rows.append(estimated_row(f"{case.name}, {half}: best possible return", mean_estimate(possible), "points"))
         for name, own in lives.items():
             missed = _missed(own, *tasks)
             label = f"{case.name}, {half}: {name}"
-            line = _estimated(label, mean_estimate(missed), UNIT)
+            line = estimated_row(label, mean_estimate(missed), UNIT)
             if name != SCRATCH:
                 ratio = ratio_estimate(missed, scratch)
                 line |= {"ratio_to": f"{case.name}, {half}: {SCRATCH}", "ratio": ratio.value}
@@ -92,7 +92,7 @@ def _rows_of_halves(case: Case, lives: dict[str, list[Life]], best: Sequence[Arr
             rows.append(line)
             if name != FULL:
                 more = difference_estimate(missed, _missed(lives[FULL], *tasks))
-                rows.append(_estimated(f"{label}, more than {FULL}", more, "points"))
+                rows.append(estimated_row(f"{label}, more than {FULL}", more, "points"))
     return rows
 
 
@@ -107,22 +107,17 @@ def _rows_of_changes(case: Case, lives: dict[str, list[Life]]) -> list[dict]:
     rows = []
     for span, tasks in spans.items():
         for name, own in lives.items():
-            rows.append(_estimated(f"{case.name}, {span}: {name}", mean_estimate(_missed(own, *tasks)), UNIT))
+            rows.append(estimated_row(f"{case.name}, {span}: {name}", mean_estimate(_missed(own, *tasks)), UNIT))
             if name != FULL:
                 more = difference_estimate(_missed(own, *tasks), _missed(lives[FULL], *tasks))
-                rows.append(_estimated(f"{case.name}, {span}: {name}, more than {FULL}", more, "points"))
+                rows.append(estimated_row(f"{case.name}, {span}: {name}, more than {FULL}", more, "points"))
     noticed = mean_estimate([float(life.alarms[arrival]) for life in lives[FULL]])
     false = mean_estimate([float(life.alarms[arrival // 2 : arrival].mean()) for life in lives[FULL]])
     return [
         *rows,
-        _estimated(f"{case.name}: alarm at the first task of the late type", noticed, "share"),
-        _estimated(f"{case.name}: alarms in the quarter before", false, "share"),
+        estimated_row(f"{case.name}: alarm at the first task of the late type", noticed, "share"),
+        estimated_row(f"{case.name}: alarms in the quarter before", false, "share"),
     ]
-
-
-def _estimated(name: str, estimate: Estimate, unit: str) -> dict:
-    plain = estimate.to_dict()
-    return row(name, estimate.value, unit) | {"ci95": plain["ci95"], "n": plain["n"]}
 
 
 def _goals(case: Case, lives: dict[str, list[Life]]) -> list[dict]:

@@ -21,12 +21,12 @@ from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS, Abilities
 from lifelore.agent.long_lived.task_log import TaskLog
-from lifelore.core.metrics import Estimate, mean_estimate
+from lifelore.core.metrics import mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
 from lifelore.domains.task_stream import TaskStream
-from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row
 from lifelore.experiments.engine.cell_store import CellStore
 from lifelore.experiments.engine.source_key import source_key
 
@@ -178,21 +178,27 @@ def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
         early = [life[agent].share(slice(0, N_TASKS)) for life in lives]
         last = [life[agent].share(NEW, "last") for life in lives]
         rows += [
-            _row(f"{agent}: first episodes of the first forty tasks", mean_estimate(early), "of the best"),
-            _row(f"{agent}: first episodes on new trays", mean_estimate(shares[agent]), "of the best"),
-            _row(f"{agent}: last episodes on new trays", mean_estimate(last), "of the best"),
-            _row(f"{agent}: spills in first episodes on new trays", mean_estimate(spills[agent]), "a task"),
+            estimated_row(
+                f"{agent}: first episodes of the first forty tasks", mean_estimate(early), "of the best"
+            ),
+            estimated_row(f"{agent}: first episodes on new trays", mean_estimate(shares[agent]), "of the best"),
+            estimated_row(f"{agent}: last episodes on new trays", mean_estimate(last), "of the best"),
+            estimated_row(
+                f"{agent}: spills in first episodes on new trays", mean_estimate(spills[agent]), "a task"
+            ),
         ]
         if agent != "full":
             less = shares["full"] - shares[agent]
             rows.append(
-                _row(f"full less {agent}: first episodes on new trays", mean_estimate(less), "of the best")
+                estimated_row(
+                    f"full less {agent}: first episodes on new trays", mean_estimate(less), "of the best"
+                )
             )
     types = mean_estimate([life["full"].n_types for life in lives])
     alarms = mean_estimate([life["full"].alarms[NEW].mean() for life in lives])
     rows += [
-        _row("full: types known at the end", types, "types"),
-        _row("full: alarms on new trays", alarms, "a task"),
+        estimated_row("full: types known at the end", types, "types"),
+        estimated_row("full: alarms on new trays", alarms, "a task"),
     ]
     scratch = float(spills["scratch"].mean())
     goals = [
@@ -200,10 +206,6 @@ def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
         at_most("full: spills, of those of scratch", 0.05, float(spills["full"].mean()) / max(scratch, 1e-9)),
     ]
     return {"rows": rows, "goals": goals}
-
-
-def _row(name: str, estimate: Estimate, unit: str) -> dict[str, Any]:
-    return row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
 
 
 def curve(

@@ -42,7 +42,7 @@ from lifelore.experiments.bench.perception.shipped_relations import (
     calibration_error,
     judged_arrangement,
 )
-from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row, row
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes_folder
 from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference, score, share
 from lifelore.perception.relations.relation_classifier import shipped_model
@@ -77,7 +77,7 @@ def bench_relations(repeats: int, progress: Progress) -> dict:
     lost = _lost(tests)
     networks = {SIMULATED: tests, REAL: real}
     rows += [
-        _estimate_row(f"{SHIPPED + LOGIC}, simulated, exact lost, {way}", estimate)
+        estimated_row(f"{SHIPPED + LOGIC}, simulated, exact lost, {way}", estimate, "share")
         for way, estimate in lost.items()
     ]
     rows += [line for where, scenes in networks.items() for line in _network_rows(where, scenes)]
@@ -159,7 +159,9 @@ def _score_rows(where: str, answers: Answers) -> list[dict]:
         measures |= {
             f"exact, {name}": share(part, lambda pair: pair.exact) for name, part in apart.items() if part
         }
-        rows += [_estimate_row(f"{who}, {where}, {name}", estimate) for name, estimate in measures.items()]
+        rows += [
+            estimated_row(f"{who}, {where}, {name}", estimate, "share") for name, estimate in measures.items()
+        ]
     return rows
 
 
@@ -172,11 +174,6 @@ def _calibration_rows(where: str, answers: Answers) -> list[dict]:
         for name, part in parts.items()
         if part
     ]
-
-
-def _estimate_row(name: str, estimate: Estimate) -> dict:
-    plain = estimate.to_dict()
-    return row(name, estimate.value, "share") | {"ci95": plain["ci95"], "n": estimate.n}
 
 
 def _lost(tests: Sequence[SpoiltScene]) -> dict[str, Estimate]:
