@@ -10,16 +10,24 @@ Option = typer.Option
 
 def learn_relations(
     folder: Annotated[
-        str, typer.Argument(metavar="DIR", help="Folder with a labelled cloud for each scene: NAME.pcd, ply, npz.")
-    ],
+        str | None,
+        typer.Argument(
+            metavar="[DIR]",
+            help="Folder with a labelled cloud for each scene: NAME.pcd, ply, npz. Without it, the scenes in"
+            " memory are all.",
+        ),
+    ] = None,
     truth: Annotated[
-        str,
+        str | None,
         Option(metavar="CSV", help="Labels: columns scene, a, b, relation, confidence (3 certain … 1 doubtful)."),
-    ],
+    ] = None,
     memory: Annotated[
         str | None, Option(metavar="FILE|URL", help="Memory: SQLite file or postgresql:// URL.")
     ] = None,
-    name: Annotated[str, Option(help="Name of the model in memory.")] = "default",
+    name: Annotated[
+        str, Option(help="Name of the model in memory; scenes that memory has for this name count too.")
+    ] = "default",
+    anew: Annotated[bool, Option("--anew", help="Leave out the scenes that memory has for this name.")] = False,
     out: Annotated[
         str | None,
         Option(
@@ -51,6 +59,7 @@ def learn_relations(
     """Train a model of spatial relations on labelled scenes.
 
     Use it if the shipped model does not know your relations, objects or camera; then give the model to perceive.
+    The scenes stay in memory, so a later lesson of the same name adds to them, also one of another robot.
     """
     from lifelore.agent.perceive.learn_relations import LearnRelationsSettings
     from lifelore.agent.perceive.learn_relations import learn_relations as learn
@@ -60,7 +69,7 @@ def learn_relations(
     upwards = None if up is None else direction(up)
     declared = None if symmetric is None else tuple(symmetric)
     settings = LearnRelationsSettings(
-        folder, truth, name, method, adjacent_gap, several, declared, labels, units, upwards
+        folder, truth, name, method, adjacent_gap, several, declared, labels, units, upwards, anew
     )
     with progress_bar("learning") as progress:
         report = learn(settings, memory, out, progress, to_stderr)
@@ -71,7 +80,8 @@ def learn_relations(
     locations = " and ".join(str(place) for place in (report["memory"], report["out"]) if place)
     far = sum(report["not_near"].values())
     not_near = f"; {far} labels are of objects too far apart" if far else ""
-    print(f"learnt from {report['scenes']} scenes ({pairs}{not_near})")
+    remembered = f", {report['remembered']} of them remembered" if report["remembered"] else ""
+    print(f"learnt from {report['scenes']} scenes{remembered} ({pairs}{not_near})")
     if words := sorted(set(report["relations"]) - {"on", "adjacent", "both", "none"}):
         both_ways = [word for word in words if word in report["symmetric"]]
         print(f"words with a direction: {_listed(set(words) - set(both_ways))}; symmetric: {_listed(both_ways)}")

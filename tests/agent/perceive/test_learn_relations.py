@@ -9,13 +9,20 @@ from hypothesis import strategies as st
 
 from lifelore.agent.perceive.learn_relations import (
     LearnRelationsSettings,
+    learn_relations,
+)
+from lifelore.agent.perceive.relation_memory import (
+    EXAMPLES,
     as_bytes,
     as_words,
-    learn_relations,
-    recall_relations,
+    model_key,
+    recall_model,
+    recall_scenes,
+    scenes_not_learnt,
 )
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.protocols import Record
 from lifelore.memory import open_memory
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 
@@ -60,16 +67,16 @@ def test_what_is_learnt_is_recalled_bit_for_bit_and_the_newest_wins(folder):
     assert steps[-1][:2] == (3, 3)
     written = RelationClassifier.load(folder / "m.npz")
     with open_memory(folder / "m.db") as memory:
-        recalled = recall_relations(memory, "kitchen")
+        recalled = recall_model(memory, "kitchen")
     one = cloud(PLACES["stack"])
     assert recalled.beliefs(one) == written.beliefs(one)
     assert {(r.a, r.b, r.relation) for r in recalled.predict(one)} >= {(3, 2, "on"), (2, TABLE, "on")}
     shorter = LearnRelationsSettings(str(folder), str(folder / "truth.csv"), "kitchen", method="displacement")
     learn_relations(shorter, str(folder / "m.db"))
     with open_memory(folder / "m.db") as memory:
-        assert recall_relations(memory, "kitchen").method == "displacement"
+        assert recall_model(memory, "kitchen").method == "displacement"
         with pytest.raises(NotFoundError, match="kitchen"):
-            recall_relations(memory, "cellar")
+            recall_model(memory, "cellar")
 
 
 @pytest.mark.slow
@@ -160,3 +167,68 @@ def test_bytes_there_and_back_whatever_lies_behind(content, older):
     words = as_words(content)
     assert words.dtype == np.int64
     assert as_bytes(np.concatenate([words, as_words(older)])) == content
+
+
+def lesson(folder, scenes: str, file: str, **more) -> LearnRelationsSettings:
+    (folder / file).write_text("scene,a,b,relation,confidence\n" + scenes)
+    return LearnRelationsSettings(str(folder), str(folder / file), "kitchen", **more)
+
+
+@pytest.mark.slow
+def test_lessons_of_one_name_add_up_and_robots_share_them(folder):
+    """Two robots learn a part each; their merged memory learns what one robot with all scenes learns."""
+    first = lesson(folder, "stack,3,2,on,3\nstack,2,1,on,3\nstack,3,1,none,3\n", "first.csv")
+    second = lesson(folder, "near,2,3,adjacent,3\nfar,2,3,none,2\n", "second.csv")
+    both = lesson(folder, TRUTH.partition("\n")[2], "both.csv")
+    assert learn_relations(first, str(folder / "rosie.db"))["remembered"] == 0
+    learn_relations(second, str(folder / "karl.db"))
+    learn_relations(both, str(folder / "alone.db"))
+    with open_memory(folder / "rosie.db") as memory:
+        memory.merge_many([str(folder / "karl.db")])
+        assert scenes_not_learnt(memory, "kitchen") == 1  # the newest model, karl's, knows two of the three
+        assert len(recall_scenes(memory, "kitchen")) == 3
+    report = learn_relations(LearnRelationsSettings(name="kitchen"), str(folder / "rosie.db"))
+    assert (report["scenes"], report["remembered"]) == (3, 3)
+    assert report["pairs"] == {"adjacent": 1, "none": 2, "on": 2}
+    one = cloud(PLACES["stack"])
+    with open_memory(folder / "rosie.db") as fleet, open_memory(folder / "alone.db") as alone:
+        assert scenes_not_learnt(fleet, "kitchen") == 0
+        found = [(scene.digest, scene.truth) for scene in recall_scenes(fleet, "kitchen")]
+        assert found == [(scene.digest, scene.truth) for scene in recall_scenes(alone, "kitchen")]
+        assert {r.relation for r in recall_model(fleet, "kitchen").predict(one)} >= {"on", "none"}
+
+
+@pytest.mark.slow
+def test_a_scene_that_is_labelled_again_replaces_its_labels_and_anew_leaves_the_others_out(folder):
+    place = str(folder / "m.db")
+    learn_relations(lesson(folder, TRUTH.partition("\n")[2], "first.csv"), place)
+    again = lesson(folder, "near,2,3,touching,3\n", "again.csv")
+    report = learn_relations(again, place)
+    assert (report["scenes"], report["remembered"]) == (3, 2)
+    assert report["relations"] == ["none", "on", "touching"]
+    with open_memory(place) as memory:
+        said = {label.relation for scene in recall_scenes(memory, "kitchen") for label in scene.truth}
+    assert said == {"none", "on", "touching"}
+    alone = learn_relations(replace(again, anew=True), place)
+    assert (alone["scenes"], alone["remembered"], alone["relations"]) == (1, 0, ["touching"])
+
+
+def test_there_must_be_something_to_learn_from(folder):
+    with pytest.raises(InputError, match="folder and truth belong together"):
+        LearnRelationsSettings(str(folder))
+    with pytest.raises(InputError, match="anew"):
+        LearnRelationsSettings(anew=True)
+    with pytest.raises(InputError, match="no scenes of 'attic'"):
+        learn_relations(LearnRelationsSettings(name="attic"), str(folder / "m.db"))
+    with pytest.raises(InputError, match="where no memory is opened"):
+        learn_relations(LearnRelationsSettings(), out=str(folder / "m.npz"))
+
+
+def test_a_damaged_scene_is_refused_in_one_line(folder):
+    place = str(folder / "m.db")
+    with open_memory(place) as memory:
+        words = as_words(b"not a scene")
+        record = Record(EXAMPLES, f"{model_key('kitchen')}/0", 1, "newest", np.arange(len(words)), words)
+        memory.contribute("relations", [record], process="p", seq=0, task={})
+    with pytest.raises(InputError, match="a labelled scene of 'kitchen' in memory is no labelled scene"):
+        learn_relations(LearnRelationsSettings(name="kitchen"), place)

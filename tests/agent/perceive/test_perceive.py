@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lifelore.agent.perceive.learn_relations import store_model
 from lifelore.agent.perceive.perceive import STAGES, PerceiveSettings, perceive
+from lifelore.agent.perceive.relation_memory import store_model
 from lifelore.agent.perceive.scene_files import domain_path
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.memory import open_memory

@@ -1,38 +1,38 @@
-"""Trains a relation model on labelled scenes and stores it in memory or in a file (`lifelore learn-relations`)."""
+"""Trains a relation model on labelled scenes and stores it in memory or in a file (`lifelore learn-relations`).
 
-import hashlib
+In memory, the scenes stay beside the model; later lessons of the same name, also of other robots, add to them.
+"""
+
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
-from uuid import uuid4
 
-import numpy as np
-from numpy.typing import NDArray
-
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.agent.perceive.relation_memory import (
+    DEFAULT_NAME,
+    LabelledScene,
+    joined,
+    recall_scenes,
+    store_model,
+)
+from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
-from lifelore.core.protocols import Progress, Record
+from lifelore.core.protocols import Progress
 from lifelore.core.relations import ADJACENT_GAP, PairLabel
-from lifelore.memory import Memory, open_memory
+from lifelore.memory import open_memory
+from lifelore.memory.location import locate
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.label_rule import PARTS_NOTICE
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.pairs.scene_pairs import ScenePairs, scene_pairs
 from lifelore.perception.relations.relation_classifier import LEAST_CONFIDENCE, RelationClassifier
 from lifelore.perception.relations.relation_model_file import SUFFIX as MODEL_SUFFIX
-from lifelore.perception.relations.relation_model_file import (
-    check_model_path,
-    model_bytes,
-    model_from_bytes,
-)
+from lifelore.perception.relations.relation_model_file import check_model_path
 from lifelore.perception.relations.relation_truth import read_planes, read_relations
 from lifelore.perception.segmentation.table_frame import Up, to_scene
 
-KIND, VERSION = "relation_model", 1
-DEFAULT_NAME = "default"
 SUFFIXES = (".pcd", ".ply", ".npz", ".npy")
 
 
@@ -42,10 +42,11 @@ class LearnRelationsSettings:
 
     Parameters
     ----------
-    folder : str
-        Folder with a cloud of each scene, ``NAME.pcd`` (or ply, npz, npy), and optionally `planes.csv`.
-    truth : str
-        CSV with columns scene, a, b, relation, confidence.
+    folder : str, optional
+        Folder with a cloud of each scene, ``NAME.pcd`` (or ply, npz, npy), and optionally `planes.csv`; without
+        it, the scenes that memory has for models of this name are all.
+    truth : str, optional
+        CSV with columns scene, a, b, relation, confidence; given together with `folder`.
     name : str
         Name of the model in memory; must not end in `MODEL_SUFFIX`, which means a file.
     method : {"trees", "displacement"}
@@ -61,15 +62,17 @@ class LearnRelationsSettings:
     up : "table", "z", or (3,) numbers, optional
         Upward direction in each cloud's frame, see `to_scene`; default: from `planes.csv`, else the table's
         normal.
+    anew : bool
+        Whether to leave out the scenes that memory has for models of this name.
 
     Raises
     ------
     InputError
-        The name means a file.
+        The name means a file; of `folder` and `truth` one is missing; there is nothing to learn from.
     """
 
-    folder: str
-    truth: str
+    folder: str | None = None
+    truth: str | None = None
     name: str = DEFAULT_NAME
     method: str = "trees"
     adjacent_gap: float = ADJACENT_GAP
@@ -78,8 +81,16 @@ class LearnRelationsSettings:
     labels: str = "auto"
     units: str = "m"
     up: Up | None = None
+    anew: bool = False
 
     def __post_init__(self) -> None:
+        if (self.folder is None) != (self.truth is None):
+            missing = "truth" if self.truth is None else "folder"
+            raise InputError(f"folder and truth belong together, but {missing} is missing; give both or neither")
+        if self.folder is None and self.anew:
+            raise InputError(
+                "anew leaves the remembered scenes out, but there are no others; give a folder of scenes"
+            )
         if self.name.endswith(MODEL_SUFFIX):
             raise InputError(
                 f"name must not end in {MODEL_SUFFIX}, which means a file, got '{self.name}'; use out"
@@ -95,21 +106,23 @@ def learn_relations(
 ) -> dict[str, Any]:
     """Train a model on a folder of scenes; store it in memory, and in the file `out` if it is given.
 
-    With `out` and without `memory`, no memory is opened. `notice` is called with one line for the user if labels
-    were interpreted as parts of objects.
+    With `out` and without `memory`, no memory is opened. Otherwise the model also learns from the scenes that
+    memory has for models of this name, and the new scenes stay there. A scene of a cloud that was there before
+    replaces its labels. `notice` is called with one line for the user if labels were interpreted as parts of
+    objects.
 
     Returns
     -------
     dict
-        ``name``, ``scenes``, ``pairs`` (number of labels used, by relation), ``not_near`` (number of labels with
-        enough confidence but of objects too far apart, by relation), ``relations``, ``symmetric``,
-        ``method``, ``adjacent_gap``, ``out``, ``memory``.
+        ``name``, ``scenes``, ``remembered`` (number of the scenes that came from memory alone), ``pairs`` (number
+        of labels used, by relation), ``not_near`` (number of labels with enough confidence but of objects too far
+        apart, by relation), ``relations``, ``symmetric``, ``method``, ``adjacent_gap``, ``out``, ``memory``.
 
     Raises
     ------
     InputError
-        A file breaks its rule, a scene of the truth has no cloud, or a label names an object that the cloud does
-        not have.
+        A file breaks its rule, a scene of the truth has no cloud, a label names an object that the cloud does not
+        have, or no folder is given and memory has no scene of this name.
     """
     model = RelationClassifier(
         settings.method,
@@ -119,28 +132,47 @@ def learn_relations(
     )
     if out is not None:
         _check_out(out)
-    truths = read_relations(settings.truth)
-    _check_symmetric(settings.symmetric or (), truths)
-    scenes, n_from_parts = read_scenes(settings, truths, progress)
-    model.fit_pairs(scenes, list(truths.values()))
-    report = _report(settings, model, truths)
+    remembers = memory is not None or out is None
+    if settings.truth is None and not remembers:
+        raise InputError(
+            "folder must be given where no memory is opened; name a memory, or give a folder of scenes"
+        )
+    truths = {} if settings.truth is None else read_relations(settings.truth)
+    pairs, n_from_parts = read_scenes(settings, truths, progress)
+    latest = [LabelledScene(one, truth) for one, truth in zip(pairs, truths.values(), strict=True)]
+    earlier = _remembered(memory, settings.name) if remembers and not settings.anew else []
+    scenes = joined(earlier, latest)
+    if not scenes:
+        raise InputError(f"memory has no scenes of '{settings.name}' to learn from; give a folder of scenes")
+    _check_symmetric(settings.symmetric or (), [scene.truth for scene in scenes])
+    model.fit_pairs([scene.pairs for scene in scenes], [scene.truth for scene in scenes])
+    report = _report(settings, model, scenes, len({scene.digest for scene in latest}))
     about = {key: report[key] for key in ("name", "scenes", "pairs", "method", "relations")}
     about["lifelore"] = version("lifelore")
     if out is not None:
         model.save(out, about)
     where = None
-    if memory is not None or out is None:
+    if remembers:
         with open_memory(memory) as opened:
             where = opened.location
-            store_model(opened, settings.name, model, about)
+            store_model(opened, settings.name, model, about, latest)
     if notice is not None and n_from_parts and settings.labels == "auto":
-        notice(f"the labels of {n_from_parts} of {len(scenes)} clouds {PARTS_NOTICE}")
+        notice(f"the labels of {n_from_parts} of {len(truths)} clouds {PARTS_NOTICE}")
     return {**report, "out": out, "memory": where}
 
 
-def _check_symmetric(symmetric: Sequence[str], truths: dict[str, tuple[PairLabel, ...]]) -> None:
+def _remembered(memory: str | None, name: str) -> list[LabelledScene]:
+    """The scenes in a memory; a memory is not made before there is a model to store."""
+    place = locate(memory)
+    if isinstance(place, Path) and not place.exists():
+        return []
+    with open_memory(memory, create=False) as opened:
+        return recall_scenes(opened, name)
+
+
+def _check_symmetric(symmetric: Sequence[str], truths: Sequence[Sequence[PairLabel]]) -> None:
     """Refuse a declared name that no label has."""
-    known = {label.relation for truth in truths.values() for label in truth}
+    known = {label.relation for truth in truths for label in truth}
     if unknown := sorted(set(symmetric) - known):
         raise InputError(
             f"symmetric must name relations of the labels ({', '.join(sorted(known))}), got {', '.join(unknown)}"
@@ -157,7 +189,7 @@ def read_scenes(
     settings: LearnRelationsSettings, truths: dict[str, tuple[PairLabel, ...]], progress: Progress | None = None
 ) -> tuple[list[ScenePairs], int]:
     """Near pairs of the cloud of each scene in the truths, and the number of clouds labelled by parts."""
-    folder = Path(settings.folder)
+    folder = Path(settings.folder or ".")
     planes_file = folder / "planes.csv"
     planes = read_planes(planes_file) if settings.up is None and planes_file.is_file() else {}
     paths = [_cloud_of(folder, scene) for scene in truths]
@@ -202,15 +234,16 @@ def _check_labels(scene: str, truth: Sequence[PairLabel], present: set[int]) -> 
 
 
 def _report(
-    settings: LearnRelationsSettings, model: RelationClassifier, truths: dict[str, tuple[PairLabel, ...]]
+    settings: LearnRelationsSettings, model: RelationClassifier, scenes: Sequence[LabelledScene], n_latest: int
 ) -> dict[str, Any]:
     labelled = Counter(
-        label.relation for truth in truths.values() for label in truth if label.confidence >= LEAST_CONFIDENCE
+        label.relation for scene in scenes for label in scene.truth if label.confidence >= LEAST_CONFIDENCE
     )
     learnt = Counter(model.learnt_from_)
     return {
         "name": settings.name,
-        "scenes": len(truths),
+        "scenes": len(scenes),
+        "remembered": len(scenes) - n_latest,
         "pairs": {name: learnt[name] for name in model.names_},
         "not_near": dict(sorted((labelled - learnt).items())),
         "relations": list(model.names_),
@@ -218,48 +251,3 @@ def _report(
         "method": model.method,
         "adjacent_gap": model.vocabulary.adjacent_gap,
     }
-
-
-def store_model(memory: Memory, name: str, model: RelationClassifier, about: dict[str, Any]) -> None:
-    """Store a model in memory under a name; a newer model replaces it."""
-    words = as_words(model_bytes(model.to_model(), about))
-    record = Record(
-        KIND, model_key(name), VERSION, "newest", np.arange(len(words)), words, {**about, "name": name}
-    )
-    memory.contribute("relations", [record], process=f"learn-relations {uuid4().hex}", seq=0, task=about)
-
-
-def recall_relations(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassifier:
-    """The newest model of this name in memory.
-
-    Raises
-    ------
-    NotFoundError
-        There is no such model.
-    """
-    record = memory.recall(KIND, model_key(name), VERSION)
-    if record is None:
-        known = sorted(str(about.get("name")) for _, _, about in memory.keys(KIND))
-        hint = f"it has {', '.join(known)}" if known else "it has none; `lifelore learn-relations` trains one"
-        raise NotFoundError(f"memory has no relation model '{name}': {hint}")
-    stored = model_from_bytes(as_bytes(record.values), f"the relation model '{name}' in memory")
-    return RelationClassifier.from_model(stored)
-
-
-def model_key(name: str) -> str:
-    """The key of a model name in memory."""
-    return hashlib.sha256(name.encode()).hexdigest()[:32]
-
-
-def as_words(content: bytes) -> NDArray[np.int64]:
-    """Bytes as 64-bit integers for a record; the first integer is the number of bytes.
-
-    A shorter model does not overwrite the end of a longer one, so the reader needs the length.
-    """
-    padded = content + bytes(-len(content) % 8)
-    return np.concatenate([[len(content)], np.frombuffer(padded, "<i8")]).astype(np.int64)
-
-
-def as_bytes(words: NDArray[np.int64]) -> bytes:
-    """Bytes of the integers of `as_words`."""
-    return words[1:].astype("<i8").tobytes()[: int(words[0])]

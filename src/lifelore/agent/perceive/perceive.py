@@ -169,7 +169,7 @@ def perceive(
     files = SceneFiles(pddl, dot, plot)
     check_goal(settings, pddl)
     check_scene_files(files, files_read([source], settings))
-    model = None if settings.model is None else model_of(settings)
+    model = None if settings.model is None else model_of(settings, notice)
     return perceived(source, model, settings, files, progress, notice)
 
 
@@ -246,15 +246,18 @@ def read_scene(source: Source, settings: PerceiveSettings) -> PointCloud:
     return cloud
 
 
-def model_of(settings: PerceiveSettings) -> "RelationClassifier":
-    """Load the relation model of the settings; a memory is only read."""
+def model_of(settings: PerceiveSettings, notice: Callable[[str], None] | None = None) -> "RelationClassifier":
+    """Load the relation model of the settings; a memory is only read.
+
+    `notice` is called with one line if memory has labelled scenes that the model has not learnt from.
+    """
     from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 
     if settings.model is None:
         return shipped_model()
     if is_file_name(settings.model):
         return RelationClassifier.load(settings.model)
-    from lifelore.agent.perceive.learn_relations import recall_relations
+    from lifelore.agent.perceive.relation_memory import recall_model, scenes_not_learnt
     from lifelore.memory import open_memory
     from lifelore.memory.location import locate
 
@@ -265,4 +268,10 @@ def model_of(settings: PerceiveSettings) -> "RelationClassifier":
             " `lifelore learn-relations` trains one, and a model in a file is called NAME.npz"
         )
     with open_memory(settings.memory, read_only=True) as memory:
-        return recall_relations(memory, settings.model)
+        model = recall_model(memory, settings.model)
+        if notice is not None and (new := scenes_not_learnt(memory, settings.model)):
+            notice(
+                f"memory has {new} labelled scenes that the model '{settings.model}' has not learnt from:"
+                f" lifelore learn-relations --name {settings.model}"
+            )
+        return model

@@ -88,7 +88,7 @@ def perceive_many(
         check_names(SceneFiles(pddl, dot, plot))
         _check_equal_names(sources)
     check_files_of_scenes(files, files_read(sources, settings))
-    model = model_of(settings)
+    model = model_of(settings, notice)
 
     def each() -> Iterator[Entry]:
         for number, (source, own) in enumerate(zip(sources, files, strict=True)):
@@ -144,7 +144,7 @@ def perceive_folder(
     if pddl or dot or plot:
         check_names(SceneFiles(pddl, dot, plot))
     check_scene_files(named_files(NAME, pddl, dot, plot), files_read([], settings))
-    model = model_of(settings)
+    model = model_of(settings, notice)
     arrivals = new_clouds(
         folder, lambda path: read_cloud(path, units=settings.units, labels=settings.labels), stop
     )
