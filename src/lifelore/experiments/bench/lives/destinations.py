@@ -3,7 +3,8 @@
 `TASKS` tasks in each generated office of a round. Goals are drawn from `PLACES` hidden destinations, all alike or
 by Zipf's law, and starts from all places; the map is known. Every method finds the goals before it in the same
 tasks. Steps are those until the goal is entered, the means are over the last half of the tasks, and intervals
-resample offices. The last method knows all destinations and how often each is the goal: no order is better.
+resample offices. The last method knows all destinations and how often each is the goal: no order is better. The one
+before it knows this of the destinations where a goal was found, and that the others exist: no learner is better.
 """
 
 from pathlib import Path
@@ -32,15 +33,17 @@ LAWS = {"uniform": 0.0, "Zipf": 1.0}
 """Exponent of the probabilities of the destinations by rank."""
 NEVER = 1e9
 """Steps of a tour that no search prefers."""
-NOTHING, NEAREST, REUSE, EXACT, BEST = (
+NOTHING, NEAREST, REUSE, EXACT, TOLD, BEST = (
     "tour of all places",
     "tour of the remembered destinations",
     "policy reuse by probability a step",
     "policy reuse in the exact order",
+    "exact search, frequencies known",
     "exact search, all known",
 )
 RULES = {NEAREST: by_nearness, REUSE: by_rate, EXACT: by_exact_search}
 OUT = Path("results")
+METHODS = (NOTHING, *RULES, TOLD, BEST)
 MOST_RATIO = 1.25
 """Most steps of policy reuse in the exact order, as ratio to the exact search that knows all."""
 
@@ -49,13 +52,13 @@ def bench_destinations(repeats: int, progress: Progress, out: Path = OUT) -> dic
     """Rows and goals; see `lifelore.experiments.bench.bench`. The figure is written with three repeats or more."""
     rows, goals = [], []
     for number, (law, exponent) in enumerate(LAWS.items()):
-        found: dict[str, list[float]] = {name: [] for name in (NOTHING, *RULES, BEST)}
+        found: dict[str, list[float]] = {name: [] for name in METHODS}
         for seed in range(repeats):
             for name, steps in _office(seed, law, exponent).items():
                 found[name].append(float(np.mean(steps[TASKS // 2 :])))
             progress(number * repeats + seed + 1, len(LAWS) * repeats, f"{law}, office {seed}")
         rows += _rows(law, found)
-        for other, most in ((BEST, MOST_RATIO), (NEAREST, 1.0)):
+        for other, most in ((BEST, MOST_RATIO), (TOLD, MOST_RATIO), (NEAREST, 1.0)):
             ratio = ratio_estimate(found[EXACT], found[other]).value
             goals.append(at_most(f"{EXACT} / {other}, {law}", most, ratio))
     if repeats >= 3:
@@ -68,7 +71,7 @@ def _draw(rows: list[dict], out: Path) -> None:
     from lifelore.figures.style import save_figure
 
     out.mkdir(parents=True, exist_ok=True)
-    save_figure(draw_destinations((NOTHING, *RULES, BEST), tuple(LAWS), rows), out / "bench_destinations.png")
+    save_figure(draw_destinations(METHODS, tuple(LAWS), rows), out / "bench_destinations.png")
 
 
 def _rows(law: str, found: dict[str, list[float]]) -> list[dict]:
@@ -108,12 +111,14 @@ def _office(seed: int, law: str, exponent: float) -> dict[str, NDArray[np.float6
                 tried = remembered[RULES[name](_between(steps, remembered, start), likely, new, _tour(known))]
             results[name][task] = _time(known, steps, tried, start, goal)
             counts.found(goal)
-    results[BEST] = np.array(
-        [
-            _time(known, steps, places[by_exact_search(_between(steps, places, s), chance, 0.0, NEVER)], s, g)
-            for s, g in zip(starts.tolist(), goals.tolist(), strict=True)
-        ]
-    )
+    results[TOLD], results[BEST] = np.empty(TASKS), np.empty(TASKS)
+    for task, (start, goal) in enumerate(zip(starts.tolist(), goals.tolist(), strict=True)):
+        met = np.isin(places, goals[:task])
+        for name, has, tour in ((TOLD, met, _tour(known)), (BEST, np.ones(PLACES, bool), NEVER)):
+            order = by_exact_search(
+                _between(steps, places[has], start), chance[has], float(chance[~has].sum()), tour
+            )
+            results[name][task] = _time(known, steps, places[has][order], start, goal)
     return results
 
 
