@@ -3,8 +3,9 @@
 `TASKS` tasks in each generated office of a round. Goals are drawn from `PLACES` hidden destinations, all alike or
 by Zipf's law, and starts from all places; the map is known. Every method finds the goals before it in the same
 tasks. Steps are those until the goal is entered, the means are over the last half of the tasks, and intervals
-resample offices. The last method knows all destinations and how often each is the goal: no order is better. The one
-before it knows this of the destinations where a goal was found, and that the others exist: no learner is better.
+resample offices. The last method knows all destinations and how often each is the goal: no order is better. The
+one before it knows this of the destinations where a goal was found, and how often it is elsewhere: no learner is
+better.
 """
 
 from pathlib import Path
@@ -59,8 +60,9 @@ def bench_destinations(repeats: int, progress: Progress, out: Path = OUT) -> dic
             progress(number * repeats + seed + 1, len(LAWS) * repeats, f"{law}, office {seed}")
         rows += _rows(law, found)
         for other, most in ((BEST, MOST_RATIO), (TOLD, MOST_RATIO), (NEAREST, 1.0)):
-            ratio = ratio_estimate(found[EXACT], found[other]).value
-            goals.append(at_most(f"{EXACT} / {other}, {law}", most, ratio))
+            name, ratio = f"{EXACT} / {other}, {law}", ratio_estimate(found[EXACT], found[other])
+            rows.append(row(name, ratio.value, "") | {"ci95": ratio.to_dict()["ci95"]})
+            goals.append(at_most(name, most, ratio.value))
     if repeats >= 3:
         _draw(rows, out)
     return {"rows": rows, "goals": goals}
