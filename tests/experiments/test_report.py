@@ -60,6 +60,19 @@ def test_a_second_reading_was_filed_before_the_run_that_it_judges(result):
     assert git("merge-base", "--is-ancestor", last_change, made["commit"]).returncode == 0
 
 
+def test_the_index_says_of_every_claim_what_holds_and_why_some_cannot_be_told():
+    index = render_pages(RESULTS)["index.md"]
+    sentences, _, rest = index.partition("## Claims without an answer, and why")
+    for result in read_results(RESULTS):
+        claim = claim_of(result["claim"])
+        assert sentences.count(claim.sentence) == 1
+        chapter = sentences.partition(f"(chapter{claim.id[1]}.md)\n")[2]
+        verdict = chapter.partition(claim.sentence)[0].rpartition("\n**")[2].partition("**\n")[0]
+        assert verdict.lower() == (result.get("second") or result)["verdict"]
+        if result["verdict"] == "cannot be tested":
+            assert f"#{claim.id.lower().replace('.', '-')}): {claim.ran}" in rest
+
+
 def test_every_claim_that_is_built_has_a_committed_result():
     assert [result["claim"] for result in read_results(RESULTS)] == list(built_ids())
 
@@ -74,8 +87,10 @@ def test_pages_of_a_quick_run(tmp_path):
     assert f"**{result['verdict']} (quick run)** |" in index
     assert "55 of 56 claims have no result yet" in index
     second = result["second"]["verdict"]
-    assert f"**{second.capitalize()}**; in the first reading: {result['verdict']}. Fig 3.1" in page
+    assert f"**{second.capitalize()}** (first reading: {result['verdict']}). Fig 3.1." in page
     assert "| headline | no useful action collides | at most 0 |" in page
+    assert f"- [C3.1](chapter3.md#c3-1) {claim_of('C3.1').sentence}" in index
+    assert "- C3.2: built, its full run has not been made yet." in index
     for condition in claim_of("C3.1").predicate.conditions:
         assert f"| {condition.words} | " in page
         assert number_in_words(result["measured"][condition.measure]) in page

@@ -1,5 +1,6 @@
 """Measures of C3.9 from made-up tasks, by hand, and a few small tasks."""
 
+import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
@@ -115,9 +116,12 @@ def test_a_small_run_agrees_with_an_agent_of_its_own():
 def test_the_figure_is_drawn_from_rows_alone():
     results = made_up()
     result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, results)), "rows": rows(SETTINGS, results)}
-    learnt, exact, first, last = CLAIM.draw(result).axes
-    assert learnt.get_title(loc="left") == "policies counted: learnt"
-    assert len(exact.lines) == 2 * len(METHODS) + 1
+    learnt, exact, learnt_last, exact_last, first, last = CLAIM.draw(result).axes
+    assert learnt.get_title(loc="left") == "learnt: first episode"
+    assert exact_last.get_title(loc="left") == f"exact: episode {SETTINGS['episodes']}"
+    assert [len(axes.lines) for axes in (learnt, exact, learnt_last)] == [len(METHODS) + 1] * 3
+    # The last episodes have a scale of their own, on which they can be told apart.
+    assert np.ptp(exact_last.get_ylim()) < np.ptp(exact.get_ylim())
     assert [text.get_text() for text in first.texts] == ["−9.0", "−4.0", "−3.5"] * 2
     assert [text.get_text() for text in last.texts] == ["−0.1"] * 6
 

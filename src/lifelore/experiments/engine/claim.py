@@ -33,7 +33,7 @@ MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
 FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
-OPTIONAL = {"limits", "named", "timed", "data", "second"}
+OPTIONAL = {"limits", "named", "timed", "data", "second", "sentence", "more"}
 """Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
@@ -77,6 +77,10 @@ class Claim:
         ``seconds`` may differ then; no other may.
     second : SecondReading, optional
         A second reading of the verdict.
+    sentence : str
+        What the claim says in one plain sentence, true or false, for the list of all claims.
+    more : str
+        What else was run, and choices; folded on the page.
     """
 
     id: str
@@ -99,6 +103,8 @@ class Claim:
     data: tuple[str, ...] = ()
     second: SecondReading | None = None
     shown_by: Mapping[str, str] = field(default_factory=dict)
+    sentence: str = ""
+    more: str = ""
 
     @classmethod
     def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
@@ -143,6 +149,8 @@ class Claim:
             named=tuple(data.get("named", ())),
             timed=data.get("timed", False),
             data=tuple(data.get("data", ())),
+            sentence=data.get("sentence", data["title"]),
+            more=data.get("more", ""),
             second=SecondReading.from_data(data["second"], predicate) if "second" in data else None,
             **{name: functions[0] for name, functions in found.items() if functions},
         )

@@ -12,8 +12,10 @@ from typing import NamedTuple
 
 from lifelore.core.errors import NotFoundError
 from lifelore.experiments.engine.cell_store import write_atomically
+from lifelore.experiments.engine.claim_section import anchor, verdict_now
+from lifelore.experiments.engine.index_page import CHAPTERS
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.report import CHAPTERS, read_results
+from lifelore.experiments.engine.report import read_results
 
 INTRODUCTION = """# Gallery
 
@@ -100,9 +102,7 @@ def _claim_figures(docs: Path) -> Iterator[Figure]:
     for result in read_results(results):
         claim, number = result["claim"], result["claim"][1]
         page = f"reproduction/chapter{number}.md"
-        link = f"[{claim}]({page}#{claim.lower().replace('.', '-')})"
-        verdict = (result.get("second") or result)["verdict"]
-        words = f"{link} {claim_of(claim).title}: {verdict}"
+        words = f"[{claim}]({page}#{anchor(claim)}) {claim_of(claim).title}: {verdict_now(result)}"
         yield Figure(results / claim / "figure.png", f"[{CHAPTERS[number]}]({page})", words)
 
 

@@ -16,10 +16,12 @@ from lifelore.figures.style import INK, PAPER, house_style, new_figure
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
-_SIZE = (480, 360)
+_SIZE = (640, 640)
 """Pixels of a picture."""
-_WIDE, _HIGH, _CAPTION = 2.6, 1.95, 0.42
-"""Inches."""
+_WIDE, _CAPTION = 2.2, 0.42
+"""Inches: of a picture, and of its caption's height."""
+_ROOM = 14
+"""Pixels about the objects of all pictures, to which these are cut."""
 
 
 def draw_cloud_sequence(
@@ -53,25 +55,39 @@ def draw_cloud_sequence(
     camera = camera_of(clouds[0], _SIZE, also)
     columns = min(columns, len(clouds))
     rows = -(-len(clouds) // columns)
+    images = [render_cloud(cloud, camera, palette) for cloud in clouds]
+    left, right, top, bottom = _window([image.labels for image in images])
+    high = _WIDE * (bottom - top) / (right - left)
     with house_style():
-        figure = new_figure(columns * _WIDE, rows * (_HIGH + _CAPTION))
+        figure = new_figure(columns * _WIDE, rows * (high + _CAPTION))
         grid = figure.subplots(rows, columns, squeeze=False).ravel()
         for axes in grid[len(clouds) :]:
             axes.set_visible(False)
-        for axes, cloud, caption in zip(grid, clouds, captions, strict=False):
-            image = render_cloud(cloud, camera, palette)
+        for axes, cloud, image, caption in zip(grid, clouds, images, captions, strict=False):
             axes.imshow(image.colours, interpolation="bilinear")
+            axes.set(xlim=(left, right), ylim=(bottom, top))
             axes.set_axis_off()
             axes.set_title(caption, fontsize=8, loc="left")
             for label in np.intersect1d(cloud.objects, image.labels).tolist():
-                right, down = _widest_place(image.labels == label)
+                x, y = _widest_place(image.labels == label)
                 if label == marked:
-                    axes.plot(right, down, marker="*", markersize=17, color=PAPER, markeredgecolor=INK)
+                    axes.plot(x, y, marker="*", markersize=24, color=PAPER, markeredgecolor=INK)
                 colour = INK if label == marked else PAPER
-                axes.text(
-                    right, down, str(label), ha="center", va="center", fontsize=7, color=colour, weight="bold"
-                )
+                axes.text(x, y, str(label), ha="center", va="center", fontsize=7, color=colour, weight="bold")
     return figure
+
+
+def _window(labels: Sequence[NDArray[np.int64]]) -> tuple[int, int, int, int]:
+    """Left, right, top and bottom of what holds the objects of every picture, with some room about them."""
+    seen = np.any([one > TABLE for one in labels], axis=0)
+    if not seen.any():
+        seen[:] = True
+    rows, columns = np.flatnonzero(seen.any(axis=1)), np.flatnonzero(seen.any(axis=0))
+    height, width = seen.shape
+    return (
+        max(int(columns[0]) - _ROOM, 0), min(int(columns[-1]) + _ROOM, width - 1),
+        max(int(rows[0]) - _ROOM, 0), min(int(rows[-1]) + _ROOM, height - 1),
+    )  # fmt: skip
 
 
 def _widest_place(seen: NDArray[np.bool_]) -> tuple[int, int]:

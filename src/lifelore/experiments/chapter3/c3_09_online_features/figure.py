@@ -13,40 +13,43 @@ from lifelore.figures.style import BLUE, GREY, PURPLE, Axes, Figure, house_style
 METHODS = {"uniform": ("no prior", GREY), "full": ("all ten features", PURPLE)}
 METHODS |= {"selected": ("selected features", BLUE)}
 """Label and colour by method."""
-DASHES = {"first": "-", "last": (0, (4, 2))}
+PARTS = ("first", "last")
+"""A row of panels each: the last episodes are alike to a small part of what the first ones differ by."""
 
 
 @house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     settings = result["settings"]
-    figure = new_figure(11.0, 6.8)
-    upper, lower = two_rows(figure, (1.0, 0.62))
-    panels = upper.subplots(1, len(settings["sources"]), squeeze=False, sharey=True)[0]
-    for axes, source in zip(panels, settings["sources"], strict=True):
-        _draw_source(axes, result, source)
-    panels[0].set_ylabel("reward of an episode, thousands")
-    upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
-    for axes, part in zip(lower.subplots(1, 2, sharey=True), DASHES, strict=True):
+    figure = new_figure(11.0, 8.6)
+    upper, lower = two_rows(figure, (1.0, 0.4))
+    panels = upper.subplots(2, len(settings["sources"]), squeeze=False, sharey="row", height_ratios=(1.15, 1))
+    names = {"first": "first episode", "last": f"episode {settings['episodes']}"}
+    for row, part in zip(panels, PARTS, strict=True):
+        for axes, source in zip(row, settings["sources"], strict=True):
+            _draw_source(axes, result, source, part, f"{source}: {names[part]}")
+        row[0].set_ylabel("reward, thousands")
+    upper.legend(*panels[0, 0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
+    for axes, part in zip(lower.subplots(1, 2, sharey=True), PARTS, strict=True):
         _draw_grid(axes, result, part)
     lower.supxlabel(
-        f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
-        f"{settings['episodes']}. Means over the tasks after the first; framed: the default.",
+        f"Columns: which policies are counted. Shaded: one standard deviation between {settings['runs']} runs; "
+        "last episodes without. Tables: means over the tasks after the first; framed: the default.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
 
 
-def _draw_source(axes: Axes, result: Mapping, source: str) -> None:
+def _draw_source(axes: Axes, result: Mapping, source: str, part: str, title: str) -> None:
     series, looks = {}, {}
     for row in result["rows"]:
-        if row.get("of_source") == source:
-            words, colour = METHODS[row["curve_of"]]
-            label = f"{words}, {row['part']}"
-            series[label] = {key: np.array(row[key]) / 1000 for key in ("mean", "deviation")}
-            looks[label] = {"color": colour, "linewidth": 1.5, "linestyle": DASHES[row["part"]]}
+        if row.get("of_source") == source and row["part"] == part:
+            label, colour = METHODS[row["curve_of"]]
+            keys = ("mean", "deviation") if part == "first" else ("mean",)
+            series[label] = {key: np.array(row[key]) / 1000 for key in keys}
+            looks[label] = {"color": colour, "linewidth": 1.5}
     draw_curves(
-        axes, None, series, looks=looks, title=f"policies counted: {source}", xlabel="task",
+        axes, None, series, looks=looks, title=title, xlabel="task",
         level=(result["measured"]["optimal_reward"]["value"] / 1000, "optimal"), legend=False,
     )  # fmt: skip
 

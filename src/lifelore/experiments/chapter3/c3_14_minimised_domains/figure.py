@@ -37,8 +37,11 @@ def draw(result: Mapping) -> Figure:
     kinds = result["settings"]["kinds"]
     learning = (row for row in result["rows"] if "learnt_in" in row)
     table = ResultsTable(learning, ("learnt_in", "form", "dead_ends", "schedule"))
-    figure = new_figure(16.0, 1.5 + 0.42 * len(kinds))
-    kept, walks, learnt = figure.subplots(1, 3, sharey=True, width_ratios=[1.2, 0.75, 1.2])
+    figure = new_figure(11.5, 2.4 + 0.76 * len(kinds))
+    places = figure.add_gridspec(2, 2, width_ratios=[1.3, 1])
+    kept = figure.add_subplot(places[0, 0])
+    walks = figure.add_subplot(places[0, 1], sharey=kept)
+    learnt = figure.add_subplot(places[1, :])
     _draw_walks(walks, result, table)
     _draw_learning(learnt, result, table)
     rows = [row for row in result["rows"] if "kind" in row]
@@ -47,7 +50,9 @@ def draw(result: Mapping) -> Figure:
     words = "{:.0f}".format
     draw_heat_grid(kept, shares, nothing, kinds, heads, neutral=100.0, spread=100.0, words=words)
     kept.set_title("Where it is so (% of tasks, of sets for defined)")
-    kept.set_ylim(len(kinds) - 0.5, -0.5)
+    for axes in (kept, learnt):
+        axes.set_ylim(len(kinds) - 0.5, -0.5)
+    walks.tick_params(labelleft=False)
     figure.supxlabel(
         "Lines: 95 % intervals over runs; bold: the interval excludes 1. Framed: the default. stay, free: "
         "staying, or all actions, in a state without kept actions. Printed: actions with η = 1/0 left out.",

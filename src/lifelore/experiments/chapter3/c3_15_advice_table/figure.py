@@ -58,13 +58,27 @@ def _draw_bars(axes: Axes, table: ResultsTable) -> None:
 
     groups = {label: [number(way, agent) for agent in AGENTS] for way, label in ADVISORS.items()}
     colours = {label: figures.ADVISOR_COLOURS[way] for way, label in ADVISORS.items()}
-    look = {"horizontal": False, "label": "reward, of 1000", "legend": False}
+    look = {"horizontal": False, "label": "reward, of 1000", "legend": False, "words": None}
     draw_interval_bars(axes, list(AGENTS.values()), groups, colours=colours, **look)
     places, printed = np.arange(len(AGENTS))[:, None] + [-0.3, -0.1], [PRINTED[agent] for agent in AGENTS]
     axes.hlines(np.ravel(printed), np.ravel(places) - 0.09, np.ravel(places) + 0.09, color=INK, lw=2, zorder=6)
     axes.plot(np.ravel(places), np.ravel(printed), "D", ms=4, color=INK, label="printed in Table 3.1", zorder=6)
+    _write_numbers(axes, groups)
     axes.set(ylim=(0, 1150), yticks=range(0, 1001, 250))
     axes.grid(axis="y", color=LIGHT)
+
+
+def _write_numbers(axes: Axes, groups: Mapping) -> None:
+    """Each bar's reward above its interval, and above the printed number where this is near."""
+    for g, numbers in enumerate(groups.values()):
+        for place, (agent, number) in enumerate(zip(AGENTS, numbers, strict=True)):
+            if number is None:
+                continue
+            end = max(number["value"], (number["ci95"] or [0])[-1])
+            printed = PRINTED[agent][g] if g < 2 else -1
+            height = printed if end - 25 < printed < end + 90 else end
+            axes.text(place + 0.2 * g - 0.3, height + 16, number["words"], ha="center", va="bottom", fontsize=7,
+                      linespacing=0.95)  # fmt: skip
 
 
 def _draw_grid(axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str):

@@ -13,14 +13,16 @@ from lifelore.figures.style import BLUE, GREY, INK, LIGHT, PAPER, Axes, Figure, 
 
 PLACES = {
     "start": (0.0, 0.0),
-    "frustrated": (2.6, 0.0),
-    "annoyed": (5.2, 0.0),
-    "angry": (7.8, 0.0),
-    "success": (3.9, 2.1),
-    "hung up": (3.9, -2.1),
+    "frustrated": (3.8, 0.0),
+    "annoyed": (7.6, 0.0),
+    "angry": (10.4, 0.0),
+    "success": (5.7, 2.5),
+    "hung up": (5.7, -2.5),
 }
 _ENDS = ("angry", "success", "hung up")
 _RADIUS = 0.62
+_SHARE = {"start": 0.42, "frustrated": 0.36, "annoyed": 0.66}
+"""Where along an edge to success or hung up its label stands, by the state it leaves."""
 _PATH = ("start", "frustrated", "annoyed")
 EDGES = {
     (state, after): (words, reward)
@@ -101,7 +103,7 @@ def draw_call_graph(axes: Axes, edges: Mapping[tuple[str, str], tuple[str, float
     for name, place in PLACES.items():
         axes.add_patch(Circle(place, _RADIUS, fc=PAPER, ec=INK, lw=3 if name in _ENDS else 1.2, zorder=3))
         axes.text(*place, name, ha="center", va="center", fontsize=fontsize - 1, zorder=4)
-    axes.set(xlim=(-0.9, 8.7), ylim=(-2.95, 2.95), aspect="equal")
+    axes.set(xlim=(-0.9, 11.3), ylim=(-3.25, 3.25), aspect="equal")
     axes.axis("off")
 
 
@@ -112,11 +114,10 @@ def _draw_edge(axes: Axes, start: str, end: str, probability: str, reward: str, 
     arrow = {"arrowstyle": "-|>", "color": GREY, "lw": 1.1, "shrinkA": 0, "shrinkB": 0}
     axes.annotate("", head, tail, arrowprops=arrow, zorder=2)
     level = way[1] == 0
-    # Nearer the start, where edges to the same state have not yet met.
-    x, y = tail + (0.5 if level else 0.52 if start == "frustrated" else 0.34) * (head - tail)
-    above = 0.28 if level else 0.17
-    for text, colour, height, size in ((probability, BLUE, above, fontsize), (reward, INK, -above, fontsize - 2)):
-        axes.text(
-            x, y + height, text, color=colour, ha="center", va="center", fontsize=size, zorder=2.5,
-            bbox={"boxstyle": "round,pad=0.12", "fc": PAPER, "ec": "none"},
-        )  # fmt: skip
+    # Nearer the start, where edges to the same state have not yet met; each at a height of its own.
+    x, y = tail + (0.5 if level else _SHARE[start]) * (head - tail)
+    label = f"{probability}\n{reward}" if level else f"{probability} {reward}"
+    axes.text(
+        x, y, label, color=BLUE, ha="center", va="center", fontsize=fontsize, zorder=2.5, linespacing=1.6,
+        bbox={"boxstyle": "round,pad=0.12", "fc": "none" if level else PAPER, "ec": "none"},
+    )  # fmt: skip

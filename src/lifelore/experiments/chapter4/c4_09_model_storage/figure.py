@@ -4,7 +4,7 @@ from collections.abc import Mapping, Sequence
 
 from lifelore.experiments.chapter4.reuse.looks import look_of
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
 
 SIGNALS = {"performance": "U", "reward": "(s, a, r)", "state-action-state": "(s, a, s′)"}
 PRINTED = {"reward": ", in print (s, a, s′)", "state-action-state": ", in print (s, a, r)"}
@@ -62,7 +62,7 @@ def _finish(axes: Axes, n_states: int, n_rewards: Sequence[int], title: str, roo
     above = axes.get_xaxis_transform()
     axes.text(n_states, 1.01, "|R| = |S|", transform=above, ha="center", va="bottom", fontsize=8)
     axes.grid(True, axis="y")
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", frameon=True, framealpha=1, edgecolor=PAPER)
 
 
 def _draw_worlds(axes: Axes, rows: Sequence[Mapping]) -> None:

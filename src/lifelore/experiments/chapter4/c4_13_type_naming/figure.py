@@ -8,7 +8,7 @@ from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.experiments.chapter4.reuse.looks import size_lines
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, LIGHT, PAPER, Axes, Figure, house_style, new_figure
 
 
 def draw(result: Mapping) -> Figure:
@@ -22,7 +22,8 @@ def draw(result: Mapping) -> Figure:
         ratio.set_yscale("log")
         ratio.set_yticks([0.25, 0.5, 1, 2, 4, 8], ["¼", "½", "1", "2", "4", "8"])
         ratio.minorticks_off()
-        ratio.legend(title="true size", ncols=2, loc="upper right")
+        ratio.set_ylim(0.25, 22)
+        ratio.legend(title="true size", ncols=3, loc="upper left", frameon=True, framealpha=1, edgecolor=PAPER)
         counts, names = np.array(row["half"]), [str(b) for b in SIZES]
         percent = 100 * counts / counts.sum(axis=1, keepdims=True)
         percent = np.where(percent < 0.5, np.nan, percent)

@@ -13,24 +13,29 @@ from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
-SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, "BEAT, ε as printed", BEAT, "best speed of each type")
+PRINTED = "BEAT, ε as printed"
+SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, PRINTED, BEAT, "best speed of each type")
+
+MAPS = {BEAT: "BEAT / best static speed", PRINTED: "BEAT, ε as printed / static"}
+"""Methods whose losses are mapped by type and episode, as shares of those of the best static speed."""
 
 
 def draw(result: Mapping) -> Figure:
     losses = {row["method"]: np.array(row["loss"]) for row in result["rows"] if "method" in row}
-    ratios = losses[BEAT] / losses[STATIC]
-    episodes = range(1, ratios.shape[1] + 1)
+    episodes = range(1, losses[BEAT].shape[1] + 1)
     with house_style():
         games = [row for row in result["rows"] if "met" in row]
-        figure = new_figure(11.6, 4.9 + 0.25 * len(games))
-        places = figure.add_gridspec(2, 3, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
-        by_episode, by_type, naming = (figure.add_subplot(places[0, column]) for column in range(3))
+        figure = new_figure(13.6, 4.9 + 0.25 * len(games))
+        places = figure.add_gridspec(2, 4, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
+        by_episode, *by_type, naming = (figure.add_subplot(places[0, column]) for column in range(4))
         series = {method: {"mean": losses[method].mean(axis=0)} for method in SHOWN}
         draw_curves(by_episode, None, series, looks=lines_of(SHOWN, marker="o", ms=3), legend=False)
         by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
         legend_below(by_episode, 0.75)
-        draw_ratio_grid(by_type, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
-        by_type.set(xlabel="episode", title="safety: BEAT to the static speed")
+        for axes, (method, words) in zip(by_type, MAPS.items(), strict=True):
+            ratios = losses[method] / losses[STATIC]
+            draw_ratio_grid(axes, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
+            axes.set(xlabel="episode", title=f"safety: {words}")
         _draw_naming(naming, result["rows"][-1])
         _draw_games(figure.add_subplot(places[1, :]), games)
     return figure
@@ -59,10 +64,12 @@ def _draw_naming(axes: Axes, row: Mapping) -> None:
     draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
     axes.set(title="speed", xlabel="steps played", ylabel="share named right for good")
     axes.axvline(row["length"], color=GREY, linewidth=1)
-    place = {"xy": (row["length"], 0.02), "xytext": (3, 0), "textcoords": "offset points"}
-    axes.annotate("end of the first episode", **place, fontsize=7, color=GREY, rotation=90, va="bottom")
-    axes.set_ylim(0, 1.03)
+    axes.annotate(
+        "end of the\nfirst episode", (row["length"], 1.05), xytext=(-4, 0), textcoords="offset points", fontsize=7,
+        color=GREY, ha="right", va="bottom",
+    )  # fmt: skip
+    axes.set_ylim(0, 1.18)
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
     axes.minorticks_off()
     axes.grid(axis="y", color=LIGHT)
-    axes.legend(loc="upper left")
+    axes.legend(loc="upper left", bbox_to_anchor=(0, 0.9))

@@ -3,7 +3,7 @@
 from collections.abc import Mapping
 
 from lifelore.figures.interval_bars import draw_interval_bars
-from lifelore.figures.style import LIGHT, house_style, new_figure
+from lifelore.figures.style import BLUE, INK, LIGHT, SKY, house_style, new_figure
 
 DECIDING = {
     "points_less_scratch": "points, less scratch",
@@ -20,9 +20,10 @@ def draw(result: Mapping):
     with house_style():
         figure = new_figure(9.2, 3.4)
         left, right = figure.subplots(1, 2, gridspec_kw={"width_ratios": [1.1, 1]})
-        for row in result["rows"]:
-            if "power" in row:
-                left.plot(row["tasks"], row["power"], "o-", ms=3.5, label=f"{row['effect']:g} standard deviations")
+        powers = [row for row in result["rows"] if "power" in row]
+        for row, colour in zip(powers, (SKY, BLUE, INK), strict=False):
+            label = f"{row['effect']:g} standard deviations"
+            left.plot(row["tasks"], row["power"], "o-", ms=3.5, color=colour, label=label)
         left.set(xlabel="tasks, each with every agent", ylabel="power", ylim=(0, 1.02), title="length of a trial")
         left.grid(axis="y", color=LIGHT)
         left.legend(loc="lower right", title="true difference", fontsize=7.5)

@@ -1,0 +1,72 @@
+"""The conditions of a claim as a Markdown table: asked, measured, and whether met."""
+
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
+
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.predicate import HOLDS, Condition, number_in_words, short
+from lifelore.experiments.engine.second_reading import GRID, HEADLINE, MISSING, NO, OPEN, PRINTED, YES
+
+OPS = {">": "above", ">=": "at least", "<": "below", "<=": "at most", "between": "between"}
+ANSWERS = {True: YES, False: NO, None: MISSING}
+MET = {YES: "yes", NO: "**no**", OPEN: "open", MISSING: "not measured"}
+COUNTED = (HEADLINE, PRINTED, GRID)
+"""Roles that the verdict of a second reading counts, by weight."""
+
+
+class Row(NamedTuple):
+    """A condition that the verdict counts, and its answer by the reading that decides."""
+
+    role: str
+    condition: Condition
+    asked: str
+    answer: str
+
+
+def counted_rows(claim: Claim, result: Mapping) -> list[Row]:
+    """The conditions that decide: of the second reading where there is one, else those of the first."""
+    measured = result["measured"]
+    if claim.second and result.get("second"):
+        return [
+            Row(one.role, one.condition, bounds_in_words(one.condition), one.answer(measured))
+            for one in claim.second.conditions
+            if one.role in COUNTED
+        ]
+    asked = {name for rule in claim.predicate.rules if rule.verdict == HOLDS for name in rule.all_of + rule.any_of}
+    return [row for row in first_rows(claim, measured) if row.condition.name in asked]
+
+
+def first_rows(claim: Claim, measured: Mapping) -> list[Row]:
+    """All conditions of the first reading."""
+    return [Row(HEADLINE, c, _asked(c), ANSWERS[c.met(measured)]) for c in claim.predicate.conditions]
+
+
+def condition_table(
+    rows: Sequence[Row], words: Mapping[Row, str], measured: Mapping, n: bool = False
+) -> list[str]:
+    """The rows that have words, with the sample sizes where `n` is true; a line says how many have none."""
+    lines = ["| condition | asked | measured [95 %] | met |", "|---|---|---|---|"]
+    for row in rows:
+        if row in words:
+            number = measured_in_words(row.condition, measured)
+            number = number if n else number.partition(", n ")[0]
+            lines.append(f"| {words[row]} | {row.asked} | {number} | {MET[row.answer]} |")
+    left = len(rows) - len(words)
+    return [*(lines if words else []), "", *([f"{left} more below.", ""] if left else [])]
+
+
+def measured_in_words(condition: Condition, measured: Mapping) -> str:
+    """The number that a condition asks of; a dash where there is none."""
+    number = measured.get(condition.measure)
+    return number_in_words(number) if number else "–"
+
+
+def _asked(condition: Condition) -> str:
+    words = bounds_in_words(condition)
+    return f"interval {words}" if condition.part == "interval" else words
+
+
+def bounds_in_words(condition: Condition) -> str:
+    """What is asked of the number: ``above 0.5``."""
+    bounds = condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
+    return f"{OPS[condition.op]} {' and '.join(short(bound) for bound in bounds)}"
