@@ -27,16 +27,16 @@ def draw(result: Mapping) -> Figure:
     for axes, source in zip(panels, settings["sources"], strict=True):
         _draw_source(axes, result, source)
     panels[0].set_ylabel("reward below the optimum")
-    upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=7)
+    upper.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=6)
     first, last, on = lower.subplots(1, 3, width_ratios=(1.0, 1.0, 1.15))
     for axes, part in ((first, "first"), (last, "last")):
         _draw_grid(axes, result, part)
     last.set_yticklabels([])
     _draw_learning_on(on, result)
     lower.supxlabel(
-        f"Shaded: one standard deviation between {settings['runs']} runs. Dashed: episode "
+        f"Shaded, first episodes: one standard deviation between {settings['runs']} runs. Dashed: episode "
         f"{settings['episodes']}. Means over the tasks after the first; framed: the default. Promising: counted "
-        f"as E4 says. Learnt on: the last {settings['long_tasks']} tasks.",
+        f"as E4 says.\nLearnt on: the last {settings['long_tasks']} tasks.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -50,8 +50,10 @@ def _draw_source(axes: Axes, result: Mapping, source: str) -> None:
             words, colour = METHODS[row["curve_of"]]
             label = f"{words}, {row['part']} episode"
             loss, half = optimal - np.array(row["mean"]), np.array(row["deviation"])
-            # A logarithmic axis has no room for a band that reaches the optimum.
-            series[label] = {"mean": loss, "low": np.maximum(loss - half, loss / 2), "high": loss + half}
+            series[label] = {"mean": loss}
+            if row["part"] == "first":  # those of last episodes overlap, and would hide the lines
+                # A logarithmic axis has no room for a band that reaches the optimum.
+                series[label] |= {"low": np.maximum(loss - half, loss / 2), "high": loss + half}
             looks[label] = {"color": colour, "linewidth": 1.5, "linestyle": DASHES[row["part"]]}
     draw_curves(
         axes, None, series, looks=looks, title=f"policies counted: {source}", xlabel="task", logarithmic="y",
@@ -71,7 +73,7 @@ def _draw_learning_on(axes: Axes, result: Mapping) -> None:
     axes.axvline(result["settings"]["episodes"], color=GREY, linewidth=0.8, linestyle=(0, (1, 2)))
     axes.set_xscale("log")
     axes.set_yscale("symlog", linthresh=10.0)
-    axes.invert_yaxis()
+    axes.set_ylim(1e6, 0)
     axes.set(title=f"Learnt on: {default}", xlabel="episode", ylabel="reward below the optimum")
 
 
