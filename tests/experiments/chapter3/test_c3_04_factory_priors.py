@@ -47,7 +47,8 @@ def made_up(run):
     unseen = {encoding: {"all": 0.5, "way": 0.25} for encoding in SETTINGS["encodings"]}
     return {
         "run": run, "optimal_return": 40.0, "optimal_reward": 100.0, "seen": run == 0,
-        "methods": methods, "masses": masses, "unseen": unseen, "long": {p: LONG[p] for p in priors},
+        "methods": methods, "masses": masses, "unseen": unseen,
+        "long": {p: {**LONG[p], "rewards": [-5.0] * N_STAGES} for p in priors},
     }  # fmt: skip
 
 
@@ -119,6 +120,9 @@ def test_rows_hold_the_grid_the_curves_and_the_masses():
     assert curves == [
         ("uniform", None), ("expert", None), ("incorrect", None), ("learnt", "global"), ("learnt", "phase"),
     ]  # fmt: skip
+    on = next(row for row in found if row.get("learnt_on") == "incorrect")
+    assert (on["stages"][-1], on["rewards"][-1]) == (120, -5.0)
+    assert on["greedy_of_optimal"][-2:] == [0.0, 0.5]
     walls = next(row for row in found if row.get("mass_on") == "wall moves" and row["of"] == "global")
     assert walls["mass"]["value"] == pytest.approx(0.115)
 

@@ -124,6 +124,12 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         where = grid.where(prior, cell, "prior")
         curve = table.curve("curve", parts=BAND, **where)
         found.append({"curve_of": prior, "encoding": where["encoding"], **curve})
+    stages = stages_of(settings)
+    for prior in PRIORS:
+        rewards, greedy = (np.array([r["long"][prior][name] for r in results]) for name in ("rewards", "greedy"))
+        share = (greedy.mean(axis=0) / _column(results, "optimal_return").mean()).round(4).tolist()
+        row = {"learnt_on": prior, "stages": stages, "rewards": rewards.mean(axis=0).round(2).tolist()}
+        found.append({**row, "greedy_of_optimal": share})
     for prior, name in product(results[0]["masses"], INVARIANCES):
         masses = [r["masses"][prior][name] for r in results if name in r["masses"][prior]]
         if masses:

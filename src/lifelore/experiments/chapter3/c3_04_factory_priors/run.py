@@ -86,15 +86,17 @@ def stages_of(settings: Mapping) -> list[int]:
 
 
 def _learnt_on(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior], name: str) -> dict:
-    """The default's use of a prior over ``long_episodes``: the last rewards, and greedy returns by stage."""
+    """The default's use of a prior over ``long_episodes``: rewards at the end and by stage, and greedy returns."""
     default, rows = settings["default"], None
     if name != PLAIN:
         encoding = default["encoding"] if name == LEARNT else None
         prior = learning.with_pseudo_count(priors[encoding or name], default["alpha0"])
         rows = learning.rows_of(problem, prior, encoding, default["ties"])
     schedule = schedule_of({**settings, "episodes": settings["long_episodes"]}, default["schedule"])
-    curve, greedy = learning.learn_in_stages(problem, rows, schedule, stages_of(settings))
-    return {"last": float(curve.rewards[-settings["last"] :].mean()), "greedy": greedy}
+    stages = stages_of(settings)
+    curve, greedy = learning.learn_in_stages(problem, rows, schedule, stages)
+    by_stage = [float(part.mean()) for part in np.split(curve.rewards, stages[:-1])]
+    return {"last": float(curve.rewards[-settings["last"] :].mean()), "greedy": greedy, "rewards": by_stage}
 
 
 def _masses(problem: Problem, priors: Mapping[str, ActionPrior]) -> dict[str, dict]:
