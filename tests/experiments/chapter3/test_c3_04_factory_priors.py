@@ -4,8 +4,10 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter3.c3_04_factory_priors.measure import measure, rows
-from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE, run_cell
+from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE, run_cell, stages_of
+from lifelore.experiments.chapter3.factory import learning
 from lifelore.experiments.chapter3.factory.learning import grid_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 
@@ -13,6 +15,13 @@ QUICK = dict(claim_of("C3.4").sizes["quick"])
 SETTINGS = {**QUICK, "encodings": ["global", "phase"], "alpha0": [0.1], "ties": ["uniform", "prior"]}
 """A grid of four cells: two encodings, two ways with ties."""
 EARLY = {"uniform": -1000.0, "incorrect": -500.0, "expert": -100.0, "global": -200.0, "phase": -90.0}
+N_STAGES = len(stages_of(SETTINGS))
+LONG = {
+    "uniform": {"last": 90.0, "greedy": [40.0] * N_STAGES},
+    "expert": {"last": 90.0, "greedy": [0.0, 38.1, 37.9] + [39.0] * (N_STAGES - 3)},
+    "incorrect": {"last": 70.0, "greedy": [0.0] * (N_STAGES - 1) + [20.0]},
+    "learnt": {"last": 90.0, "greedy": [0.0] * (N_STAGES - 1) + [40.0]},
+}
 MASS = {"wall moves": 0.1, "express routes": 0.4, "uses elsewhere": 0.1, "procurement first": 0.7}
 EVEN = {"wall moves": 0.2, "express routes": 0.3, "uses elsewhere": 0.3, "procurement first": 0.3}
 
@@ -39,6 +48,7 @@ def made_up(run):
     return {
         "run": run, "optimal_return": 40.0, "optimal_reward": 100.0, "seen": run == 0,
         "methods": methods, "masses": masses, "unseen": unseen,
+        "long": {p: {**LONG[p], "rewards": [-5.0] * N_STAGES} for p in priors},
     }  # fmt: skip
 
 
@@ -56,6 +66,28 @@ def test_headline_by_hand():
     assert found["greedy_incorrect_of_optimal"].value == pytest.approx(39.5 / 40)
     assert found["test_task_seen"].value == 0.25
     assert found["unseen_way_global"].value == 0.25
+
+
+def test_when_each_prior_has_learnt_by_hand():
+    stages, found = stages_of(SETTINGS), measure(SETTINGS, RESULTS)
+    assert (len(stages), stages[:2], stages[-1]) == (40, [3, 6], 120)
+    # 95 % of 40 is 38: the expert's falls below it once more at the third stage.
+    assert found["learnt_by_uniform"].value == 3
+    assert found["learnt_by_expert"].value == stages[3]
+    assert found["learnt_by_incorrect"].value == found["learnt_by_learnt"].value == 120
+    assert found["long_greedy_incorrect_of_optimal"].value == pytest.approx(0.5)
+    assert found["long_incorrect_minus_uniform_of_optimal"].value == pytest.approx(-0.2)
+
+
+def test_learning_in_stages_is_learning_at_once():
+    settings = {**QUICK, "episodes": 12, "max_steps": 200}
+    problem = learning.problem_of(settings, (2, 5), (1, "stages"))
+    schedule = schedule_of(settings, [1.0, 0.9, 0.01])
+    curve, learner = learning.learn_task(problem, None, schedule)
+    staged, greedy = learning.learn_in_stages(problem, None, schedule, [3, 4, 12])
+    assert staged.rewards.tolist() == curve.rewards.tolist()
+    assert len(greedy) == 3
+    assert greedy[-1] == learning.greedy_return(problem, learner.q)
 
 
 def test_invariances_by_hand():
@@ -88,6 +120,9 @@ def test_rows_hold_the_grid_the_curves_and_the_masses():
     assert curves == [
         ("uniform", None), ("expert", None), ("incorrect", None), ("learnt", "global"), ("learnt", "phase"),
     ]  # fmt: skip
+    on = next(row for row in found if row.get("learnt_on") == "incorrect")
+    assert (on["stages"][-1], on["rewards"][-1]) == (120, -5.0)
+    assert on["greedy_of_optimal"][-2:] == [0.0, 0.5]
     walls = next(row for row in found if row.get("mass_on") == "wall moves" and row["of"] == "global")
     assert walls["mass"]["value"] == pytest.approx(0.115)
 

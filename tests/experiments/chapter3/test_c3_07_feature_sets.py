@@ -29,6 +29,7 @@ SETTINGS = {
     "alpha0": [0.1],
     "max_steps": [200],
     "policies": [3],
+    "walls": [[2, 4]],
 }
 """A grid of two cells, ties uniform and by the prior."""
 AS_PRINTED = {
@@ -57,7 +58,15 @@ def made_up(means=AS_PRINTED, by_prior=None):
         }
 
     met = [(method, cell) for method in METHODS for cell in grid_of(SETTINGS).cells_of(method)]
-    return [{"run": run, "optimal": 0.0, "found": [numbers(*at, run) for at in met]} for run in range(4)]
+    return [
+        {
+            "run": run,
+            "optimal": 0.0,
+            "optimal_of_walls": [[-50.0, 50.0]],
+            "found": [numbers(*at, run) for at in met],
+        }
+        for run in range(4)
+    ]
 
 
 def plain(measured):
@@ -75,6 +84,24 @@ def test_differences_by_hand():
     assert found["phi2_minus_phi3_of_distance"].value == pytest.approx(-100 / 5000)
     assert rows(SETTINGS, made_up())[0]["closed_phi4"]["value"] == pytest.approx(3500 / 5000)
     assert found["phi3_minus_phi1"].n == 4
+    # The tasks' optimal rewards are 50 below and above zero: their size is 50.
+    assert found["phi2_minus_phi3_of_optimal"].value == pytest.approx(-100 / 50)
+
+
+def test_other_numbers_of_walls_join_the_second_grid_alone():
+    settings = {**SETTINGS, "walls": [[1, 2], [2, 4]]}
+    cells = [(method, cell) for method in METHODS for cell in grid_of(settings).cells_of(method)]
+    results = made_up()
+    for result in results:
+        of_walls = {(f["method"], str(f["walls"]), f["ties"]): f for f in result["found"]}
+        result["found"] = [{**of_walls[m, "[2, 4]", c["ties"]], **c, "method": m} for m, c in cells]
+        for found in result["found"]:
+            if found["walls"] == [1, 2] and found["method"] == "phi2":
+                found["all"] = -10.0
+        result["optimal_of_walls"] = [[0.0], [-50.0, 50.0]]
+    found = measure(settings, results)
+    assert (found["grid_phi3_best"].value, found["grid_phi3_best"].n) == (1.0, 2)
+    assert found["walls_grid_phi3_best"].value == pytest.approx(2 / 3)
 
 
 def test_shares_of_the_grid_by_hand():
@@ -122,8 +149,8 @@ def test_every_method_is_met_once_in_each_cell_it_reads(small):
     met = [(f["method"], str([f[key] for key in KEYS])) for f in result["found"]]
     assert len(set(met)) == len(met)
     by_method = {method: sum(name == method for name, _ in met) for method in METHODS}
-    # ε × ties, α⁰, cap, policies; states have three codings more; no prior has ε and the cap alone.
-    assert by_method == {"uniform": 3, "state": 10, **dict.fromkeys(("phi1", "phi2", "phi3", "phi4"), 7)}
+    # ε × ties, α⁰, cap, policies, two of walls; states have three codings more; no prior has ε, cap and walls.
+    assert by_method == {"uniform": 5, "state": 12, **dict.fromkeys(("phi1", "phi2", "phi3", "phi4"), 9)}
 
 
 def test_without_a_prior_it_is_plain_q_learning(small):

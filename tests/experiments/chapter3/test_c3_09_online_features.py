@@ -13,6 +13,7 @@ from lifelore.experiments.chapter3.c3_09_online_features.run import (
 from lifelore.experiments.chapter3.factory.modified_tasks import learn_problem, problem_of
 from lifelore.experiments.chapter3.factory.online_selection import Counting, OnlineAgent
 from lifelore.experiments.chapter3.learning.schedules import schedule_of
+from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.9")
@@ -21,14 +22,15 @@ QUICK = dict(claim_of("C3.9").sizes["quick"])
 SETTINGS = {
     **QUICK,
     "runs": 4,
-    "sources": ["learnt", "exact"],
+    "sources": ["learnt", "learnt, promising", "exact"],
     "schedules": [[1.0, 0.85, 0.01]],
     "ties": ["uniform"],
 }
 SETTINGS = {**SETTINGS, "max_steps": [300]}
-"""A grid of two cells: whose policies count."""
+"""A grid of three cells: whose policies count."""
 FIRST = {"uniform": -9000.0, "full": -4000.0, "selected": -3500.0}
 LAST = {"uniform": -100.0, "full": -100.0, "selected": -100.0}
+END = {"uniform": 3.0, "full": 2.0, "selected": 4.0}
 JITTER = [-3.0, 1.0, -1.0, 3.0]
 
 
@@ -36,11 +38,12 @@ def made_up(first=FIRST, last=LAST, learnt_first=None):
     """Four runs of three tasks; the first task, in which nobody has a prior, is another number altogether."""
 
     def numbers(method, how, run):
-        of_cell = learnt_first if learnt_first and how["source"] == "learnt" else first
+        of_cell = learnt_first if learnt_first and "learnt" in (how["source"] or "") else first
         place = METHODS.index(method)
         jitter = JITTER[(run + place) % 4] * (1 + 0.1 * place)
         firsts = [-8000.0, of_cell[method] + jitter - 10, of_cell[method] + jitter + 10]
         found = {"first": firsts, "last": [-500.0] + [last[method] + jitter] * 2, "n_features": [10, 5, 4]}
+        found |= {"loss": [5.0] * (len(block_edges(SETTINGS["long_episodes"])) - 1), "loss_at_end": END[method]}
         return {"method": method, **how, **found}
 
     met = [(method, cell) for method in METHODS for cell in grid_of(SETTINGS).cells_of(method)]
@@ -67,6 +70,36 @@ def test_the_first_task_takes_no_part_in_differences_by_hand():
     assert found["grid_order_at_first"].value == 1.0
 
 
+def test_differences_as_shares_of_the_optimal_rewards_size_by_hand():
+    results = made_up()
+    for result, ends in zip(results, ([-40.0, 20.0], [-30.0, 40.0], [-20.0, 60.0], [-10.0, 80.0]), strict=True):
+        result["optimal"] = [7.0, *ends]
+    found = measure(SETTINGS, results)
+    assert found["optimal_size"].value == pytest.approx((100 + 200) / 8)
+    # Of the last task alone (`long_tasks` 1): 20, 40, 60 and 80; what is lost less is gained.
+    assert found["learnt_promising_end_selected_minus_full_of_optimal"].value == pytest.approx(-2 / 50)
+    assert found["exact_end_full_minus_uniform_of_optimal"].value == pytest.approx(1 / 50)
+    assert found["exact_end_selected_below_optimal"].value == pytest.approx(4 / 50)
+    assert found["learnt_last_selected_minus_full_of_optimal"].value == pytest.approx(0, abs=1e-9)
+
+
+def test_the_last_tasks_are_learnt_on_with_the_priors_so_far():
+    settings = {**QUICK, "tasks": 2, "episodes": 4, "long_episodes": 6, "long_last": 2}
+    result = run_cell(settings, {"run": 0}, 8)
+    on = [f for f in result["found"] if "loss" in f]
+    assert {(f["method"], f["source"]) for f in on} == {
+        ("uniform", None), *((m, s) for m in METHODS[1:] for s in settings["sources"])
+    }  # fmt: skip
+    how = {**settings, "max_steps": 300}
+    agent = OnlineAgent(True, Counting("learnt", "visited"), 0.1, "uniform")
+    agent.learn(problem_of(settings, (8, "C3.9", 0, 0)), schedule_of(how, [1.0, 0.85, 0.01]))
+    problem = problem_of(settings, (8, "C3.9", 0, 1))
+    long = schedule_of({**how, "episodes": 6}, settings["long_schedule"])
+    loss = problem.optimal - learn_problem(problem, agent.rows(problem), long)[0].rewards
+    ours = next(f for f in on if (f["method"], f["source"]) == ("selected", "learnt, promising"))
+    assert ours["loss_at_end"] == pytest.approx(loss[-2:].mean())
+
+
 def test_verdicts():
     assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up()))) == "holds"
     # 600 of the 9000 between uniform's first episode and the optimum are more than 5 %.
@@ -75,13 +108,13 @@ def test_verdicts():
     assert CLAIM.predicate.verdict(plain(apart)) == "holds in part"
     poor = {**FIRST, "full": -9500.0, "selected": -9400.0}
     half = measure(SETTINGS, made_up(learnt_first=poor))
-    assert half["grid_order_at_first"].value == 0.5
+    assert half["grid_order_at_first"].value == pytest.approx(1 / 3)
     assert CLAIM.predicate.verdict(plain(half)) == "holds in part"
     assert CLAIM.predicate.verdict(plain(measure(SETTINGS, made_up(first=poor)))) == "does not hold"
 
 
 def test_every_condition_asks_of_something_measured():
-    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
+    assert CLAIM.read_measures() <= set(measure(SETTINGS, made_up()))
 
 
 def test_the_grid_is_the_default_and_every_other_choice_alone():
@@ -116,14 +149,12 @@ def test_a_small_run_agrees_with_an_agent_of_its_own():
 def test_the_figure_is_drawn_from_rows_alone():
     results = made_up()
     result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, results)), "rows": rows(SETTINGS, results)}
-    learnt, exact, learnt_last, exact_last, first, last = CLAIM.draw(result).axes
-    assert learnt.get_title(loc="left") == "learnt: first episode"
-    assert exact_last.get_title(loc="left") == f"exact: episode {SETTINGS['episodes']}"
-    assert [len(axes.lines) for axes in (learnt, exact, learnt_last)] == [len(METHODS) + 1] * 3
-    # The last episodes have a scale of their own, on which they can be told apart.
-    assert np.ptp(exact_last.get_ylim()) < np.ptp(exact.get_ylim())
-    assert [text.get_text() for text in first.texts] == ["−9.0", "−4.0", "−3.5"] * 2
-    assert [text.get_text() for text in last.texts] == ["−0.1"] * 6
+    learnt, _, exact, first, last, on = CLAIM.draw(result).axes
+    assert learnt.get_title(loc="left") == "policies counted: learnt"
+    assert len(exact.lines) == 2 * len(METHODS)
+    assert len(on.lines) == len(METHODS) + 1
+    assert [text.get_text() for text in first.texts] == ["−9.0", "−4.0", "−3.5"] * 3
+    assert [text.get_text() for text in last.texts] == ["−0.1"] * 9
 
 
 def test_settings_without_a_source_that_the_claim_asks_about():

@@ -64,6 +64,10 @@ def test_shares_at_the_end_by_hand():
     assert found["learnt_settled_share"].value == 0.75
     assert found["learnt_settled_after"].value == pytest.approx((1 + 1 + 1 + 5) / 4)
     assert found["learnt_settled_share"].n == 4
+    # Even four of four runs are not more than 80 % for certain; of thirty, all but one series settles.
+    assert found["grid_settled"].value == 0.0
+    many = made_up(exact=[[ALL] * 4] * 4) * 8
+    assert measure(SETTINGS, many)["grid_settled"].value == pytest.approx(6 / 7)
 
 
 def test_verdicts():

@@ -49,7 +49,7 @@ def made_up(early=EARLY, spread=SPREAD):
         found = run_grid(
             grid_of(SETTINGS), "form", WITHOUT_PRIOR, FORMS, lambda form, _, run=run: numbers(form, run)
         )
-        cells.append({"run": run, "optimal": -20.0, "found": list(found)})
+        cells.append({"run": run, "optimal": -20.0, "optimal_size": 50.0, "found": list(found)})
     return cells
 
 
@@ -66,6 +66,7 @@ def test_headline_by_hand():
     assert found["early_spread_ratio_softmax_to_dirichlet"].value == pytest.approx(3.2)
     # Learning without a prior lies 4980 below the optimum.
     assert found["dirichlet_minus_proportion_of_distance"].value == pytest.approx(-10 / 4980)
+    assert found["dirichlet_minus_proportion_of_optimal"].value == pytest.approx(-10 / 50)
 
 
 def test_shares_of_the_grid_by_hand():

@@ -59,7 +59,16 @@ def made_up(shown=-1020.0, varied=-1300.0, own=-1000.0, plain=-3000.0):
             }
             for name in SETTINGS["people"]
         ]  # fmt: skip
-        cells.append({"run": run, "optimal": 0.0, "found": list(found), "groups": groups, "people": people})
+        cells.append(
+            {
+                "run": run,
+                "optimal": 0.0,
+                "optimal_size": 50.0,
+                "found": list(found),
+                "groups": groups,
+                "people": people,
+            }
+        )
     return cells
 
 
@@ -70,6 +79,8 @@ def plain(measured):
 def test_numbers_by_hand():
     found = measure(SETTINGS, made_up())
     assert found["shown_minus_self_of_distance"].value == pytest.approx(-20 / 3000)
+    assert found["shown_minus_self_of_optimal"].value == pytest.approx(-20 / 50)
+    assert found["varied_minus_self_of_optimal"].value == pytest.approx(-300 / 50)
     assert found["varied_minus_self_of_distance"].value == pytest.approx(-0.1)
     assert found["shown_minus_uniform"].value == pytest.approx(1980)
     assert found["self_minus_uniform"].value == pytest.approx(2000)

@@ -40,7 +40,10 @@ def test_every_condition_asks_for_a_number_that_is_measured(results, claim_id):
 def test_learning_curves_of_every_make(results):
     result = results["C3.4"]
     curves = claim_of("C3.4").draw(result).axes[0]
-    lines = {line.get_label(): line for line in curves.get_lines()}
+    drawn = curves.get_lines()
+    lines = {str(line.get_label()): line for line in drawn if not str(line.get_label()).startswith("_")}
+    on = [row for row in result["rows"] if "learnt_on" in row]
+    assert len(drawn) == len(lines) + len(on) == 8 + 4
     stored = {row["encoding"] or row["curve_of"]: row["mean"] for row in result["rows"] if "curve_of" in row}
     assert len(stored) == 7
     assert len(lines) == 8  # and the optimal one

@@ -2,6 +2,8 @@
 
 from collections.abc import Mapping
 
+import numpy as np
+
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.c3_04_factory_priors.factory_floor import draw_factory_prior
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE
@@ -58,7 +60,7 @@ def _caption(settings: Mapping) -> str:
         f"and incorrect: the two areas as advice, which counts as much as {n} policies.\n"
         f"Default: {schedule_in_words(default['schedule'])}; ties {default['ties']}; α⁰ {default['alpha0']:g}; "
         f"configurations by the {ENCODINGS[default['encoding']]}. Early: the first {settings['early']} episodes, "
-        f"of {settings['max_steps']} steps at most.\n"
+        f"of {settings['max_steps']} steps at most. Curves without a band: learnt on.\n"
         f"Shaded, thin lines: 95 % interval over {settings['runs']} runs. The table, by ε and ties: bold where "
         "the interval excludes 1; framed: the default."
     )
@@ -77,6 +79,11 @@ def _draw_curves(axes: Axes, result: Mapping) -> None:
         axes, block_centres(curve_edges(result)), series, looks=looks, title="Learning curves at the default",
         xlabel="episode", ylabel="reward of an episode", logarithmic="x", level=(optimal, "optimal"), legend=False,
     )  # fmt: skip
+    for row in (row for row in result["rows"] if "learnt_on" in row):
+        name = {PLAIN: "q-learning", LEARNT: result["settings"]["default"]["encoding"]}.get(row["learnt_on"])
+        centres, rewards = block_centres([0, *row["stages"]]), np.array(row["rewards"])
+        later = np.array([0, *row["stages"][:-1]]) >= result["settings"]["episodes"]
+        axes.plot(centres[later], rewards[later], color=colour_of(name or row["learnt_on"]), linewidth=1.2)
     axes.set_yscale("symlog", linthresh=200, linscale=0.6)
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     axes.xaxis.set_major_formatter("{x:g}")

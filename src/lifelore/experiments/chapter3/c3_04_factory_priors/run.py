@@ -19,6 +19,8 @@ from lifelore.experiments.engine.grid import run_grid
 
 ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
 """Actions that a person advises, by name of the hand-made prior."""
+STAGES = 40
+"""Stages of learning on; the policy learnt is judged after each, so more say more finely when it is learnt."""
 DRAWN = 0
 """The run whose learnt prior the figure shows."""
 
@@ -37,6 +39,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         "optimal_reward": problem.solved.optimal_reward,
         "seen": components in training,
         "methods": list(_methods(settings, problem, priors)),
+        "long": {name: _learnt_on(settings, problem, priors, name) for name in (PLAIN, *ADVICE, LEARNT)},
         "masses": _masses(problem, at_default),
         "unseen": {name: _unseen(problem, at_default[name], name) for name in settings["encodings"]},
     }
@@ -75,6 +78,25 @@ def _methods(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPri
         }
 
     yield from run_grid(learning.grid_of(settings, ADVICE), "prior", PLAIN, (*ADVICE, LEARNT), numbers)
+
+
+def stages_of(settings: Mapping) -> list[int]:
+    """Episodes after which a policy learnt on is judged."""
+    return np.unique(np.rint(np.linspace(0, settings["long_episodes"], STAGES + 1)[1:])).astype(int).tolist()
+
+
+def _learnt_on(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior], name: str) -> dict:
+    """The default's use of a prior over ``long_episodes``: rewards at the end and by stage, and greedy returns."""
+    default, rows = settings["default"], None
+    if name != PLAIN:
+        encoding = default["encoding"] if name == LEARNT else None
+        prior = learning.with_pseudo_count(priors[encoding or name], default["alpha0"])
+        rows = learning.rows_of(problem, prior, encoding, default["ties"])
+    schedule = schedule_of({**settings, "episodes": settings["long_episodes"]}, default["schedule"])
+    stages = stages_of(settings)
+    curve, greedy = learning.learn_in_stages(problem, rows, schedule, stages)
+    by_stage = [float(part.mean()) for part in np.split(curve.rewards, stages[:-1])]
+    return {"last": float(curve.rewards[-settings["last"] :].mean()), "greedy": greedy, "rewards": by_stage}
 
 
 def _masses(problem: Problem, priors: Mapping[str, ActionPrior]) -> dict[str, dict]:

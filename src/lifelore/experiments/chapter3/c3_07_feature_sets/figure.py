@@ -55,6 +55,6 @@ def _name(row: Mapping, default: Mapping) -> str:
     """A row's ε and ties, or the other choice in which it differs from the default."""
     others = {
         "encoding": "states coded '{}'", "alpha0": "α⁰ {:g}", "max_steps": "cap of {:,} steps",
-        "policies": "from {} policies",
+        "policies": "from {} policies", "walls": "{0[0]} to {0[1]} inner walls a zone",
     }  # fmt: skip
     return other_choice(row, default, others) or f"{schedule_in_brief(row['schedule'])}, ties {row['ties']}"

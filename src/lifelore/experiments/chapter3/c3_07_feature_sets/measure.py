@@ -27,21 +27,32 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         measured[f"{ours}_minus_{theirs}"] = table.difference("all", at[ours], at[theirs])
     every = {method: table.values("all", **at[method]) for method in METHODS}
     measured["phi2_minus_phi3_of_distance"] = ratio_estimate(every["phi2"] - every["phi3"], optimal - every[PLAIN])
-    above, best = [], []
+    size = np.abs([_of_walls(settings, result, grid.default) for result in results]).mean(axis=1)
+    measured["optimal_size"] = mean_estimate(size)
+    measured["phi2_minus_phi3_of_optimal"] = ratio_estimate(every["phi2"] - every["phi3"], size)
+    above, best, first = [], [], [cell["walls"] == grid.default["walls"] for cell in grid.cells]
     for cell in grid.cells:
         mean = {method: float(table.values("all", **grid.where(method, cell)).mean()) for method in METHODS}
         above.append(min(mean[phi] for phi in PHI) > mean[STATE] > mean[PLAIN])
         best.append(max(mean[phi] for phi in PHI) == mean["phi3"])
-    shares = {"grid_features_above_state_above_uniform": share_of(above), "grid_phi3_best": share_of(best)}
-    return measured | shares
+    for name, answers in (("features_above_state_above_uniform", above), ("phi3_best", best)):
+        # The first reading's grid has one density of walls.
+        measured[f"grid_{name}"] = share_of([a for a, read in zip(answers, first, strict=True) if read])
+        measured[f"walls_grid_{name}"] = share_of(answers)
+    return measured
+
+
+def _of_walls(settings: Mapping, result: Mapping, cell: Mapping) -> list[float]:
+    """The optimal rewards of the test tasks of a cell's layouts."""
+    return result["optimal_of_walls"][settings["walls"].index(cell["walls"])]
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The whole grid, a row for each cell, then the curves of the default under every schedule."""
     table, grid = _table(results), grid_of(settings)
-    optimal = np.array([result["optimal"] for result in results])
     found = []
     for cell in grid.cells:
+        optimal = np.array([np.mean(_of_walls(settings, result, cell)) for result in results])
         every = {method: table.values("all", **grid.where(method, cell)) for method in METHODS}
         row = {**cell, **{f"all_{method}": float(values.mean()) for method, values in every.items()}}
         for method in METHODS[1:]:

@@ -4,7 +4,7 @@ Every prior counts the exact optimal policies of the same training factories, in
 Thesis: §3.4.4, §3.4.5, Figure 3.11.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -16,26 +16,26 @@ from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid, run_grid
 
 PLAIN, STATE = "uniform", "state"
 METHODS = (PLAIN, STATE, *PHI)
-KEYS = ("encoding", "schedule", "ties", "alpha0", "max_steps", "policies")
+KEYS = ("encoding", "schedule", "ties", "alpha0", "max_steps", "policies", "walls")
 """The choices left open that make a cell of the grid; only the prior over states reads ``encoding``."""
 
 
 def grid_of(settings: Mapping) -> Grid:
     """The grid: schedules of ε × ties, and every other choice one at a time."""
     singly = {"encoding": "encodings", "alpha0": "alpha0", "max_steps": "max_steps", "policies": "policies"}
-    reads = {PLAIN: READ_WITHOUT_PRIOR, **dict.fromkeys(PHI, KEYS[1:])}
+    singly["walls"] = "walls"
+    reads = {PLAIN: (*READ_WITHOUT_PRIOR, "walls"), **dict.fromkeys(PHI, KEYS[1:])}
     return Grid.crossed(settings, KEYS, {"schedule": "schedules", "ties": "ties"}, singly, reads)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """One run: every method in every cell of the grid."""
     own, grid = (seed, "C3.7", cell["run"]), grid_of(settings)
-    conditions = [*PHI, *(f"{STATE} {encoding}" for encoding in settings["encodings"])]
-    priors = modified_tasks.exact_priors(settings, (*own, "training"), conditions)
-    testing = modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"])
+    of_walls = {tuple(walls): _tasks(settings, own, walls, grid.default) for walls in settings["walls"]}
 
     def numbers(method: str, choice: Mapping) -> dict:
         name = f"{STATE} {choice['encoding']}" if method == STATE else method
+        priors, testing = of_walls[tuple(choice["walls"])]
         prior = None
         if method != PLAIN:
             prior = with_pseudo_count(priors[name, choice["policies"]], choice["alpha0"])
@@ -51,4 +51,14 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         return found
 
     found = list(run_grid(grid, "method", PLAIN, METHODS[1:], numbers))
-    return {**cell, "optimal": float(np.mean([p.optimal for p in testing])), "found": found}
+    optimal = [[p.optimal for p in of_walls[tuple(walls)][1]] for walls in settings["walls"]]
+    at_default = settings["walls"].index(grid.default["walls"])
+    return {**cell, "optimal": float(np.mean(optimal[at_default])), "optimal_of_walls": optimal, "found": found}
+
+
+def _tasks(settings: Mapping, own: tuple, walls: Sequence[int], default: Mapping):
+    """Priors and test tasks of layouts with so many inner walls; every code of states at the default alone."""
+    encodings = settings["encodings"] if walls == default["walls"] else [default["encoding"]]
+    conditions = [*PHI, *(f"{STATE} {encoding}" for encoding in encodings)]
+    priors = modified_tasks.exact_priors(settings, (*own, "training"), conditions, walls)
+    return priors, modified_tasks.problems_of(settings, (*own, "testing"), settings["test_tasks"], walls)

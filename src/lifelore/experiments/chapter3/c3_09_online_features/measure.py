@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, difference_estimate, mean_estimate, ratio_estimate
-from lifelore.experiments.chapter3.c3_09_online_features.run import ASKED, KEYS, METHODS, grid_of
+from lifelore.experiments.chapter3.c3_09_online_features.run import ASKED, KEYS, METHODS, OF_E4, grid_of
 from lifelore.experiments.chapter3.factory.online_selection import FULL, SELECTED, UNIFORM
+from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.estimates import share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -44,7 +45,35 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for cell in grid.cells:
         mean = {method: float(x.mean()) for method, x in _means(settings, table, cell, "first").items()}
         ordered.append(mean[SELECTED] >= mean[FULL] > mean[UNIFORM])
-    return {**measured, "grid_order_at_first": share_of(ordered)}
+    return {**measured, "grid_order_at_first": share_of(ordered), **_of_optimal(settings, results)}
+
+
+def _of_optimal(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Differences after the last episode and when learnt on, as shares of the optimal reward's size.
+
+    The size of an optimal reward is its absolute value: its moves cost about what the task pays, so that it is
+    above zero in some tasks and below in others.
+    """
+    table, grid = _table(results), grid_of(settings)
+    sizes = np.abs([result["optimal"] for result in results])
+    size, long_size = sizes[:, 1:].mean(axis=1), sizes[:, -settings["long_tasks"] :].mean(axis=1)
+    measured = {"optimal_size": mean_estimate(size)}
+    for source in settings["sources"]:
+        name_of, cell = source.replace(", ", "_"), {**grid.default, "source": source}
+        if source == OF_E4:
+            first = _means(settings, table, cell, "first")
+            for ours, theirs in PAIRS:
+                difference = difference_estimate(first[ours], first[theirs])
+                measured[f"{name_of}_first_{ours}_minus_{theirs}"] = difference
+        last = _means(settings, table, cell, "last")
+        loss = {m: table.values("loss_at_end", **grid.where(m, cell)) for m in METHODS}
+        for ours, theirs in PAIRS:
+            name = f"{ours}_minus_{theirs}_of_optimal"
+            measured[f"{name_of}_last_{name}"] = ratio_estimate(last[ours] - last[theirs], size)
+            measured[f"{name_of}_end_{name}"] = ratio_estimate(loss[theirs] - loss[ours], long_size)
+        for method in METHODS:
+            measured[f"{name_of}_end_{method}_below_optimal"] = ratio_estimate(loss[method], long_size)
+    return measured
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -65,4 +94,9 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             for part in PARTS:
                 curve = table.curve(part, digits=2, parts=("mean", "deviation"), **where)
                 found.append({"curve_of": method, "of_source": source, "part": part, **curve})
+    found.append({"curve_edges": block_edges(settings["long_episodes"]).tolist()})
+    for source in settings["sources"]:
+        for method in METHODS:
+            where = grid.where(method, {**grid.default, "source": source})
+            found.append({"loss_of": method, "loss_source": source, **table.curve("loss", 2, ("mean",), **where)})
     return found

@@ -7,9 +7,11 @@ import numpy as np
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter3.c3_10_selection_over_tasks.run import SERIES, mask_of
 from lifelore.experiments.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
-from lifelore.experiments.engine.estimates import exact_share
+from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 
 GOAL = mask_of(CARDINALS)
+NEARLY_ALL = 0.8
+"""Share of the runs above which, for certain, a set counts as the one that the selection converges to."""
 
 
 def _masks(results: Sequence[Mapping], series: str) -> np.ndarray:
@@ -30,7 +32,7 @@ def settled_after(masks: np.ndarray) -> list[int]:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """The features that each series ends with, and in how many runs it has settled at φ2."""
-    measured = {}
+    measured, converged = {}, []
     for series in SERIES:
         masks, name = _masks(results, series), series.replace(",", "").replace(" ", "_")
         of_feature = dict(zip(FULL_SET.names, shares(masks)[:, -1], strict=True))
@@ -43,7 +45,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         settled = (masks[:, -settings["last"] :] == GOAL).all(axis=1)
         measured[f"{name}_settled_share"] = exact_share(settled.tolist())
         measured[f"{name}_settled_after"] = mean_estimate(settled_after(masks))
-    return measured
+        converged.append(is_above(measured[f"{name}_settled_share"], NEARLY_ALL))
+    return {**measured, "grid_settled": share_of(converged)}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

@@ -32,7 +32,7 @@ SERIES = {
     "learnt longer": Series(Counting("learnt", "tried"), long=True),
     "learnt, explored uniformly": Series(Counting("learnt", "tried"), explores=False),
 }
-"""The conditions read the first two."""
+"""The first reading reads the first two; the second the third, which counts as E4 says, and all as a grid."""
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -25,6 +25,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     drawn, proportion = table.paired("all", {"form": DIRICHLET}, {"form": PROPORTION}, **default)
     without = table.values("all", form=WITHOUT_PRIOR, **grid.without_prior(default))
     measured["dirichlet_minus_proportion_of_distance"] = ratio_estimate(drawn - proportion, optimal - without)
+    size = np.array([result["optimal_size"] for result in results])
+    measured["dirichlet_minus_proportion_of_optimal"] = ratio_estimate(drawn - proportion, size)
     compared = [_beside_proportion(table, cell, form) for cell in grid.cells for form in run.SOFTMAXES]
     poor = [is_above(c["early_difference"], 0.0) and is_above(c["early_spread_ratio"], 1.0) for c in compared]
     return measured | {"grid_softmax_poor_and_spread": share_of(poor)}

@@ -5,8 +5,9 @@ training tasks, pooled by observation, make the prior; every form meets the same
 thesis prints the softmax of the counts U. An observation pools the counts of all states that share it, which makes
 hundreds of them, and the thesis names no normalisation: U is also divided by the number of policies, and the
 softmax is also taken of the proportions, times a scale. An optimal episode's moves cost about what its task pays,
-so that its reward lies near 0; the scale of *comparable* is the distance from learning without a prior to the
-optimum. Thesis: §3.2.2.1, §3.4.7, Figure 3.15.
+so that its reward lies near 0; the first reading's scale of *comparable* is the distance from learning without a
+prior to the optimum, the second's the absolute value of the optimal reward, a mean over tasks.
+Thesis: §3.2.2.1, §3.4.7, Figure 3.15.
 """
 
 from collections.abc import Mapping
@@ -61,8 +62,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         curve = modified_tasks.curve_across(rewards) if grid.is_default_but_for_schedule(how) else {}
         return {**summary(rewards, settings["early"]), **curve}
 
-    optimal = float(np.mean([problem.optimal for problem in run.testing]))
-    return {**cell, "optimal": optimal, "found": list(run_grid(grid, "form", WITHOUT_PRIOR, FORMS, numbers))}
+    optimal = [problem.optimal for problem in run.testing]
+    means = {"optimal": float(np.mean(optimal)), "optimal_size": float(np.abs(optimal).mean())}
+    return {**cell, **means, "found": list(run_grid(grid, "form", WITHOUT_PRIOR, FORMS, numbers))}
 
 
 def run_of(settings: Mapping, seed: int, number: int) -> Tasks:

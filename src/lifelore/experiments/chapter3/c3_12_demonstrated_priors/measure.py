@@ -22,6 +22,7 @@ class Compared:
         self.table = ResultsTable.nested(results, "found", ("method", *run.KEYS))
         self.groups = ResultsTable.nested(results, "groups", ("people", "weight"))
         self.optimal = np.array([result["optimal"] for result in results])
+        self.size = np.array([result["optimal_size"] for result in results])
 
     def rewards(self, method: str, cell: Mapping, measure: str = "all") -> np.ndarray:
         """A method's mean reward of an episode in a cell of the grid, run by run."""
@@ -32,6 +33,10 @@ class Compared:
         """Rewards minus those of the self-trained prior, over the distance from no prior to the optimum."""
         distance = self.optimal - self.rewards(WITHOUT_PRIOR, cell)
         return ratio_estimate(rewards - self.rewards(SELF, cell), distance)
+
+    def of_optimal(self, rewards: np.ndarray, cell: Mapping) -> Estimate:
+        """Rewards minus those of the self-trained prior, over the absolute value of the optimal reward."""
+        return ratio_estimate(rewards - self.rewards(SELF, cell), self.size)
 
     def gain(self, rewards: np.ndarray, cell: Mapping) -> Estimate:
         """Rewards minus those without a prior."""
@@ -56,6 +61,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "self_minus_uniform": compared.gain(compared.rewards(SELF, default), default),
         "varied_minus_uniform": compared.gain(varied, default),
         "varied_minus_self_of_distance": compared.of_distance(varied, default),
+        "shown_minus_self_of_optimal": compared.of_optimal(compared.rewards(SHOWN, default), default),
+        "varied_minus_self_of_optimal": compared.of_optimal(varied, default),
     }
     for name, method in (("uniform", WITHOUT_PRIOR), ("self", SELF), ("shown", SHOWN)):
         measured[f"early_{name}"] = mean_estimate(compared.rewards(method, default, "early"))

@@ -126,8 +126,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         {"people": people, "weight": weight, **learn(grid.default, from_shown(run, grid.default, people, weight))}
         for people, weight in product(settings["people"], WEIGHTS)
     ]
-    optimal = float(np.mean([problem.optimal for problem in run.testing]))
-    return {**cell, "optimal": optimal, "found": found, "groups": groups, "people": _competence(settings, run)}
+    optimal = [problem.optimal for problem in run.testing]
+    means = {"optimal": float(np.mean(optimal)), "optimal_size": float(np.abs(optimal).mean())}
+    return {**cell, **means, "found": found, "groups": groups, "people": _competence(settings, run)}
 
 
 def _competence(settings: Mapping, run: Tasks) -> list[dict]:

@@ -26,7 +26,7 @@ PRINTED = {
 def draw(result: Mapping) -> Figure:
     """Bars at the default above, the grid of loop densities and experts below."""
     settings = result["settings"]
-    table = ResultsTable(result["rows"], ("loops", "experts", "way", "agent"))
+    table = ResultsTable((row for row in result["rows"] if "way" in row), ("loops", "experts", "way", "agent"))
     figure = new_figure(10.4, 8.4)
     upper, lower = two_rows(figure, (1, 1.05))
     axes = upper.subplots()

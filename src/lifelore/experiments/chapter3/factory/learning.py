@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.exploration import prior_rows
-from lifelore.core.learning.curve import Curve
-from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
+from lifelore.core.learning.curve import Curve, new_curve
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule, learn, new_learner, uniform_rows
 from lifelore.core.mdp import TERMINAL, Tables
 from lifelore.core.planning.planning import best_actions, greedy_policy, policy_values
 from lifelore.core.streams import stream
@@ -152,6 +152,20 @@ def rows_of(problem: Problem, prior: ActionPrior, encoding: str | None, ties: st
 def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
     """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
     return learnt(problem.tables, problem.stream, rows, schedule)
+
+
+def learn_in_stages(
+    problem: Problem, rows: Rows | None, schedule: Schedule, stages: Iterable[int]
+) -> tuple[Curve, list[float]]:
+    """The curve of a task learnt to the end, and the greedy policy's return after each of `stages` episodes."""
+    tables, own, world = problem.tables, stream(*problem.stream, "learner"), stream(*problem.stream, "world")
+    learner = new_learner(tables.n_states, tables.n_actions, world, own)
+    curve, greedy = new_curve(schedule.epsilon.size), []
+    for stage in stages:
+        so_far = schedule._replace(epsilon=schedule.epsilon[:stage], alpha=schedule.alpha[:stage])
+        learn(tables, rows or uniform_rows(tables), so_far, learner, curve, stage * schedule.max_steps)
+        greedy.append(greedy_return(problem, learner.q))
+    return curve, greedy
 
 
 def greedy_return(problem: Problem, q: NDArray[np.float64]) -> float:

@@ -4,7 +4,7 @@ All methods meet a task with the same layout, list and random numbers, so that d
 paired. Thesis: §3.4.4.
 """
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,7 +21,7 @@ from lifelore.core.streams import stream
 from lifelore.domains.factory import contexts
 from lifelore.domains.factory.contexts import FEATURE_NAMES, FEATURE_SIZES, PHI
 from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
-from lifelore.domains.factory.modified_factory import modified_factory
+from lifelore.domains.factory.modified_factory import INNER_WALLS, modified_factory
 from lifelore.experiments.chapter3.factory.learning import optimal_way
 from lifelore.experiments.engine.learning_run import learnt
 
@@ -54,10 +54,13 @@ class Problem(NamedTuple):
     stream: tuple
 
 
-def problem_of(settings: Mapping, names: tuple) -> Problem:
-    """The problem that the streams of `names` draw: a layout, then a list of ``components`` components."""
+def problem_of(settings: Mapping, names: tuple, walls: Sequence[int] = INNER_WALLS) -> Problem:
+    """The problem that the streams of `names` draw: a layout, then a list of ``components`` components.
+
+    `walls` are the least and the most inner walls of a zone.
+    """
     random = stream(*names, "factory")
-    factory = modified_factory(random, settings["discount"])
+    factory = modified_factory(random, settings["discount"], inner_walls=(walls[0], walls[1]))
     task = factory.task(factory.draw_components(random, settings["components"]))
     tables = task.tables()
     q = task.optimal_q(tables)
@@ -74,16 +77,18 @@ def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:
     return contexts.state_contexts(problem.task, conditioned_on.removeprefix("state "))
 
 
-def problems_of(settings: Mapping, names: tuple, n: int) -> list[Problem]:
+def problems_of(settings: Mapping, names: tuple, n: int, walls: Sequence[int] = INNER_WALLS) -> list[Problem]:
     """`n` problems; more of them leave the first ones as they are."""
-    return [problem_of(settings, (*names, i)) for i in range(n)]
+    return [problem_of(settings, (*names, i), walls) for i in range(n)]
 
 
-def exact_priors(settings: Mapping, names: tuple, conditions: Iterable[str]) -> dict[tuple[str, int], ActionPrior]:
+def exact_priors(
+    settings: Mapping, names: tuple, conditions: Iterable[str], walls: Sequence[int] = INNER_WALLS
+) -> dict[tuple[str, int], ActionPrior]:
     """Priors with α⁰ = 1 from exact policies, by what they are conditioned on and how many ``policies`` count."""
     counting, found = {name: ActionPrior(N_ACTIONS, 1.0) for name in conditions}, {}
     for i in range(max(settings["policies"])):
-        problem = problem_of(settings, (*names, i))
+        problem = problem_of(settings, (*names, i), walls)
         for name, prior in counting.items():
             prior.update(contexts_of(problem, name), problem.best)
             if i + 1 in settings["policies"]:
