@@ -92,3 +92,8 @@ def test_a_small_claim_stands_in_one_module(tmp_path, monkeypatch):
     monkeypatch.delitem(sys.modules, "small.run")
     with pytest.raises(InputError, match="missing draw"):
         Claim.load("C2.9", tmp_path / "small", "small")
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print; shared = ('sizes',)")
+    importlib.invalidate_caches()
+    monkeypatch.delitem(sys.modules, "small.run")
+    with pytest.raises(InputError, match=r"shared of .* must name settings, got sizes"):
+        Claim.load("C2.9", tmp_path / "small", "small")

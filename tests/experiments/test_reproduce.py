@@ -1,6 +1,7 @@
 """Runs that stop and go on, and what they refuse. A small claim of our own counts what is run."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -84,6 +85,22 @@ def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(toy, tmp_path):
     assert sorted(RAN) == [0, 1, 2, 3, 4, 5]
     fresh = reproduce(["C3.1"], out=tmp_path / "fresh")[0]
     assert {**resumed, "seconds": 0} == {**fresh, "seconds": 0}
+
+
+def test_claims_that_share_cells_run_them_once(toy, tmp_path, monkeypatch):
+    claims = {name: replace(toy, id=name, shared=("fail_at",)) for name in ("C3.1", "C3.2")}
+    monkeypatch.setattr(module, "claim_of", claims.__getitem__)
+    one, other = reproduce(["C3.1", "C3.2"], out=tmp_path, jobs=1)
+    assert RAN == [0, 1, 2, 3, 4, 5]
+    assert (one["rows"], one["seconds"]) == (other["rows"], other["seconds"])
+    assert not (tmp_path / "C3.1" / "cells").exists()
+    # Of settings that the run of a cell does not read none matters; those that it reads do, and so does the seed.
+    longer = reproduce(["C3.2"], out=tmp_path, overrides={"n": 8}, jobs=1)[0]
+    assert RAN[6:] == [6, 7]
+    assert len(longer["rows"]) == 8
+    reproduce(["C3.2"], out=tmp_path, overrides={"n": 1, "fail_at": 5}, jobs=1)
+    reproduce(["C3.2"], out=tmp_path, overrides={"n": 1}, seed=1, jobs=1)
+    assert RAN[8:] == [0, 0]
 
 
 def test_a_cell_that_fails_stops_the_run_with_its_own_error(toy, tmp_path):

@@ -165,7 +165,26 @@ def test_of_both_only_the_misread_are_asked_what_they_were_said_to_be():
 def test_without_mistakes_their_share_is_missing():
     found = CLAIM.measure(SETTINGS, [{"set": 0, "rows": SECOND}])
     assert found["right_in_given_order"].value == 1
-    assert "misread_both_said_to_be_on" not in found
+    assert found["misread_both_said_to_be_on"].n == 0
+    plain = {name: number.to_dict() for name, number in found.items()}
+    assert CLAIM.predicate.verdict(plain) == "cannot be tested"
+
+
+def test_the_printed_rule_and_the_grid_by_hand():
+    # Four data sets as the first, so that eight of eight misread *both* are said to be *on* (Wilson: above 67 %).
+    sets = [
+        {"set": number, "rows": [row | {"scene": f"{number}{row['scene']}"} for row in FIRST]}
+        for number in range(4)
+    ]
+    found = CLAIM.measure(SETTINGS, sets)
+    assert found["right_as_printed"] == found["right_in_given_order"]
+    # Without a longest displacement in five kernels and two treatments of weak contacts, and in the kernel whose
+    # contacts are all weak where the strongest is kept, each with two kinds of votes. With it no *adjacent* is
+    # right, so that *both* is no harder.
+    share = found["readings_in_which_all_is_so"]
+    assert (share.value, share.ci95, share.n) == (pytest.approx((5 * 2 * 2 + 2) / 48), None, 48)
+    weak = [row | {"contacts": dict.fromkeys(NAMES, row["contacts"].get(WEAK))} for row in FIRST]
+    assert CLAIM.measure(SETTINGS, [{"set": 0, "rows": weak}])["right_as_printed"].value == 0
 
 
 @pytest.mark.usefixtures("one_method")

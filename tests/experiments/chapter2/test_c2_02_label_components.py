@@ -14,7 +14,7 @@ from lifelore.experiments.chapter2.c2_02_label_components.measure import (
     split_answers,
 )
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, kernel_name
-from lifelore.experiments.chapter2.scoring.pair_validation import Reading, Votes
+from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, Reading, Votes
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.2")
@@ -155,15 +155,38 @@ def test_a_component_may_agree_more():
     assert not [name for name in found if "real" in name]
 
 
-def test_rows_are_by_data_set_then_by_kernel():
+def test_rows_are_by_data_set_then_by_reading():
     found = rows(SETTINGS, RESULTS)
-    assert [row["data_set"] for row in found] == ["0", "1", "real"] * 7
-    assert ["kernel" in row for row in found] == [False] * 3 + [True] * 18
-    assert [row["kernel"] for row in found[3::3]] == NAMES
+    assert [row["data_set"] for row in found] == ["0", "1", "real"] + ["simulated", "real"] * 12
+    assert ["kernel" in row for row in found] == [False] * 3 + [True] * 24
+    assert [(row["kernel"], row["drop"]) for row in found[3::2]] == [(name, d) for name in NAMES for d in DROPS]
     assert found[1]["displacements"] == 24
-    # A tenth of the splits, and the contacts are the same under every kernel.
-    fewer = split_answers(SETTINGS, RESULTS[0]["rows"], Reading(STANDARD), 2, "0")
-    assert {key: found[3][key] for key in fewer} == fewer
+    # A tenth of the splits, and the contacts are the same in every reading.
+    fewer = [
+        split_answers(SETTINGS, result["rows"], Reading(STANDARD), 2, str(result["set"])) for result in RESULTS
+    ]
+    assert {key: found[3][key] for key in fewer[0]} == {
+        key: np.mean([fewer[0][key], fewer[1][key]]) for key in fewer[0]
+    }
+    assert {key: found[4][key] for key in fewer[2]} == fewer[2]
+
+
+def test_the_printed_rule_and_the_grid_by_hand():
+    def weak(row):  # its only contacts have six support vectors, but for one kernel
+        contacts = {
+            side: [[*place[:3], 6] for place in places] for side, places in row["contacts"][STANDARD].items()
+        }
+        return row | {"contacts": dict.fromkeys(NAMES, contacts) | {NAMES[0]: row["contacts"][NAMES[0]]}}
+
+    # Six data sets, as an interval of a mean needs several; they differ in their names, and so in their splits.
+    results = [{"set": number, "rows": [weak(row) for row in apart(f"{number}-")]} for number in range(6)]
+    found = measure(SETTINGS, results)
+    assert found["on_right"].value == found["adjacent_right"].value == 1
+    assert found["on_right_as_printed"].n == 0
+    assert np.isnan(found["on_right_as_printed"].value)
+    # Strongest contacts kept: six kernels. All weak ones dropped: the one kernel in which none is weak.
+    share = found["readings_in_which_both_beat_their_majority"]
+    assert (share.value, share.ci95, share.n) == (7 / 12, None, 12)
 
 
 def test_what_is_printed_is_of_49():

@@ -6,7 +6,10 @@ import pytest
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.core.relations import ADJACENT, ON, PairLabel
 from lifelore.experiments.chapter2.c2_03_displacements_by_relation.measure import (
+    BOUNDS,
     CHOICES,
+    FRACTIONS,
+    all_is_so,
     measure,
     plotted,
     rows,
@@ -72,6 +75,9 @@ def test_measures_by_hand():
     assert found["sign_of_x_tells_left_right"].value == pytest.approx(2 / 3)
     assert found["sign_of_x_tells_left_right"].n == 3
     assert not any(name.endswith("_real") for name in found)
+    assert found["adjacent_in_band_as_printed"] == found["adjacent_in_band"]
+    # In every reading the sign is right of two in three.
+    assert (found["readings_in_which_all_is_so"].value, found["readings_in_which_all_is_so"].n) == (0, 36)
 
 
 def test_the_other_side_counts_as_one_side_too():
@@ -81,6 +87,16 @@ def test_the_other_side_counts_as_one_side_too():
     assert found["on_on_one_side"].value == 1
     assert found["on_outside_band"].value == found["adjacent_in_band"].value == 1
     assert found["on_on_one_side"].ci95 == (pytest.approx(0.3424, abs=1e-4), 1)
+    assert found["readings_in_which_all_is_so"].value == 1
+
+
+def test_bounds_are_those_filed_and_values_on_them_count():
+    assert [condition.bound for condition in CLAIM.predicate.conditions] == list(BOUNDS)
+    assert all_is_so(dict(zip(FRACTIONS, BOUNDS, strict=True)))
+    for name, bound in zip(FRACTIONS, BOUNDS, strict=True):
+        beyond = bound + (0.01 if name == FRACTIONS[0] else -0.01)
+        assert not all_is_so(dict(zip(FRACTIONS, BOUNDS, strict=True)) | {name: beyond})
+        assert not all_is_so(dict(zip(FRACTIONS, BOUNDS, strict=True)) | {name: None})
 
 
 def test_real_pairs_stand_beside_and_do_not_decide():

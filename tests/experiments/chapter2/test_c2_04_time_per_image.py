@@ -37,6 +37,12 @@ def test_measures_by_hand():
     assert found["seconds_stereo"].median == pytest.approx(0.25)
     assert found["seconds_stereo_95_percent"].value == pytest.approx(0.3 + 0.85 * 0.3)
     assert (found["points_kinect"].value, found["points_kinect"].n) == (100, 3)
+    # Of the three kinds the interval of the stereo pictures reaches beyond half a second.
+    assert (found["seconds_of_kinds_well_under_one"].value, found["seconds_of_kinds_well_under_one"].n) == (
+        pytest.approx(1 if found["seconds_stereo"].ci95[1] <= 0.5 else 2 / 3),
+        3,
+    )
+    assert found["seconds_stereo_dense"].value == pytest.approx(0.2)
 
 
 @pytest.mark.parametrize(

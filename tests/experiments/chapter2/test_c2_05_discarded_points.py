@@ -191,6 +191,11 @@ def test_measures_by_hand(results):
         assert values[f"lost_discarded_0.7_{method}_simulated"] == 1.0
     # Always saying "on" is right of all.
     assert values["less_majority_thesis_simulated"] == -1.0
+    # Of 30 and 50 % nothing is known, and at 70 % neither reading is robust.
+    assert (values["robust_readings_and_levels"], found["robust_readings_and_levels"].n) == (0, 6)
+    for scene in (scene for result in results[1:] for scene in result["scenes"]):
+        scene["views"][SPOILT]["literal"] = [ROW]
+    assert measure(SETTINGS, results)["robust_readings_and_levels"].value == pytest.approx(1 / 6)
     # Measures of real scenes in a run without them.
     assert np.isnan(values["lost_discarded_0.7_thesis_real"])
 

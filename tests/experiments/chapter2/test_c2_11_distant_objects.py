@@ -4,7 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate
 from lifelore.experiments.chapter2.c2_11_distant_objects.measure import (
+    both_are_so,
     findings,
     measure,
     pair_counts,
@@ -84,6 +86,8 @@ def test_measures_by_hand(results):
     assert values["no_support_vectors_on_a_side_far_simulated"] == 0
     assert found["no_support_vectors_on_a_side_far_simulated"].n == 8
     interval = found["no_contacts_far_standard_simulated"].ci95
+    # Three in four is too few, whatever the kernel.
+    assert (values["kernels_in_which_both_are_so"], found["kernels_in_which_both_are_so"].n) == (0, 2)
     # Clopper and Pearson of 3 in 4, from tables.
     assert interval == pytest.approx((0.1941, 0.9937), abs=1e-4)
     by_kernel = findings(SETTINGS, results)["simulated"]
@@ -93,6 +97,20 @@ def test_measures_by_hand(results):
     assert (by_kernel["all"]["not_optimal"].value, by_kernel["all"]["not_optimal"].n) == (1 / 24, 24)
     # 1 m is 10 sizes of two pairs and 5 of the others.
     assert by_kernel["all"]["far_in_sizes"].value == pytest.approx(7.5)
+
+
+@pytest.mark.parametrize(
+    ("none", "few", "so"),
+    [
+        ((0.95, 1), (1, 10), True),
+        ((0.949, 1), (1, 10), False),
+        ((0.95, 1), (1, 10.1), False),
+        (None, (1, 2), False),
+    ],
+)
+def test_both_are_so_by_whole_intervals(none, few, so):
+    ends = {"no_contacts_far": none, "support_vectors_far": few}
+    assert both_are_so({name: Estimate(1.0, 1.0, own, 9) for name, own in ends.items()}) is so
 
 
 def test_rows_by_hand(results):

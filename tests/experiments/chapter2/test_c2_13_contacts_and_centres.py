@@ -5,6 +5,8 @@ from importlib.util import find_spec
 import numpy as np
 import pytest
 
+from lifelore.core.metrics import Estimate
+from lifelore.experiments.chapter2.c2_13_contacts_and_centres import measure as c2_13
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import (
     centres_apart,
     given,
@@ -16,7 +18,7 @@ from lifelore.experiments.chapter2.c2_13_contacts_and_centres.measure import (
 )
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import BALL, BLOCK, LESSON, SCENE, run_cell
 from lifelore.experiments.chapter2.c2_13_contacts_and_centres.run import cells as block_cells
-from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD
+from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, kernel_name
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.13")
@@ -75,6 +77,27 @@ def test_contacts_and_centres_are_asked_each_by_itself():
     # Its contact is that of a thing on another, its centre that of a thing beside another.
     scene = row(FIGURE[:1], scene="x", centres=(0.0, 0.0, 0.099))
     assert given([*beside, *upon], [scene]) == {"contacts": ["on"], "centres": ["adjacent"]}
+
+
+def test_the_grid_asks_all_of_every_camera_and_kernel(monkeypatch):
+    good, bad = Estimate(0.95, 1.0, (0.9, 1.0), 9), Estimate(0.95, 1.0, (0.89, 1.0), 9)
+    lost = Estimate(0.5, 0.5, (0.4, 0.6), 9)
+    kept = {"one_node_with_threshold": good, "kept_node_is_topmost": good}
+    first = kernel_name(*KERNELS[0])
+    monkeypatch.setattr(c2_13, "lessons_and_scenes", lambda results, camera: ([], [camera]))
+    monkeypatch.setattr(
+        c2_13,
+        "node_measures",
+        lambda scenes, kernel=STANDARD: kept | ({"kept_node_is_topmost": bad} if kernel == first else {}),
+    )
+    # By the second camera centres tell on as well.
+    centres = {"stereo": lost, "kinect": good}
+    monkeypatch.setattr(
+        c2_13, "on_measures", lambda lessons, scenes: {"on_by_contacts": good, "on_by_centres": centres[scenes[0]]}
+    )
+    found = c2_13.measure({"cameras": ["stereo", "kinect"]}, [])
+    share = found["cameras_and_kernels_in_which_all_is_so"]
+    assert (share.value, share.ci95, share.n) == (5 / 12, None, 12)
 
 
 def test_cells_are_lots_of_lessons_and_scenes_by_camera():

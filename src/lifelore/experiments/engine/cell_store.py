@@ -21,7 +21,7 @@ def canonical(data: Any) -> str:
 
 
 class CellStore:
-    """The finished cells of one run of one claim.
+    """The finished cells of one run of one claim, or of all claims that share them.
 
     Parameters
     ----------

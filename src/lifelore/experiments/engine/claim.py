@@ -9,6 +9,9 @@
 
 A small claim may leave out one or two of the modules; their functions then stand in a module that is there.
 
+Claims with the same ``run_cell`` share their finished cells where a module has ``shared = ("pairs", "camera")``:
+the names of the settings that ``run_cell`` reads. Without it all settings count, and cells belong to one claim.
+
 Results of cells are plain data (what JSON can hold), so that a stored cell equals a fresh one.
 """
 
@@ -81,6 +84,8 @@ class Claim:
         What the claim says in one plain sentence, true or false, for the list of all claims.
     more : str
         What else was run, and choices; folded on the page.
+    shared : tuple of str, optional
+        The settings that `run_cell` reads, if claims with the same `run_cell` share their finished cells.
     """
 
     id: str
@@ -105,6 +110,7 @@ class Claim:
     shown_by: Mapping[str, str] = field(default_factory=dict)
     sentence: str = ""
     more: str = ""
+    shared: tuple[str, ...] | None = None
 
     @classmethod
     def load(cls, claim_id: str, folder: Path, package: str) -> "Claim":
@@ -127,14 +133,20 @@ class Claim:
             )
             raise InputError(f"{path} must have the keys of a claim; {keys}")
         modules = [import_module(f"{package}.{name}") for name in MODULES if (folder / f"{name}.py").is_file()]
-        found = {name: [vars(m)[name] for m in modules if name in vars(m)] for name in (*FUNCTIONS, "check")}
+        found = {
+            name: [vars(m)[name] for m in modules if name in vars(m)] for name in (*FUNCTIONS, "check", "shared")
+        }
         found["cells"] = found["cells"] or [each_run]
+        full = data["settings"]["full"]
         absent = [name for name in FUNCTIONS if not found[name]]
+        unread = {name for names in found["shared"] for name in names} - full.keys()
+        if unread:
+            raise InputError(f"shared of {folder} must name settings, got {', '.join(sorted(unread))}")
         if absent:
             raise InputError(
                 f"modules of {folder} must define {', '.join(FUNCTIONS)}; missing {', '.join(absent)}"
             )
-        full, predicate = data["settings"]["full"], Predicate.from_data(data)
+        predicate = Predicate.from_data(data)
         return cls(
             id=claim_id,
             title=data["title"],

@@ -54,8 +54,8 @@ def reproduce(
         Threads, at least 1; default: one a core.
     out : path
         Folder of the results. A quick run never takes the place of a full one: where that is there already it
-        writes into ``<out>/<ID>/quick``. Finished cells are kept in ``<out>/<ID>/cells``; a later run with the
-        same settings, seed and code takes them up.
+        writes into ``<out>/<ID>/quick``. Finished cells are kept in ``<out>/<ID>/cells`` (those that claims share
+        in ``<out>/shared/cells``); a later run with the same settings, seed and code takes them up.
     seed : int
     progress : callable, optional
         ``progress(done, total, label)``, called from this thread as cells finish; both count the cells of all
@@ -69,7 +69,8 @@ def reproduce(
     -------
     list of dict
         The results, each with exactly `RESULT_KEYS`; `seconds` is the processor time of the cells' threads,
-        whenever they were run, `made` is that of `provenance`, and `second` the verdict of the second reading.
+        whenever and for whichever claim they were run, `made` is that of `provenance`, and `second` the verdict of
+        the second reading.
 
     Raises
     ------
@@ -113,13 +114,22 @@ def _part_of(progress: Progress, before: int, total: int) -> Progress:
 def _run(
     claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: int, progress, scheduler: str | None
 ) -> dict:
-    code = source_key(claim.run_cell.__module__)
-    key = {"claim": claim.id, "settings": settings, "seed": seed, "code": code}
-    store = CellStore(out / claim.id / "cells", key)
+    store = _store(claim, settings, seed, out)
     kept = _run_cells(claim, settings, seed, store, jobs, progress, scheduler)
     result = finish(claim, mode, settings, seed, kept)
     _write(claim, result, _folder(out / claim.id, mode))
     return result
+
+
+def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
+    """Where the finished cells of a run are; claims that share cells use one place."""
+    module = claim.run_cell.__module__
+    made = {"seed": seed, "code": source_key(module)}
+    if claim.shared is None:
+        return CellStore(out / claim.id / "cells", {"claim": claim.id, "settings": settings, **made})
+    read = {name: settings[name] for name in claim.shared}
+    run = f"{module}.{claim.run_cell.__qualname__}"
+    return CellStore(out / "shared" / "cells", {"run": run, "settings": read, **made})
 
 
 def _folder(folder: Path, mode: str) -> Path:

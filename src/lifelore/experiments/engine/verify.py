@@ -27,7 +27,7 @@ def verify(
 ) -> list[dict[str, Any]]:
     """Run the claims of stored results again, with their settings and seed, and compare the numbers.
 
-    Nothing stored is changed, and no finished cell is taken up.
+    Nothing stored is changed, and no cell is taken up that was finished before.
 
     Parameters
     ----------
@@ -55,13 +55,13 @@ def verify(
     """
     results = {claim_id: _stored(Path(out), claim_id) for claim_id in ids or _with_results(Path(out))}
     found = []
-    for claim_id, stored in results.items():
-        with TemporaryDirectory() as folder:
+    with TemporaryDirectory() as folder:  # one for all: claims that share cells compute them once
+        for claim_id, stored in results.items():
             again = reproduce(
                 [claim_id], stored["mode"], stored["settings"], jobs, folder, stored["seed"], progress, engine,
                 scheduler,
             )[0]  # fmt: skip
-        found.append(compared(stored, again))
+            found.append(compared(stored, again))
     return found
 
 

@@ -5,11 +5,13 @@ vectors) loses most contacts of a real depth camera; here a soft margin gives th
 gives one *dipole*: the α-weighted centroids of all support vectors on either side, which always exist.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.errors import InputError
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
 from lifelore.perception.contacts.contact_points import ContactPoint, contact_edges, contact_point, facing_clusters
@@ -91,16 +93,46 @@ def interfaces(
     Deterministic: the same points give the same bits. The separators of a scene together may cost as much work as
     `separator.MOST_WORK`, divided by their numbers of points, with at least `LEAST_SHARE` per point.
     """
-    if settings.voxel and len(cloud.points):
-        cloud = voxelised(cloud, settings.voxel).cloud
-    pairs = near_pairs(split_objects(cloud), settings.near, settings.table_margin)
+    return interfaces_by_settings(cloud, [settings])[0]
+
+
+def interfaces_by_settings(
+    cloud: LabelledCloud, several: Sequence[ContactSettings]
+) -> list[tuple[Interface, ...]]:
+    """`interfaces` under several settings, the same bits; a separator that several settings need is computed once.
+
+    Raises `InputError` where they differ in ``voxel``, ``near`` or ``table_margin``: pairs would differ.
+    """
+    of_pairs = {(settings.voxel, settings.near, settings.table_margin) for settings in several}
+    if len(of_pairs) != 1:
+        raise InputError(
+            f"several must agree in voxel, near and table_margin, got {len(of_pairs)} different; "
+            "call interfaces for each"
+        )
+    ((voxel, near, table_margin),) = of_pairs
+    if voxel and len(cloud.points):
+        cloud = voxelised(cloud, voxel).cloud
+    pairs = near_pairs(split_objects(cloud), near, table_margin)
+    found: list[list[Interface]] = [[] for _ in several]
+    shares = [_share(pairs, settings) for settings in several]
+    for pair in pairs:
+        known: dict[tuple[float, float, float], Separator] = {}
+        for own, settings, share in zip(found, several, shares, strict=True):
+            own.append(interface(pair, settings, share, known))
+    return [tuple(own) for own in found]
+
+
+def _share(pairs: Sequence[NearPair], settings: ContactSettings) -> float:
+    """Kernel evaluations per point of each separator of a scene."""
     points = sum(_n_points(pair) * len(_scales(pair, settings)) for pair in pairs)
-    share = max(MOST_WORK / max(points, 1), LEAST_SHARE)
-    return tuple(interface(pair, settings, share) for pair in pairs)
+    return max(MOST_WORK / max(points, 1), LEAST_SHARE)
 
 
 def interface(
-    pair: NearPair, settings: ContactSettings = DEFAULT_CONTACT_SETTINGS, share: float = np.inf
+    pair: NearPair,
+    settings: ContactSettings = DEFAULT_CONTACT_SETTINGS,
+    share: float = np.inf,
+    known: dict[tuple[float, float, float], Separator] | None = None,
 ) -> Interface:
     """One near pair's contacts and dipoles.
 
@@ -110,10 +142,16 @@ def interface(
     settings : ContactSettings
     share : float
         Kernel evaluations per point of a separator, > 0, at most `separator.MOST_WORK` in all.
+    known : dict, optional
+        The pair's separators so far by (length, cost, largest work); those missing are added.
     """
     scales = _scales(pair, settings)
     max_work = min(share * _n_points(pair), MOST_WORK)
-    found = [_separator(pair, length, cost, max_work) for length, cost in scales]
+    known = {} if known is None else known
+    for length, cost in scales:
+        if (length, cost, max_work) not in known:
+            known[length, cost, max_work] = _separator(pair, length, cost, max_work)
+    found = [known[length, cost, max_work] for length, cost in scales]
     scale = (STANDARD_VOXEL / settings.voxel) ** 2 if settings.voxel else 1.0
     sides = list(_contacts(pair, found[0], settings, settings.min_support * scale))
     points_a, points_b = ([cluster for cluster, _ in side] for side in sides)

@@ -3,6 +3,7 @@
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -12,6 +13,7 @@ from lifelore.core.streams import stream
 from lifelore.experiments.chapter2.scenes import tabletop_pairs
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import BESIDE_US, KERNELS, Row, data_sets, kernel_name
 from lifelore.experiments.chapter2.scoring.pair_validation import (
+    AS_PRINTED,
     DROPS,
     WEIGHTS,
     Reading,
@@ -22,28 +24,54 @@ from lifelore.experiments.chapter2.scoring.pair_validation import (
     votes_of_neighbours,
 )
 from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, less_rate, score, score_row, share
-from lifelore.experiments.engine.estimates import UNMEASURED
+from lifelore.experiments.engine.estimates import UNMEASURED, is_above, share_of
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 
 SCENES = {"simulated": False, "real": True}
-cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
+cells, run_cell, shared = tabletop_pairs.pair_cells, tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Of the simulated pairs with A and B given: share right, beside the majority's rate, and how *both* fares."""
-    judged = given_order(data_sets(results), Reading(), real=False)
-    exact = share(judged, lambda pair: pair.exact)
+    """Of the simulated pairs with A and B given: share right, beside the majority's rate, and how *both* fares.
+
+    Then the share right as printed, where contacts of fewer than seven support vectors are dropped, and the share
+    of the `readings` in which all that the thesis's sentences say holds by its intervals.
+    """
+    sets = data_sets(results)
+    in_grid = [sentences(given_order(sets, reading, real=False)) for reading in readings(settings)]
+    said = [is_above(s.less_majority, 0) and is_above(s.hardest, 0) and is_above(s.as_on, 0.5) for s in in_grid]
+    default = sentences(given_order(sets, Reading(), real=False))
+    return {
+        "right_in_given_order": default.right,
+        "right_less_majority_rate": default.less_majority,
+        "next_hardest_recall_less_both": default.hardest,
+        "misread_both_said_to_be_on": default.as_on,
+        "right_as_printed": sentences(given_order(sets, AS_PRINTED, real=False)).right,
+        "readings_in_which_all_is_so": share_of(said),
+    }
+
+
+class Sentences(NamedTuple):
+    """What the thesis's sentences are about.
+
+    The share right; the same less the majority's rate; the next hardest recall less that of *both*; and of the
+    misread pairs that are *both* the share said to be *on*.
+    """
+
+    right: Estimate
+    less_majority: Estimate
+    hardest: Estimate
+    as_on: Estimate
+
+
+def sentences(judged: Sequence[JudgedPair]) -> Sentences:
+    """Of simulated pairs, each of a scene of its own."""
+    right = share(judged, lambda pair: pair.exact)
     rate = max(Counter(pair.truth.relation for pair in judged).values()) / len(judged)
     misread = [pair for pair in judged if pair.truth.relation == BOTH and not pair.exact]
-    found = {
-        "right_in_given_order": exact,
-        "right_less_majority_rate": less_rate(exact, rate),
-        "next_hardest_recall_less_both": hardest_margin(judged),
-    }
-    if misread:
-        found["misread_both_said_to_be_on"] = share(misread, lambda pair: pair.relation == ON)
-    return found
+    as_on = share(misread, lambda pair: pair.relation == ON) if misread else UNMEASURED
+    return Sentences(right, less_rate(right, rate), hardest_margin(judged), as_on)
 
 
 def hardest_margin(judged: Sequence[JudgedPair]) -> Estimate:

@@ -1,6 +1,7 @@
 """Claim C2.2: the two components of a label over random splits of each data set (§2.4.1)."""
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,35 +11,72 @@ from lifelore.core.relations import CORE_RELATIONS
 from lifelore.core.streams import stream
 from lifelore.experiments.chapter2.scenes import tabletop_pairs
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, Row, data_sets, kernel_name
-from lifelore.experiments.chapter2.scoring.pair_validation import Reading, Votes, joined_displacements, votes_on
+from lifelore.experiments.chapter2.scoring.pair_validation import (
+    AS_PRINTED,
+    DROPS,
+    Reading,
+    Votes,
+    joined_displacements,
+    votes_on,
+)
 from lifelore.experiments.chapter2.scoring.relation_scoring import BESIDE, CARRIED
+from lifelore.experiments.engine.estimates import UNMEASURED, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
 COMPONENTS = {"on": CARRIED, "adjacent": BESIDE}
+SHARES = ("right", "majority", "agreement")
 MEASURES = ("right", "majority", "right_less_majority", "agreement")
-cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
+cells, run_cell, shared = tabletop_pairs.pair_cells, tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Means over splits; intervals over simulated data sets, since the splits of a set share its pictures."""
+    """Means over splits; intervals over simulated data sets, since the splits of a set share its pictures.
+
+    Then the shares right as printed, where contacts of fewer than seven support vectors are dropped, and the share
+    of readings in which both components beat their majority by their intervals.
+    """
+    names = [f"{name}_{key}" for name in COMPONENTS for key in MEASURES]
+    found = means(at_standard_kernel(settings, results), (*names, "agreement_on_less_adjacent"))
+    grid = over_grid(settings, results)
+    as_printed = means(grid[AS_PRINTED], [f"{name}_right" for name in COMPONENTS])
+    found |= {f"{name}_as_printed": number for name, number in as_printed.items()}
+    gains = [f"{name}_right_less_majority" for name in COMPONENTS]
+    beaten = [all(is_above(number, 0) for number in means(rows, gains).values()) for rows in grid.values()]
+    return found | {"readings_in_which_both_beat_their_majority": share_of(beaten)}
+
+
+def means(rows: Sequence[Mapping], names: Sequence[str]) -> dict[str, Estimate]:
+    """Means of some measures over the simulated data sets of `by_data_set`."""
     records = [
         row
         | {f"{name}_right_less_majority": row[f"{name}_right"] - row[f"{name}_majority"] for name in COMPONENTS}
         | {"agreement_on_less_adjacent": row["on_agreement"] - row["adjacent_agreement"]}
-        for row in at_standard_kernel(settings, results)
+        for row in rows
         if row["data_set"] != "real"
     ]
-    names = [f"{name}_{key}" for name in COMPONENTS for key in MEASURES]
     table = ResultsTable(records, ("data_set",))
-    return {name: table.mean(name) for name in (*names, "agreement_on_less_adjacent")}
+    return {name: table.mean(name) if records else UNMEASURED for name in names}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Means by data set at the standard kernel, then by kernel over fewer splits."""
-    found, splits = [*at_standard_kernel(settings, results)], max(1, settings["splits"] // 10)
-    for kernel in (kernel_name(*kernel) for kernel in KERNELS):
-        found += [{"kernel": kernel, **row} for row in by_data_set(settings, results, Reading(kernel), splits)]
+    """Means by data set at the standard kernel; then by reading, over fewer splits, simulated sets in a row."""
+    found = [*at_standard_kernel(settings, results)]
+    for reading, by_set in over_grid(settings, results).items():
+        head = {"kernel": reading.kernel, "drop": reading.drop}
+        names = ["told", "displacements", *(f"{name}_{key}" for name in COMPONENTS for key in SHARES)]
+        numbers = {name: number.value for name, number in means(by_set, names).items()}
+        found.append({**head, "data_set": "simulated", **numbers})
+        found += [{**head, **row} for row in by_set if row["data_set"] == "real"]
     return found
+
+
+@computed_once
+def over_grid(settings: Mapping, results: Sequence[Mapping]) -> dict[Reading, list[dict]]:
+    """`by_data_set` for every kernel and every treatment of weak contacts, over a tenth of the splits."""
+    splits = max(1, settings["splits"] // 10)
+    kernels = [kernel_name(*kernel) for kernel in KERNELS]
+    readings = [Reading(kernel, drop) for kernel, drop in product(kernels, DROPS)]
+    return {reading: by_data_set(settings, results, reading, splits) for reading in readings}
 
 
 @computed_once
@@ -48,15 +86,17 @@ def at_standard_kernel(settings: Mapping, results: Sequence[Mapping]) -> list[di
 
 
 def by_data_set(settings: Mapping, results: Sequence[Mapping], reading: Reading, splits: int) -> list[dict]:
-    """``{"data_set", **split_answers}`` of each data set."""
+    """``{"data_set", **split_answers}`` of each data set in which something is classified."""
     sets = {str(name): pairs for name, pairs in data_sets(results).items()}
-    return [
-        {"data_set": name, **split_answers(settings, rows, reading, splits, name)} for name, rows in sets.items()
-    ]
+    answers = {name: split_answers(settings, rows, reading, splits, name) for name, rows in sets.items()}
+    return [{"data_set": name, **found} for name, found in answers.items() if found]
 
 
 def split_answers(settings: Mapping, rows: Sequence[Row], reading: Reading, splits: int, name: str) -> dict:
-    """Means over random splits of a data set by scene: shares of each component, and displacements classified."""
+    """Means over random splits of a data set by scene: shares of each component, and displacements classified.
+
+    Empty where no test scene of any split has a displacement.
+    """
     moved, owner = joined_displacements(rows, reading.kernel, reading.drop)
     truth = np.array([row["relation"] for row in rows])
     scenes = sorted({row["scene"] for row in rows})
@@ -68,8 +108,10 @@ def split_answers(settings: Mapping, rows: Sequence[Row], reading: Reading, spli
         votes = votes_on(moved, owner, rows, reading, train)
         if len(votes.row):
             answers.append({"told": len(votes.row)} | component_answers(votes, truth, settings["agree"]))
-    means = {key: float(np.mean([answer[key] for answer in answers])) for key in answers[0]}
-    return {"told": means.pop("told"), "displacements": len(moved), **means}
+    if not answers:
+        return {}
+    found = {key: float(np.mean([answer[key] for answer in answers])) for key in answers[0]}
+    return {"told": found.pop("told"), "displacements": len(moved), **found}
 
 
 def component_answers(votes: Votes, truth: NDArray[np.str_], agree: float) -> dict[str, float]:

@@ -12,9 +12,9 @@ from lifelore.core.relations import ADJACENT, CORE_RELATIONS, ON
 from lifelore.core.streams import stream
 from lifelore.experiments.chapter2.scenes import tabletop_pairs
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, Row, data_sets, kernel_name
-from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, as_scene, displacements
+from lifelore.experiments.chapter2.scoring.pair_validation import AS_PRINTED, DROPS, as_scene, displacements
 from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
-from lifelore.experiments.engine.estimates import UNMEASURED
+from lifelore.experiments.engine.estimates import UNMEASURED, share_of
 
 EDGE = 0.2
 """The printed band begins at y = -0.1, a fifth of the way to the printed cluster at y = -0.5."""
@@ -24,7 +24,11 @@ FRACTIONS = (
     "on_centre_sideways_of_its_rise", "on_on_one_side", "adjacent_in_band", "on_outside_band",
     "sign_of_x_tells_left_right",
 )  # fmt: skip
-cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
+BOUNDS = (0.2, 0.9, 0.75, 0.75, 0.9)
+"""The bounds of the filed conditions: at most the first, at least the others."""
+SHOWN = 660
+"""Pairs in the figure: more would hide one another."""
+cells, run_cell, shared = tabletop_pairs.pair_cells, tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
 Answers = tuple[NDArray[np.str_], NDArray[np.bool_]]
 """The scene of each answer, and whether it is right."""
 
@@ -78,8 +82,31 @@ def by_kind(results: Sequence[Mapping]) -> dict[str, list[Row]]:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Of all displacements of the simulated pairs at the standard kernel."""
+    """Of all displacements of the simulated pairs at the standard kernel; the band with weak contacts dropped as
+    printed; and the share of readings whose values all lie within the bounds of the conditions."""
     pairs = by_kind(results)["simulated"]
+    in_grid = [fractions(pairs, plotted(pairs, *r, settings["omega"])) for r in readings()]
+    printed = plotted(pairs, AS_PRINTED.kernel, AS_PRINTED.drop, "all", settings["omega"])
+    found = at_default(settings, pairs)
+    found["adjacent_in_band_as_printed"] = _share(*answers(pairs, printed)[1])
+    return found | {"readings_in_which_all_is_so": share_of([all_is_so(own) for own in in_grid])}
+
+
+def readings() -> list[tuple[str, str, str]]:
+    """Kernels, treatments of weak contacts and choices of displacements that the thesis leaves open."""
+    return list(product((kernel_name(*kernel) for kernel in KERNELS), DROPS, CHOICES))
+
+
+def all_is_so(values: Mapping[str, float | None]) -> bool:
+    """Whether `fractions` of a reading lie within `BOUNDS`."""
+    slope, *shares = (values[name] for name in FRACTIONS)
+    most, *least = BOUNDS
+    above = (share is not None and share >= bound for share, bound in zip(shares, least, strict=True))
+    return slope is not None and slope <= most and all(above)
+
+
+def at_default(settings: Mapping, pairs: Sequence[Row]) -> dict[str, Estimate]:
+    """The `FRACTIONS` with their intervals, of all displacements at the standard kernel."""
     plot = plotted(pairs, STANDARD, DROPS[0], "all", settings["omega"])
     up, *others = (_share(*answered) for answered in answers(pairs, plot))
     if up.n and up.value < 0.5:
@@ -143,7 +170,10 @@ def _slope(middle: NDArray[np.float64]) -> float:
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The points of the plot and where each relation lies; then the shares for every other reading."""
+    """The points of the plot and where each relation lies; then the shares for every other reading.
+
+    The points are those of the first `SHOWN` pairs of a kind; shares count all.
+    """
     points, grid = [], []
     for kind, pairs in by_kind(results).items():
         plot = plotted(pairs, STANDARD, DROPS[0], "all", settings["omega"])
@@ -151,9 +181,10 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for name in CORE_RELATIONS:
             own = plot.relation == name
             if own.any():
+                shown = 1000 * plot.at[own & (plot.row < SHOWN)]
                 place = {"scenes": kind, "relation": name, "outside_band": float(plot.outside_band[own].mean())}
-                points.append(place | {"middle_of_on": middle, "mm": np.round(1000 * plot.at[own], 1).tolist()})
-        for kernel, drop, choice in product((kernel_name(*kernel) for kernel in KERNELS), DROPS, CHOICES):
+                points.append(place | {"middle_of_on": middle, "mm": np.round(shown, 1).tolist()})
+        for kernel, drop, choice in readings():
             other = plotted(pairs, kernel, drop, choice, settings["omega"])
             row = {"scenes": kind, "reading": {"kernel": kernel, "drop": drop, "choice": choice}}
             grid.append({**row, "displacements": len(other.at), **fractions(pairs, other)})

@@ -15,7 +15,7 @@ from lifelore.experiments.chapter2.scoring.relation_scoring import (
     score,
     share,
 )
-from lifelore.experiments.engine.estimates import UNMEASURED
+from lifelore.experiments.engine.estimates import UNMEASURED, share_of
 from lifelore.experiments.engine.results_table import computed_once
 from lifelore.perception.pairs.pair_features import PairFeatures
 from lifelore.perception.pairs.scene_pairs import ScenePairs
@@ -26,8 +26,12 @@ OURS, THESIS, LITERAL = "lifelore", "thesis", "literal"
 METHODS = (OURS, THESIS, LITERAL)
 Views = dict[str, list[JudgedPair]]
 KINDS = ("simulated", "real")
+UP_TO_70 = (0.3, 0.5, 0.7)
+"""Shares discarded that the thesis's sentence is about."""
+ROBUST = 0.03
+"""Largest loss of exact share that counts as robust, as in the conditions."""
 LOST = (
-    *((level, THESIS, "simulated") for level in (0.3, 0.5, 0.7)),
+    *((level, THESIS, "simulated") for level in UP_TO_70),
     (0.7, THESIS, "real"),
     (0.7, LITERAL, "simulated"),
     (0.7, OURS, "simulated"),
@@ -43,7 +47,11 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         key = key_of(DISCARDED, level)
         measured[f"lost_{key.replace(' ', '_')}_{method}_{kind}"] = lost(found[kind][method], key)
     at_70 = found["simulated"][THESIS].get(key_of(DISCARDED, 0.7), [])
-    return measured | {"less_majority_thesis_simulated": less_majority(at_70)}
+    measured["less_majority_thesis_simulated"] = less_majority(at_70)
+    keys = [key_of(DISCARDED, level) for level in UP_TO_70]
+    losses = [lost(found["simulated"][reading], key) for reading in (THESIS, LITERAL) for key in keys]
+    robust = [loss.ci95 is not None and loss.ci95[1] <= ROBUST for loss in losses]
+    return measured | {"robust_readings_and_levels": share_of(robust)}
 
 
 @computed_once

@@ -7,10 +7,12 @@ import numpy as np
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter2.c2_11_distant_objects.run import FAR, kernels
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import STANDARD, kernel_name
-from lifelore.experiments.engine.estimates import exact_share
+from lifelore.experiments.engine.estimates import exact_share, share_of
 from lifelore.experiments.engine.results_table import ResultsTable, computed_once
 
 QUARTILES = ("support", "contacts", "contacts_of_7")
+NONE_FAR, FEW = 0.95, 10
+"""Least share of pairs without a contact point, and most support vectors of a thing, as in the conditions."""
 Findings = dict[str, dict[str, Estimate]]
 """By kernel, and over all kernels, the estimates as seen and at `FAR`."""
 
@@ -25,7 +27,14 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     best = max(names, key=lambda name: min(found[name][key].value for key in shares))
     measured |= {f"{key}_best_kernel_simulated": found[best][key] for key in shares}
     key = "no_support_vectors_on_a_side_far"
-    return measured | {f"{key}_simulated": found["all"][key]}
+    measured[f"{key}_simulated"] = found["all"][key]
+    return measured | {"kernels_in_which_both_are_so": share_of([both_are_so(found[name]) for name in names])}
+
+
+def both_are_so(kernel: Mapping[str, Estimate]) -> bool:
+    """Whether a kernel leaves no contact point and very few support vectors at `FAR`, by their intervals."""
+    none, few = (kernel[key].ci95 for key in ("no_contacts_far", "support_vectors_far"))
+    return none is not None and none[0] >= NONE_FAR and few is not None and few[1] <= FEW
 
 
 @computed_once

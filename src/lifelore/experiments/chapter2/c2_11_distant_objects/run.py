@@ -96,12 +96,21 @@ def away(a: Points, b: Points, relation: str) -> Points:
 def shift_to(a: Points, tree: KDTree, way: Points, gap: float) -> float:
     """How far a must move for `gap` metres between the two, by bisection to `_EXACT`."""
     low, high = 0.0, 0.05
-    while _gap(a + high * way, tree) < gap:
+    while _is_nearer(a + high * way, tree, gap):
         low, high = high, 2 * high
     while high - low > _EXACT:
         middle = (low + high) / 2
-        low, high = (middle, high) if _gap(a + middle * way, tree) < gap else (low, middle)
+        low, high = (middle, high) if _is_nearer(a + middle * way, tree, gap) else (low, middle)
     return high
+
+
+def _is_nearer(points: Points, tree: KDTree, gap: float) -> bool:
+    """Whether some point is nearer than `gap`; a bounded search is several times cheaper than the distance."""
+    box = np.clip(points, tree.mins, tree.maxes)
+    close = points[
+        ((points - box) ** 2).sum(axis=1) < gap * gap
+    ]  # no point is nearer than its distance to the box
+    return bool(len(close)) and bool(np.isfinite(tree.query(close, distance_upper_bound=gap)[0]).any())
 
 
 def _gap(points: Points, tree: KDTree) -> float:

@@ -29,7 +29,7 @@ from lifelore.experiments.engine.estimates import UNMEASURED
 from lifelore.experiments.engine.results_table import computed_once
 
 REAL = "real"
-cells, run_cell = tabletop_pairs.pair_cells, tabletop_pairs.run_cell
+cells, run_cell, shared = tabletop_pairs.pair_cells, tabletop_pairs.run_cell, tabletop_pairs.SETTINGS_OF_A_CELL
 Clustered = tuple[Sighted, dict[str, list[Labels]]]
 """The near pairs of a data set, and by method their clusters from each start."""
 

@@ -20,7 +20,7 @@ from lifelore.experiments.chapter2.scoring.pair_validation import (
     votes_on,
 )
 from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference
-from lifelore.experiments.engine.estimates import exact_share, mean_or_unmeasured
+from lifelore.experiments.engine.estimates import exact_share, is_below, mean_or_unmeasured, share_of
 from lifelore.perception.peers import PEERS
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 
@@ -53,9 +53,9 @@ def topmost_alone_remains(found: np.ndarray) -> bool:
     return len(kept) == 1 and bool(kept[0, 0] >= found[:, 0].max())
 
 
-def node_measures(scenes: Sequence[Row]) -> dict[str, Estimate]:
+def node_measures(scenes: Sequence[Row], kernel: str = STANDARD) -> dict[str, Estimate]:
     """Shares of scenes by the block's nodes, with the threshold and without."""
-    found = [nodes(row) for row in scenes]
+    found = [nodes(row, kernel) for row in scenes]
     n, left = [len(all_nodes) for all_nodes in found], [len(strong(all_nodes)) for all_nodes in found]
     return {
         "rank_of_three_nodes": mean_or_unmeasured((k < NODES) + 0.5 * (k == NODES) for k in n),
@@ -122,14 +122,27 @@ def on_measures(lessons: Sequence[Row], scenes: Sequence[Row]) -> dict[str, Esti
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Nodes and *on* by the first camera; by another camera with its name at the end."""
-    found = {}
+    """Nodes and *on* by the first camera; by another camera with its name at the end.
+
+    Then the share of cameras and kernels in which all that the thesis says holds by its intervals.
+    """
+    found, grid = {}, []
     for number, camera in enumerate(settings["cameras"]):
         lessons, scenes = lessons_and_scenes(results, camera)
         ending = f"_{camera}" if number else ""
         measured = node_measures(scenes) | on_measures(lessons, scenes)
         found |= {f"{name}{ending}": estimate for name, estimate in measured.items()}
-    return found
+        for kernel in KERNELS:
+            own = node_measures(scenes, kernel_name(*kernel))
+            told = at_least_nine_in_ten(measured["on_by_contacts"]) and is_below(measured["on_by_centres"], 0.9)
+            kept = [own["one_node_with_threshold"], own["kept_node_is_topmost"]]
+            grid.append(told and all(map(at_least_nine_in_ten, kept)))
+    return found | {"cameras_and_kernels_in_which_all_is_so": share_of(grid)}
+
+
+def at_least_nine_in_ten(share: Estimate) -> bool:
+    """Whether the whole interval of a share reaches 90 %, as the conditions ask."""
+    return share.ci95 is not None and share.ci95[0] >= 0.9
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

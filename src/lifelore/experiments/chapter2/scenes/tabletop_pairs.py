@@ -22,7 +22,11 @@ from lifelore.experiments.chapter2.scenes.perturbation import without_table
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes
 from lifelore.experiments.chapter2.scenes.scene_lots import lots, numbers_of, real_lots
 from lifelore.perception.contacts.contact_settings import ContactSettings
-from lifelore.perception.contacts.interface import DEFAULT_CONTACT_SETTINGS, Interface, interfaces
+from lifelore.perception.contacts.interface import (
+    DEFAULT_CONTACT_SETTINGS,
+    Interface,
+    interfaces_by_settings,
+)
 from lifelore.perception.pairs.pair_features import pair_features
 from lifelore.perception.peers import PEERS
 
@@ -35,6 +39,8 @@ REAL_LOT = 6
 KERNELS = ((0.03, 1.0), (0.03, 10.0), (0.06, 1.0), (0.06, 10.0), (0.12, 1.0), (0.12, 10.0))
 """(length in metres, cost per point at 3 mm spacing)."""
 
+SETTINGS_OF_A_CELL = ("pairs", "camera")
+"""The settings that `run_cell` reads: claims that agree in them share their cells."""
 Row = dict[str, Any]
 
 
@@ -92,8 +98,10 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
         ``features`` of both orders; ``peers``, the description of both orders by each of `BESIDE_US`.
     """
     bare = without_table(cloud)
-    found = {(near.a, near.b): near for near in interfaces(bare)}
-    contacts = {kernel_name(*kernel): _contacts_by_pair(bare, *kernel) for kernel in KERNELS}
+    loose = [loose_settings(*kernel) for kernel in KERNELS]
+    standard, *others = interfaces_by_settings(bare, [DEFAULT_CONTACT_SETTINGS, *loose])
+    found = {(near.a, near.b): near for near in standard}
+    contacts = {kernel_name(*k): _contacts_by_pair(own) for k, own in zip(KERNELS, others, strict=True)}
     features = pair_features(bare, tuple(found.values())).matrix
     peers = {name: {(p.a, p.b): p.rows for p in PEERS[name]().describe_pairs(bare)} for name in BESIDE_US}
     rows = []
@@ -136,8 +144,7 @@ def loose_settings(length: float, cost: float) -> ContactSettings:
     return replace(DEFAULT_CONTACT_SETTINGS, length=length, cost=cost, min_support=0.0)
 
 
-def _contacts_by_pair(cloud: LabelledCloud, length: float, cost: float) -> dict[tuple[int, int], dict]:
-    found = interfaces(cloud, loose_settings(length, cost))
+def _contacts_by_pair(found: Sequence[Interface]) -> dict[tuple[int, int], dict]:
     return {(pair.a, pair.b): contacts_of(pair) for pair in found}
 
 

@@ -46,6 +46,10 @@ class Reading:
     k: int = 4
 
 
+AS_PRINTED = Reading(drop="weak")
+"""Every contact of fewer than `THRESHOLD` support vectors is dropped, as the thesis says, whatever is left."""
+
+
 def displacements(row: Row, kernel: str = STANDARD, drop: str = "all but one") -> Points:
     """χ_a - χ_b between all contacts of a row in the truth's order, ``(m, 3)``, metres; none for far pairs."""
     if row["gap"] is None:
