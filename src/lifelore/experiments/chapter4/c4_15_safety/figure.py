@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.ball_game.methods import BEAT, STATIC
-from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game
+from lifelore.experiments.chapter4.ball_game.methods import BEAT, BEAT_PRINTED, STATIC
+from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game, sentence
 from lifelore.experiments.chapter4.reuse.looks import draw_ratio_grid, legend_below, lines_of, size_lines
 from lifelore.experiments.engine.predicate import Condition
 from lifelore.figures.curves import draw_curves
@@ -18,7 +18,7 @@ SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, "BEAT, ε as printed", BEAT,
 
 def draw(result: Mapping) -> Figure:
     losses = {row["method"]: np.array(row["loss"]) for row in result["rows"] if "method" in row}
-    ratios = losses[BEAT] / losses[STATIC]
+    ratios = losses[BEAT_PRINTED] / losses[STATIC]
     episodes = range(1, ratios.shape[1] + 1)
     with house_style():
         games = [row for row in result["rows"] if "met" in row]
@@ -30,20 +30,23 @@ def draw(result: Mapping) -> Figure:
         by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
         legend_below(by_episode, 0.75)
         draw_ratio_grid(by_type, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
-        by_type.set(xlabel="episode", title="safety: BEAT to the static speed")
+        by_type.set(xlabel="episode", title="safety: BEAT, ε as printed, to the static speed")
         _draw_naming(naming, result["rows"][-1])
         _draw_games(figure.add_subplot(places[1, :]), games)
     return figure
 
 
 def _draw_games(axes: Axes, games: Sequence[Mapping]) -> None:
-    """Each game's numbers as shares of their bounds, bold where the condition is met."""
-    asked = asked_of_every_game()
+    """Each game's numbers as shares of their bounds, bold where the condition is met; the sentence first."""
+    headlines = [one.condition for one in sentence()]
+    told = {c.measure for c in headlines}
+    asked = [*headlines, *(c for c in asked_of_every_game() if c.measure not in told)]
     shares = [[_of_bound(row[c.measure]["value"], c) for c in asked] for row in games]
-    met = [[row["met"][c.measure] for c in asked] for row in games]
+    met = [[(row["met"] | row["sentence"])[c.measure] for c in asked] for row in games]
     look = {"neutral": 1.0, "spread": 1.35, "good": "low", "ratio": True, "words": "{:.2f}".format}
     draw_heat_grid(axes, shares, met, [row["words"] for row in games], [c.name for c in asked], **look)
-    axes.set_title("every game: the number divided by its bound, at most 1 asked (bold: met)", loc="right")
+    words = "every game: the number divided by its bound, at most 1 asked (bold: met)"
+    axes.set_title(f"{words}; the first {len(headlines)} with ε as printed", loc="right")
 
 
 def _of_bound(value: float, condition: Condition) -> float:
@@ -55,11 +58,11 @@ def _of_bound(value: float, condition: Condition) -> float:
 
 def _draw_naming(axes: Axes, row: Mapping) -> None:
     looks = size_lines(SIZES)
-    series = {name: {"mean": shares} for name, shares in zip(looks, row["named"], strict=True)}
+    series = {name: {"mean": shares} for name, shares in zip(looks, row["named_printed"], strict=True)}
     draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
-    axes.set(title="speed", xlabel="steps played", ylabel="share named right for good")
-    axes.axvline(row["length"], color=GREY, linewidth=1)
-    place = {"xy": (row["length"], 0.02), "xytext": (3, 0), "textcoords": "offset points"}
+    axes.set(title="speed, ε as printed", xlabel="steps played", ylabel="share named right for good")
+    axes.axvline(row["length_printed"], color=GREY, linewidth=1)
+    place = {"xy": (row["length_printed"], 0.02), "xytext": (3, 0), "textcoords": "offset points"}
     axes.annotate("end of the first episode", **place, fontsize=7, color=GREY, rotation=90, va="bottom")
     axes.set_ylim(0, 1.03)
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
