@@ -10,6 +10,7 @@ from lifelore.experiments.chapter4.c4_02_golf_holes.measure import measure, rows
 from lifelore.experiments.chapter4.c4_02_golf_holes.run import program_gaps, run_cell
 from lifelore.experiments.chapter4.golf.rounds import exact_library, play_holes
 from lifelore.experiments.chapter4.reuse.rules import RULES_SHOWN
+from lifelore.experiments.engine.estimates import is_above, is_below
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.selection import Greedy
 
@@ -62,6 +63,10 @@ def test_a_tiny_run(cells):
     found = measure(SMALL, cells)
     assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
     assert found["gain_over_best_single_club_exact"].value > 0
+    ways = [f"{first}{model}" for model in ("learnt", "exact", "uncertain") for first in ("", "wood_first_")]
+    near = [is_below(found[f"error_shot_2_{way}"], 15.0) for way in ways]
+    falls = [is_above(found[f"entropy_fall_first_{way.removeprefix('wood_first_')}"], 0.0) for way in ways]
+    assert found["grid_within_15"].value == np.mean(np.logical_and(near, falls))
     assert found["entropy_fall_first_exact"].value > 0.5
     errors = np.array(next(c["error"] for c in cells if c.get("rule") == "greedy" and c["model"] == "exact"))
     assert errors.shape == (3, 3)

@@ -21,7 +21,7 @@ QUICK = dict(claim_of("C4.3").sizes["quick"])
 
 SMALL = {
     **QUICK, "groups": 4, "users": 8, "calls": 30, "by_call": 20, "models": [3, 4], "default_models": 4,
-    "more_samples": 30,
+    "more_samples": 40,
 }  # fmt: skip
 
 
@@ -59,6 +59,8 @@ def test_a_tiny_run(cells):
     assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
     assert found["zero_at_end_sas_exact"].value == 1
     assert found["regret_u_minus_sar_exact"].n == 32
+    # Two numbers of language models by three numbers of calls and exact models, and three kinds in doubt.
+    assert found["grid_sentence"].n == 2 * 4 + 3
     again = run_cell(SMALL, CLAIM.cells(SMALL)[0], 1)
     assert json.loads(json.dumps(again)) == cells[0]
     assert {tuple(c) for c in map(dict.keys, cells)} == {tuple(cells[0])}
@@ -81,7 +83,7 @@ def test_the_figure_is_drawn_from_rows_alone(cells):
     ("overrides", "rule"),
     [
         ({"default_models": 7}, "models must include default_models"),
-        ({"more_samples": 10}, "more_samples must not be samples"),
+        ({"more_samples": 10}, "must have 30 between them, got 10 and 10"),
     ],
 )
 def test_settings_that_limits_cannot_describe(overrides, rule):

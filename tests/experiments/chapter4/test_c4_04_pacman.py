@@ -55,6 +55,8 @@ def test_powers_of_ten_by_hand():
     assert found["regret_bpr_doubting"].value == 30
     assert found["median_needed_bpr"].value == 2
     assert found["orders_q"].n == 3
+    # A mean power of 3 with samples of more, 3.4 by the learners' stretch; as many of PRQ are 2 and 2.4.
+    assert found["grid_orders"].n == 7 * 2
     assert found["reached_bpr"].value == pytest.approx(2 / 3)
     assert found["reached_q"].value == 0
     assert (found["moved_best"].value, found["moved_bpr"].value) == (20, 15)
@@ -111,6 +113,7 @@ def test_a_tiny_run_and_its_figure(tmp_path):
         ({"checkpoints": "[5000]"}, "checkpoints must rise"),
         ({"checkpoints": "[0.5]"}, "checkpoints must"),
         ({"rows": 6}, "rows must be odd"),
+        ({"samples": 50}, "must have 30 between them, got 50 and 100"),
     ],
 )
 def test_settings_that_limits_cannot_describe(overrides, rule):

@@ -6,7 +6,14 @@ import pytest
 
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter4.c4_05_selection_rules.measure import late_by_seen, measure, rows, verdicts
+from lifelore.experiments.chapter4.c4_05_selection_rules.measure import (
+    all_certain,
+    late_by_seen,
+    measure,
+    rows,
+    sooner_than_next,
+    verdicts,
+)
 from lifelore.experiments.chapter4.c4_05_selection_rules.run import run_cell
 from lifelore.experiments.chapter4.reuse.rules import STANDARD
 from lifelore.experiments.chapter4.surveillance.runs import CASES, DOUBTING, RULES
@@ -54,6 +61,32 @@ def test_a_tiny_run(cells):
     assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
     assert found["stuck_EI_printed_exact"].n == 4
     assert found["grid_all"].n == 1
+    # Three cases beside the default with exact models, in two forms each.
+    assert found["grid_statements_certain"].n == 8
+
+
+def _cells(**ended):
+    """Results of six rules, four groups of two tasks: the two that fail end stuck, EI after 3 and 5 episodes."""
+    ended = {"EI": (3, 5), "BE": (10, 12), "KG": (9, 9), "sampling": (15, 15)} | ended
+    found = {}
+    for name in RULES:
+        own, late, form = (51, 51), 60.0, name.partition(",")[0]
+        if form in ended:
+            own, late = ended[form], 0.0
+        shifted = [number + group * (form != "EI") for group in range(4) for number in own]
+        found[name] = {"groups": 4, "ended": shifted, "late": [late] * 8}
+    return found
+
+
+def test_statements_for_certain():
+    # KG is the soonest other: 6 and 4 episodes later, and one more in each further group.
+    assert sooner_than_next(_cells()).value == pytest.approx(5 + 1.5)
+    assert all_certain(_cells(sampling=(10, 10)), False)
+    assert all_certain(_cells(sampling=(10, 10)), True)
+    # Its interval reaches 18 episodes; then KG is sooner than EI in the first group; then PI converges.
+    assert not all_certain(_cells(sampling=(15, 15)), False)
+    assert not all_certain(_cells(sampling=(10, 10), KG=(1, 4)), False)
+    assert not all_certain(_cells(sampling=(10, 10), PI=(20, 20)), False)
 
 
 def test_late_regret_on_seen_and_unseen_tasks():

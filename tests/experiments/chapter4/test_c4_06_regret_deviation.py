@@ -12,11 +12,13 @@ from lifelore.experiments.chapter4.c4_06_regret_deviation.measure import (
     READINGS,
     agreement,
     deviations,
+    late_pattern,
     measure,
     rows,
 )
-from lifelore.experiments.chapter4.c4_06_regret_deviation.run import run_cell
+from lifelore.experiments.chapter4.c4_06_regret_deviation.run import METHODS, run_cell
 from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
+from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C4.6")
@@ -61,6 +63,28 @@ def test_agreement_by_hand():
     assert agreement(result, printed, "expected") == [False, True, True, False]
 
 
+@pytest.mark.parametrize(
+    ("changed", "holds"),
+    [
+        ({}, True),
+        ({"KG": 30.0}, False),
+        ({"PI": 40.0}, False),
+        ({"PI, printed": 20.0}, False),
+        ({"greedy": 90.0}, True),
+    ],
+)
+def test_late_pattern_by_hand(changed, holds):
+    wide = {"eps-greedy": 60.0, "PI": 60.0, "PI, printed": 60.0} | changed
+    results = []
+    for name in METHODS:
+        # Regret is the deviation or its opposite, but for one percent by group.
+        one = np.array([1.0, -1.0, 1.0, -1.0]) * wide.get(name, 10.0) * np.array([[1.0], [1.01], [0.99]])
+        found = {"groups": 3, "at": {"50": one.ravel().tolist()}}
+        results.append({"method": name, "case": "exact", **DEFAULT_WORLD, **found})
+    form = ", printed" if "PI, printed" in changed else ""
+    assert late_pattern(results, "exact", form, "expected") is holds
+
+
 def test_the_printed_table_has_six_rules_and_four_episodes():
     assert set(PRINTED) == set(OF_THESIS)
     assert {len(numbers) for numbers in PRINTED.values()} == {4}
@@ -68,6 +92,8 @@ def test_the_printed_table_has_six_rules_and_four_episodes():
 
 def test_a_tiny_run(cells):
     found = measure(SMALL, cells)
+    # Two forms of three cases by four readings.
+    assert found["grid_late_pattern"].n == 24
     assert {c.measure for c in CLAIM.predicate.conditions} <= set(found)
     assert found["agree_all_exact"].n == 24
     assert set(cells[0]) == {

@@ -49,6 +49,9 @@ def test_comparisons_by_hand():
     assert found["interval_estimation_minus_UCB1_exact"].value == pytest.approx(-100)
     assert found["EI_over_best_GP_UCB_exact"].value == pytest.approx(102.5 / 202.5)
     assert found["EI_over_eps_greedy_on_means_exact"].value == pytest.approx(102.5 / 402.5)
+    assert found["interval_estimation_minus_EI_learnt"].value == pytest.approx(300)
+    # The default reserve with exact models, and two cases of learnt ones; noise is none, so no interval is either.
+    assert found["grid_EI_below_all"].n == 3
     # In the first episode it has more, from the second on less.
     assert found["first_episode_below_for_good_exact"].value == 2
     assert measure(SMALL, made_up(first=1.0))["first_episode_below_for_good_exact"].value == 1

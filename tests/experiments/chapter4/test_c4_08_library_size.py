@@ -55,6 +55,11 @@ def test_counts_by_hand():
     assert found["saved_by_episodes_small_EI_exact"].value == 2.5
     assert found["steps_of_size_EI_exact"].value == 1.0
     assert found["saved_by_episodes_whole_EI_exact"].value == 4.0
+    # Two trials give no interval, so nothing is certain.
+    assert (found["grid_library_regret"].value, found["grid_library_regret"].n) == (0, 3)
+    for result in results:
+        result["library"] = result["library"] * 5
+    assert measure(SMALL, results)["grid_library_regret"].value == 1
     assert rows(SMALL, results)[0]["share_met"] == 0.5
 
 

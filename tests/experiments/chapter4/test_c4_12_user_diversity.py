@@ -60,7 +60,10 @@ def test_measures_by_hand():
     assert found["largest_printed_to_tuned_exp3"].value == pytest.approx(0.925, abs=0.01)
     assert found["beat_below_static_few"].value == pytest.approx(2 / 3)  # 0.33 against 0.32, 0.34, 0.36
     assert found["beat_to_oracle"].value == pytest.approx(1, abs=0.005)
-    assert found["grid_below_exp3"].value == 1
+    assert found["grid_below_exp3"].value == found["grid_sentence"].value == 1
+    assert found["printed_to_exp3"].value == pytest.approx(0.74, abs=0.01)
+    # 0.37 to the mean over 6, 15 and 20 populations of 0.32, 0.34 and 0.36.
+    assert found["printed_to_static_few"].value == pytest.approx(0.37 / (14.22 / 41), abs=0.01)
     plain = {name: number.to_dict() for name, number in found.items()}
     assert CLAIM.predicate.verdict(plain) == "holds"
     row = rows(settings, results)[5]
@@ -72,6 +75,7 @@ def test_equal_losses_are_below_nothing():
     found = measure({"games": [DEFAULT]}, made(lambda method, x: 0.4))
     for name in ("printed_above_static_few", "printed_below_static_many", "printed_below_exp3"):
         assert found[name].value <= 0.5
+    assert found["grid_sentence"].value == 0
 
 
 def test_cells_give_every_diversity_enough_runs():

@@ -29,6 +29,11 @@ def made(n=30, game=GAMES[0]):
         "needed": [[10] * (n - 1) + [-1]] * 6,
         "right_speed": [[True] * n] * 6,
         "lengths": [[60] * n] * 6,
+        "half": [[True] * n] * 6,
+        "needed_printed": [[20] * n] * 6,
+        "lengths_printed": [[80] * n] * 6,
+        # The smallest is named right by no player, the next by two of three, the others by all.
+        "half_printed": [[False] * n, [True] * (2 * n // 3) + [False] * (n // 3), *[[True] * n] * 4],
     }
 
 
@@ -45,6 +50,11 @@ def test_measures_by_hand():
     assert found["named_within_first_episode"].value == pytest.approx(29 / 30)
     assert found["right_speed_at_end"].value == 1
     assert found["to_static_with_lag"].value == pytest.approx(1 / 1.2)
+    assert found["right_half_printed"].value == pytest.approx((0 + 2 / 3 + 4) / 6)
+    assert found["least_right_half_but_smallest_printed"].value == pytest.approx(2 / 3)
+    assert found["least_right_half_but_smallest"].value == 1
+    # BEAT as printed is the best speed itself, and EXP-3 loses 40 % more.
+    assert found["regret_to_exp3_printed"].value == 0
     shown = rows({}, [made()])[-1]
     assert shown["named"][0][shown["steps"].index(8)] == 0
     assert shown["named"][0][shown["steps"].index(12)] == pytest.approx(0.967)
@@ -57,7 +67,10 @@ def test_every_game_is_asked_the_conditions_of_the_default():
     found, alone = measure({}, [made(), worse]), measure({}, [made()])
     single = [c.measure for c in asked_of_every_game()]
     assert len(single) == 6
-    assert {f"grid_{name}" for name in single} == {name for name in found if name.startswith("grid_")}
+    grid = {f"grid_{name}" for name in (*single, "sentence")}
+    assert grid == {name for name in found if name.startswith("grid_")}
+    # In the second game BEAT as printed loses more than the static speed.
+    assert [alone["grid_sentence"].value, found["grid_sentence"].value] == [1, 0.5]
     assert all(found[name] == alone[name] for name in alone if not name.startswith("grid_"))
     assert all(alone[f"grid_{name}"].value == 1 for name in single)
     # In the second game the static speed is better than any other method, and nobody is ever named right.

@@ -5,8 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter5.c5_05_curiosity.measure import measure, orders_needed, rows
-from lifelore.experiments.chapter5.c5_05_curiosity.run import CHOOSERS, run_cell
+from lifelore.experiments.chapter5.c5_05_curiosity.measure import auc_over_lives, measure, orders_needed, rows
+from lifelore.experiments.chapter5.c5_05_curiosity.run import CHOOSERS, late_lives, run_cell
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C5.5")
@@ -40,6 +40,16 @@ def test_measures_by_hand():
     assert found["curious_less_uniform"].value == 0
     assert (found["late_type_auc"].value, found["late_type_learnt"].value) == (1.0, 1.0)
     assert (found["false_alarms"].value, found["recognised_soon"].value) == (0.5, 1.0)
+
+
+def test_area_under_the_curve_over_lives():
+    assert auc_over_lives(late_lives([LATE] * 3)).ci95 == (1.0, 1.0)
+    lives = late_lives([LATE | {"late_scores": [score]} for score in (2.0, 2.0, 2.0, 0.5)])
+    found = auc_over_lives(lives)
+    # Against known scores 0 and 1 a late score of 2 is always above, one of 0.5 half the time.
+    assert found.value == pytest.approx((3 + 0.5) / 4)
+    # All four drawn lives are the last one in one draw of 256, and none is in a third of them.
+    assert found.ci95 == (0.625, 1.0)
 
 
 def test_a_tiny_run():

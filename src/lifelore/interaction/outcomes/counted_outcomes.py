@@ -101,10 +101,10 @@ class CountedOutcomes:
         """
         return None if self.exact else TaskCounts(self, self.spread.least if closest else self.spread)
 
-    def replace(self, policy: int, counts: Array) -> None:
-        """Put other counts (n_types, n_cells) in the place of a policy's."""
-        self.counts[policy], self.totals[policy] = counts, counts.sum(axis=1)
-        self.mean[:, policy : policy + 1], self.deviation[:, policy : policy + 1] = self._moments([policy])
+    def replace(self, policies: list[int], counts: Array) -> None:
+        """Put other counts (n, n_types, n_cells) in the place of those of some policies."""
+        self.counts[policies], self.totals[policies] = counts, counts.sum(axis=2)
+        self.mean[:, policies], self.deviation[:, policies] = self._moments(policies)
 
     @property
     def probs(self) -> Array:
@@ -285,7 +285,7 @@ class CountedOutcomes:
 
     def _row_by_row(self, of_cells: Array, policies: Any) -> Array:
         """`_expectation` of (n_cells,) whose bits for a pair do not depend on the other pairs."""
-        sums = np.stack([(rows * of_cells).sum(axis=1) for rows in self.counts[policies]])
+        sums = (self.counts[policies] * of_cells).sum(axis=2)
         return np.ascontiguousarray((sums / self.totals[policies]).T)
 
     def _renew(self, type_: int, policy: int) -> None:

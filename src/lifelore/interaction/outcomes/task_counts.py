@@ -42,7 +42,9 @@ class TaskCounts(TaskOutcomes):
         totals = outcomes.totals.T
         self._by_spread = within / (1 / (1 / totals + spread.values[:, None, None]) + 1)
         self._tried_variance: dict[int, Array] = {}
+        # Policies whose expected outcomes, and whose variance of the mean, are older than what the task has shown.
         self._stale: set[int] = set()
+        self._stale_variance: set[int] = set()
 
     # ---- what the task has shown ---------------------------------------------------------------------------
 
@@ -64,7 +66,7 @@ class TaskCounts(TaskOutcomes):
         cell = self._cell(policy, value)
         if cell is not None:
             self._rows.setdefault(policy, self._law(policy)).shown[cell] += 1
-        self._stale.update(self._rows)
+        self._outdate()
 
     @property
     def tried(self) -> list[int]:
@@ -81,7 +83,7 @@ class TaskCounts(TaskOutcomes):
         self.fade_weights(keep)
         for row in self._rows.values():
             row.shown *= keep
-        self._stale.update(self._rows)
+        self._outdate()
 
     def state(self) -> dict[str, NDArray[Any]]:
         """What the task has shown: ``policies`` (m,), ``shown`` (m, n_cells): counts; ``log_weights``."""
@@ -102,7 +104,7 @@ class TaskCounts(TaskOutcomes):
         self.restore_weights(state["log_weights"])
         for policy, counts in zip(policies.tolist(), shown, strict=True):
             self._rows.setdefault(policy, self._law(policy)).shown = counts.copy()
-        self._stale.update(self._rows)
+        self._outdate()
 
     # ---- the model as rules use it -------------------------------------------------------------------------
 
@@ -110,8 +112,7 @@ class TaskCounts(TaskOutcomes):
     def expected(self) -> "CountedOutcomes":
         """The outcomes as expected in this task."""
         if self._stale:
-            for policy in self._stale:
-                self._renew(policy)
+            self._renew(sorted(self._stale))
             self._stale.clear()
         return self._expected
 
@@ -129,7 +130,11 @@ class TaskCounts(TaskOutcomes):
     def mean_variance(self) -> Array:
         """Variance of each pair's mean outcome, (n_types, n_policies)."""
         found = np.tensordot(np.exp(self.log_weights), self._by_spread, axes=1)
-        self.expected  # noqa: B018  renews the policies whose law has changed
+        weights = np.exp(self.log_weights)
+        for policy in self._stale_variance:
+            mean, variance = self._rows[policy].mean_and_variance(self._values)
+            self._tried_variance[policy] = weights @ variance + weights @ (mean - weights @ mean) ** 2
+        self._stale_variance.clear()
         for policy, column in self._tried_variance.items():
             found[:, policy] = column
         return found
@@ -187,10 +192,19 @@ class TaskCounts(TaskOutcomes):
         found = None if fresh else self._rows.get(policy)
         return DirichletRow(self.outcomes.counts[policy], self.spread) if found is None else found
 
-    def _renew(self, policy: int) -> None:
-        """Compute the expected outcomes of a policy again."""
-        row, weights = self._rows[policy], np.exp(self.log_weights)
-        probs = np.tensordot(weights, row.probs(), axes=1)
-        self._expected.replace(policy, probs * (self.outcomes.totals[policy] + row.shown.sum())[:, None])
-        mean, variance = row.mean_and_variance(self._values)
-        self._tried_variance[policy] = weights @ variance + weights @ (mean - weights @ mean) ** 2
+    def _outdate(self) -> None:
+        """Have every policy that was tried computed again when read: all depend on the spreads' probabilities."""
+        self._stale.update(self._rows)
+        self._stale_variance.update(self._rows)
+
+    def _renew(self, policies: list[int]) -> None:
+        """Compute the expected outcomes of some policies again; no policy's bits depend on the others."""
+        rows, weights = [self._rows[policy] for policy in policies], np.exp(self.log_weights)
+        shown = np.array([row.shown for row in rows])
+        total = shown.sum(axis=1)
+        by_spread = np.array([row.prior for row in rows]) + shown[:, None, None]
+        by_spread /= (np.array([row.weight for row in rows]) + total[:, None, None])[..., None]
+        # One product a policy: BLAS may round the columns of a larger product differently.
+        flat = by_spread.reshape(len(rows), len(weights), -1)
+        probs = np.array([np.dot(weights[None], own) for own in flat]).reshape(len(rows), *by_spread.shape[2:])
+        self._expected.replace(policies, probs * (self.outcomes.totals[policies] + total[:, None])[..., None])

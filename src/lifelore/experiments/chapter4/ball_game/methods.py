@@ -163,6 +163,10 @@ class NamedTypes:
         """The type of each player that is most likely now, (n,)."""
         return self._learner.users.log_belief.argmax(axis=1)
 
+    def halfway(self, lengths: Ints) -> Ints:
+        """The most likely type of each player half-way through her first episode of `lengths` steps, (n,)."""
+        return np.array(self.first)[np.minimum(-(-lengths // 2), len(self.first)) - 1, np.arange(len(lengths))]
+
     def steps_needed(self, kinds: Ints) -> Ints:
         """`wrong_until`, and -1 of players who are named wrong now."""
         return np.where(self.named == kinds, self.wrong_until, -1)

@@ -8,7 +8,7 @@ from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.experiments.chapter4.c4_02_golf_holes.run import GREEDY
 from lifelore.experiments.chapter4.golf.rounds import WOOD
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from lifelore.experiments.engine.estimates import exact_share
+from lifelore.experiments.engine.estimates import exact_share, is_above, is_below, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
 NEAR = 15.0
@@ -35,7 +35,13 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             f"entropy_fall_first_{model}": mean_estimate(entropy[:, 0] - entropy[:, 1]),
             f"entropy_fall_later_{model}": mean_estimate(entropy[:, 1] - entropy[:, -1]),
         }
-    return measured
+    within = [
+        is_below(measured[f"error_shot_2_{way}"], NEAR)
+        and is_above(measured[f"entropy_fall_first_{way.removeprefix('wood_first_')}"], 0.0)
+        for model in (LEARNT, EXACT, UNCERTAIN)
+        for way in (model, f"wood_first_{model}")
+    ]
+    return measured | {"grid_within_15": share_of(within)}
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

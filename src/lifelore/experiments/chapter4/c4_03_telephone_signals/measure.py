@@ -6,11 +6,13 @@ from itertools import pairwise
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter4.c4_03_telephone_signals.run import DEFAULT_READING, SIGNALS
+from lifelore.experiments.chapter4.c4_03_telephone_signals.run import DEFAULT_READING, SIGNALS, samples_of
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN, grouped_mean
 from lifelore.experiments.engine.estimates import exact_share, is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
 
+ENDED = 0.95
+"""Share of callers without regret by the last call that counts as all."""
 SHORT = dict(zip(SIGNALS, ("sas", "sar", "u"), strict=True))
 
 
@@ -50,7 +52,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             measured[f"zero_at_call_{call}_{name}"] = exact_share(np.arange(ended.size) < row["free"])
             measured[f"zero_at_end_{name}"] = exact_share(ended <= settings["calls"])
     sums = {}
-    for row in doubting:
+    for row in (row for row in doubting if row["samples"] == few):
         ended, name = np.array(row["ended"]), f"{SHORT[row['signal']]}_{UNCERTAIN}"
         measured[f"zero_at_end_{name}"] = exact_share(ended <= settings["calls"])
         sums[row["signal"]] = np.array(row["sums"]).reshape(-1, settings["users"])
@@ -62,9 +64,32 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     measured["grid_order_beyond_doubt"] = share_of(
         [all(is_above(number, 0.0) for number in found.values()) for found in grid]
     )
+    measured["grid_sentence"] = share_of(_sentences(settings, results))
     if "B" in settings["readings"]:
         measured["regret_sar_minus_sas_reading_B"] = order(n, None, "B")["regret_sar_minus_sas"]
     return measured
+
+
+def _sentences(settings: Mapping, results: Sequence[Mapping]) -> list[bool]:
+    """Whether for certain both orders hold and all signals end without regret, in each cell of the grid.
+
+    The grid: every number of language models by models learnt from few, some and many calls, and exact ones; and
+    models known to be uncertain, of the default number.
+    """
+    table = ResultsTable(
+        [row for row in results if row["reading"] == DEFAULT_READING], ("models", "model", "samples", "signal")
+    )
+    every = [(LEARNT, samples) for samples in samples_of(settings)]
+    cells = [(n, *kind) for n in settings["models"] for kind in [*every, (EXACT, None)]]
+    cells += [(settings["default_models"], UNCERTAIN, samples) for samples in samples_of(settings)]
+    found = []
+    for n, model, samples in cells:
+        own = {s: table.record(models=n, model=model, samples=samples, signal=s) for s in SIGNALS}
+        sums = {s: np.array(row["sums"]).reshape(-1, settings["users"]) for s, row in own.items()}
+        ended = [exact_share(np.array(row["ended"]) <= settings["calls"]) for row in own.values()]
+        in_order = all(is_above(number, 0.0) for number in orders(sums).values())
+        found.append(in_order and all(is_above(share, ENDED) for share in ended))
+    return found
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

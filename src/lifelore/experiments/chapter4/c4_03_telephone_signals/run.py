@@ -37,26 +37,39 @@ SIGNAL_OF_PATH: dict[str, tuple[int, ...]] = {
 }
 """The signal of each call, by kind of signal: the whole path, its rewards, or their sum."""
 N_SIGNALS = {"(s, a, s′)": len(PATHS), "(s, a, r)": len(telephone.REWARD_SEQUENCES), "U": len(UTILITIES)}
+MIDDLE_SAMPLES = 30
+"""Calls of a pair between `samples` and `more_samples`."""
 SIGNALS, DEFAULT_READING = tuple(SIGNAL_OF_PATH), "A"
 
 
 def check(settings: Mapping) -> None:
     if settings["default_models"] not in settings["models"] or DEFAULT_READING not in settings["readings"]:
         raise InputError(f"models must include default_models ({settings['default_models']}), readings A")
-    if settings["samples"] == settings["more_samples"]:
-        raise InputError(f"more_samples must not be samples ({settings['samples']})")
+    if not settings["samples"] < MIDDLE_SAMPLES < settings["more_samples"]:
+        given = f"{settings['samples']} and {settings['more_samples']}"
+        raise InputError(f"samples and more_samples must have {MIDDLE_SAMPLES} between them, got {given}")
+
+
+def samples_of(settings: Mapping) -> tuple[int, int, int]:
+    """Calls of each pair from which models are learnt: few, some, many."""
+    return settings["samples"], MIDDLE_SAMPLES, settings["more_samples"]
+
+
+def doubting_groups(settings: Mapping, samples: int) -> int:
+    """Groups of callers of a service that doubts its models: a tenth, or a twentieth unless samples are few."""
+    return max(1, settings["groups"] // (10 if samples == settings["samples"] else 20))
 
 
 def cells(settings: Mapping) -> list[dict]:
     """Every signal, by number of models and kind of model under reading A, and for the default number under B.
 
-    A service that doubts its models has a tenth of the groups of callers, and sees the utility beside the signal.
+    A service that doubts its models has fewer groups of callers, and sees the utility beside the signal.
     """
-    few, many, default = settings["samples"], settings["more_samples"], settings["default_models"]
-    kinds = ((LEARNT, few), (EXACT, None))
+    numbers, default = samples_of(settings), settings["default_models"]
+    kinds = [*((LEARNT, samples) for samples in numbers), (EXACT, None)]
     ways = [(DEFAULT_READING, n, *kind) for n in settings["models"] for kind in kinds]
-    ways += [(DEFAULT_READING, default, LEARNT, many), (DEFAULT_READING, default, UNCERTAIN, few)]
-    ways += [("B", default, *kind) for kind in kinds if "B" in settings["readings"]]
+    ways += [(DEFAULT_READING, default, UNCERTAIN, samples) for samples in numbers]
+    ways += [("B", default, *kind) for kind in (kinds[0], kinds[-1]) if "B" in settings["readings"]]
     return [
         {"reading": reading, "models": n, "model": model, "samples": samples, "signal": signal}
         for reading, n, model, samples in ways
@@ -76,7 +89,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     types = luck.integers(phone.n_models, size=(n_groups, settings["users"]))
     uniforms = luck.random((*types.shape, n_calls))
     if cell["model"] == UNCERTAIN:
-        n_groups = max(1, n_groups // 10)
+        n_groups = doubting_groups(settings, cell["samples"])
         types, uniforms = types[:n_groups], uniforms[:n_groups]
     if cell["model"] == EXACT:
         libraries = [exact_library(phone, signal)]

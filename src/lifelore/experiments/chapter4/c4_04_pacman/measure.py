@@ -10,7 +10,11 @@ from lifelore.domains.pacman.pacman import STRATEGIES
 from lifelore.experiments.chapter4.c4_04_pacman.run import (
     BPR,
     BPR_DOUBTING,
+    BPR_EXACT,
+    BPR_MIDDLE,
+    BPR_MIDDLE_DOUBTING,
     BPR_MORE,
+    BPR_MORE_DOUBTING,
     DISCOUNTED,
     LEARNERS,
     PRQ,
@@ -19,7 +23,12 @@ from lifelore.experiments.chapter4.c4_04_pacman.run import (
     Q,
 )
 from lifelore.experiments.engine.curve_blocks import block_edges
-from lifelore.experiments.engine.estimates import exact_value
+from lifelore.experiments.engine.estimates import exact_value, interval_or_value, share_of
+
+SAMPLED = (BPR, BPR_MIDDLE, BPR_MORE, BPR_EXACT, BPR_DOUBTING, BPR_MIDDLE_DOUBTING, BPR_MORE_DOUBTING)
+"""Belief sampling with each kind of models: of few, some and many samples, exact, and in doubt."""
+ORDERS = 2.0
+"""Powers of ten that count as orders of magnitude."""
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -54,6 +63,12 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         for yardstick in ("needed", "stretch"):
             found[f"orders_{title}_doubting_{yardstick}"] = orders("needed", names, BPR_DOUBTING, yardstick)
         found[f"orders_{title}_stretch"] = orders("needed", names, yardstick="stretch")
+    certain = []
+    for name in SAMPLED:
+        for yardstick in ("needed", "stretch"):
+            both = [orders("needed", names, name, yardstick) for names in ((Q,), (PRQ, PRQ_SCALED))]
+            certain.append(all(interval_or_value(number)[0] >= ORDERS for number in both))
+    found["grid_orders"] = share_of(certain)
     for name in REUSERS:
         found[f"reached_stretch_{name}"] = mean_over_layouts(
             "tasks", lambda t, n=name: t["stretch"][n] is not None

@@ -23,17 +23,24 @@ from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.selection import BeliefSampling, ExpectedImprovement, InformationDirected
 
 Array = NDArray[np.float64]
-BPR, BPR_EI, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_more", "bpr_exact"
-"""Belief sampling; expected improvement; sampling with models of more samples; with exact means and deviations."""
+MIDDLE_SAMPLES = 30
+"""Samples a pair between `samples` and `more_samples`."""
+BPR, BPR_EI, BPR_MIDDLE, BPR_MORE, BPR_EXACT = "bpr", "bpr_ei", "bpr_middle", "bpr_more", "bpr_exact"
+"""Belief sampling; expected improvement; sampling with models of some and of many samples; with exact models."""
 BPR_DOUBTING, BPR_IDS_DOUBTING = "bpr_doubting", "bpr_ids_doubting"
 """Sampling, and information-directed selection, with a belief over types and the parameters of their models."""
+BPR_MIDDLE_DOUBTING, BPR_MORE_DOUBTING = "bpr_middle_doubting", "bpr_more_doubting"
+"""Sampling with such a belief, and models of some and of many samples."""
 REUSERS = {
     BPR: ("learnt", BeliefSampling()),
     BPR_EI: ("learnt", ExpectedImprovement(of="outcome")),
+    BPR_MIDDLE: ("middle", BeliefSampling()),
     BPR_MORE: ("more", BeliefSampling()),
     BPR_EXACT: ("exact", BeliefSampling()),
     BPR_DOUBTING: ("learnt", BeliefSampling()),
     BPR_IDS_DOUBTING: ("learnt", InformationDirected()),
+    BPR_MIDDLE_DOUBTING: ("middle", BeliefSampling()),
+    BPR_MORE_DOUBTING: ("more", BeliefSampling()),
 }
 """The models and the rule of each form of reuse."""
 PRQ, PRQ_SCALED, Q = "prq", "prq_scaled", "q"
@@ -49,6 +56,9 @@ def check(settings: Mapping) -> None:
     checkpoints = [0, *settings["checkpoints"], settings["episodes"]]
     if any(not isinstance(place, int) for place in checkpoints) or (np.diff(checkpoints) < 1).any():
         raise InputError(f"checkpoints must rise between 0 and episodes, got {settings['checkpoints']}")
+    if not settings["samples"] <= MIDDLE_SAMPLES <= settings["more_samples"]:
+        given = f"{settings['samples']} and {settings['more_samples']}"
+        raise InputError(f"samples and more_samples must have {MIDDLE_SAMPLES} between them, got {given}")
     PacmanMaze(settings["rows"], settings["columns"])
 
 
@@ -66,6 +76,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     samples = pacman_library.sampled_returns(at_home, policies, settings["more_samples"], (*here, "samples"))
     known = {
         "learnt": PolicyLibrary.from_samples(samples[..., : settings["samples"]], STRATEGIES, STRATEGIES),
+        "middle": PolicyLibrary.from_samples(samples[..., :MIDDLE_SAMPLES], STRATEGIES, STRATEGIES),
         "more": PolicyLibrary.from_samples(samples, STRATEGIES, STRATEGIES),
         "exact": PolicyLibrary.from_means(mean, np.maximum(deviation, LEAST_DEVIATION), STRATEGIES, STRATEGIES),
     }

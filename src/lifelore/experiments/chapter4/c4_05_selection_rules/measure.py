@@ -5,15 +5,25 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.core.metrics import Estimate
-from lifelore.experiments.chapter4.reuse.many_tasks import STUCK
+from lifelore.experiments.chapter4.reuse.many_tasks import STUCK, grouped_mean, grouped_quantile
 from lifelore.experiments.chapter4.reuse.rules import OF_THESIS, STANDARD
 from lifelore.experiments.chapter4.surveillance import runs
-from lifelore.experiments.chapter4.surveillance.runs import CASES, DOUBTING, RULES, by_seen, find, name_of, summary
-from lifelore.experiments.engine.estimates import exact_share, exact_value, share_of
+from lifelore.experiments.chapter4.surveillance.runs import (
+    CASES,
+    DOUBTING,
+    RULES,
+    by_group,
+    by_seen,
+    find,
+    name_of,
+    summary,
+)
+from lifelore.experiments.engine.estimates import exact_share, exact_value, interval_or_value, is_above, share_of
 
 ALL = 68
 """Episodes that trying every policy takes."""
-WITHIN = 15
+WITHIN, QUARTER = 15, 17
+"""Episodes: "about 15", and "approximately a quarter" of `ALL`."""
 CONVERGE, FAIL = ("BE", "KG", "sampling"), ("PI", "eps-greedy")
 READ = dict.fromkeys(CONVERGE, "ended_median") | dict.fromkeys(FAIL, "late_median")
 """The number that conditions read, by rule in its standard or printed form."""
@@ -32,9 +42,33 @@ def verdicts(found: Mapping[str, Mapping[str, Estimate]], printed: bool = False)
     }
 
 
+def in_form(name: str, printed: bool) -> str:
+    """A rule's printed form where it has one and `printed` asks for it, else its standard form."""
+    return f"{name}, printed" if printed and f"{name}, printed" in RULES else name
+
+
+def sooner_than_next(found: Mapping[str, Mapping], printed: bool = False) -> Estimate:
+    """By how many episodes EI converges sooner than the soonest other of the six, paired by task (means).
+
+    `found`: of each rule the result of its cell.
+    """
+    ended = {name: by_group(found[in_form(name, printed)], "ended") for name in OF_THESIS}
+    others = [grouped_mean(ended[name] - ended["EI"]) for name in OF_THESIS if name != "EI"]
+    return min(others, key=lambda number: number.value)
+
+
+def all_certain(found: Mapping[str, Mapping], printed: bool) -> bool:
+    """Whether every statement of the figure holds by its whole 95 % interval."""
+    of = {name: found[in_form(name, printed)] for name in OF_THESIS}
+    soon = [interval_or_value(grouped_quantile(by_group(of[name], "ended"), 0.5))[1] for name in CONVERGE]
+    fail = [interval_or_value(grouped_quantile(by_group(of[name], "late"), 0.5))[0] for name in FAIL]
+    return max(soon) <= QUARTER and min(fail) > STUCK and is_above(sooner_than_next(found, printed), 0.0)
+
+
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """When regret ended and how much was left, by case; the share of reserves and of small runs that agree."""
     measured: dict[str, Estimate] = {}
+    certain: list[bool] = []
     for name in STANDARD:
         for case in (*DOUBTING, "learnt", "headline"):
             numbers = by_seen(find(results, name, case))
@@ -42,14 +76,20 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     for case in CASES:
         if case in DOUBTING:
             continue
-        found = {name: summary(find(results, name, case)) for name in RULES}
+        cells = {name: find(results, name, case) for name in RULES}
+        found = {name: summary(cell) for name, cell in cells.items()}
+        certain += [all_certain(cells, printed) for printed in (False, True) if case != "exact"]
+        measured[f"EI_sooner_than_next_{name_of('', case).strip('_')}"] = sooner_than_next(cells)
         for name, numbers in found.items():
             if key := READ.get(name.partition(",")[0]):
                 measured[f"{key}_{name_of(name, case)}"] = numbers[key]
         measured["stuck_" + name_of("EI, printed", case)] = found["EI, printed"]["stuck"]
         measured |= _comparisons(name_of("", case).strip("_"), found)
     worlds = runs.worlds(settings)
-    grid = [{name: summary(find(results, name, "exact", **world)) for name in RULES} for world in worlds]
+    grid_cells = [{name: find(results, name, "exact", **world) for name in RULES} for world in worlds]
+    certain += [all_certain(cells, printed) for cells in grid_cells for printed in (False, True)]
+    measured["grid_statements_certain"] = share_of(certain)
+    grid = [{name: summary(cell) for name, cell in cells.items()} for cells in grid_cells]
     small = [_summaries_of_group(settings, results, group) for group in range(settings["groups"])]
     for form, printed in (("", False), ("_printed", True)):
         answers = [verdicts(found, printed) for found in grid]

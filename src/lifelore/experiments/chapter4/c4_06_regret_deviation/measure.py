@@ -10,7 +10,7 @@ from lifelore.experiments.chapter4.c4_06_regret_deviation.run import AFTER, METH
 from lifelore.experiments.chapter4.reuse.many_tasks import grouped_deviation
 from lifelore.experiments.chapter4.reuse.rules import OF_THESIS
 from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD, find, name_of
-from lifelore.experiments.engine.estimates import share_of
+from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 
 PRINTED = {
     "eps-greedy": (72.193, 97.999, 83.21, 86.172),
@@ -30,6 +30,10 @@ READINGS = {
 """Regret of `surveillance.runs` by reading, and whether its sign is dropped."""
 DEFAULT_READING = "size of the difference of two pays"
 CASES_SHOWN = ("exact", "headline")
+SMALL_LATE, LARGE_LATE = ("sampling", "KG", "BE", "EI"), ("eps-greedy", "PI")
+"""Rules whose printed deviation after the last episode is below 20, and above 80."""
+SMALL, LARGE = 25.0, 50.0
+"""Bounds of deviations in the units of pay, whose noise has a deviation of 20."""
 
 
 def regrets(result: Mapping, reading: str, episode: int) -> np.ndarray:
@@ -82,7 +86,27 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         answers = whole_table("exact", reading=reading)
         measured[f"agree_all_{reading.replace(' ', '_')}"] = share_of_table(answers)
     other = next(noise for noise in NOISES if noise != DEFAULT_WORLD["noise"])
+    ways = [(case, form, {}) for case in CASES_SHOWN for form in ("", ", printed")]
+    ways += [("exact", form, {"noise": other}) for form in ("", ", printed")]
+    patterns = [
+        late_pattern(results, case, form, reading, **world) for case, form, world in ways for reading in READINGS
+    ]
+    measured["grid_late_pattern"] = share_of(patterns)
     return measured | {"agree_all_other_noise": share_of_table(whole_table("exact", noise=other))}
+
+
+def late_pattern(results: Sequence[Mapping], case: str, form: str, reading: str, **world: str) -> bool:
+    """Whether regret after the last episode varies little with the rules that converge and much with the others.
+
+    For certain, in the rules' printed forms where `form` is ", printed" and they have one.
+    """
+
+    def deviation(name: str) -> Estimate:
+        method = name + form if name + form in METHODS else name
+        return grouped_deviation(regrets(find(results, method, case, **world), reading, AFTER[-1]))
+
+    small = all(is_below(deviation(name), SMALL) for name in SMALL_LATE)
+    return small and all(is_above(deviation(name), LARGE) for name in LARGE_LATE)
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:

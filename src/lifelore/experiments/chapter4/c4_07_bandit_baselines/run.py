@@ -14,7 +14,7 @@ __all__ = ["cells", "check", "run_cell"]
 REUSE = ("EI", "EI, printed", "IDS", "sampling")
 DOUBTING = ("EI", "IDS", "sampling")
 """Rules that also run with a belief over types and the parameters of their models."""
-CASES_SHOWN = ("headline", "exact")
+CASES_SHOWN = ("headline", "exact", "learnt")
 IN_GRID = ("EI", "UCB1", "UCB1, tuned", *GP_PEERS, "interval estimation", "eps-greedy on means")
 
 

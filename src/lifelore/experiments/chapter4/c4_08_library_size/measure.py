@@ -7,21 +7,27 @@ import numpy as np
 from lifelore.core.metrics import Estimate, difference_estimate
 from lifelore.experiments.chapter4.c4_08_library_size.run import AGAINST, RULE
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
-from lifelore.experiments.engine.estimates import share_of
+from lifelore.experiments.engine.estimates import is_above, share_of
 from lifelore.experiments.engine.results_table import ResultsTable
+
+BOTH_WAYS = ("saved_by_size_late", "saved_by_episodes_whole")
+"""What the thesis finds saved: by the whole library over all episodes, and with it by more episodes."""
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     table = ResultsTable(results, ("rule", "model", "share"))
     measured: dict[str, Estimate] = {}
+    saves_library_regret = []
     for rule in settings["rules"]:
         for model in (LEARNT, EXACT, UNCERTAIN) if rule == RULE else (LEARNT, EXACT):
             for against in AGAINST:
                 cells = (table.values(against, rule=rule, model=model, share=x)[0] for x in settings["shares"])
                 found = _savings(np.stack([regret.T for regret in cells]))
+                if against == "library":
+                    saves_library_regret.append(all(is_above(found[name], 0.0) for name in BOTH_WAYS))
                 name = f"{rule.replace(', ', '_')}_{model}" + ("" if against == "all" else "_library_regret")
                 measured |= {f"{key}_{name}": number for key, number in found.items()}
-    return measured
+    return measured | {"grid_library_regret": share_of(saves_library_regret)}
 
 
 def _savings(found: np.ndarray) -> dict[str, Estimate]:

@@ -41,7 +41,22 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     found["beat_to_oracle"] = _population_ratio(by, BEAT, methods.ORACLE)
     found["beat_to_hindsight"] = _population_ratio(by, BEAT, methods.HINDSIGHT)
     below = [is_below(_population_ratio(losses, PRINTED, PRINTED_EXP3), 1.0) for losses in grid]
-    return found | {"grid_below_exp3": share_of(below)}
+    found |= dict(
+        zip(("printed_to_exp3", "printed_to_static_few", "printed_to_static_many"), _sentence(by), strict=True)
+    )
+    sentences = [_sentence(losses) for losses in grid]
+    certain = [is_below(exp3, 1.0) and is_above(few, 1.0) and is_below(many, 1.0) for exp3, few, many in sentences]
+    return found | {"grid_below_exp3": share_of(below), "grid_sentence": share_of(certain)}
+
+
+def _sentence(by: Mapping[int, Mapping[str, NDArray]]) -> tuple[Estimate, Estimate, Estimate]:
+    """BEAT as printed to EXP-3 over all populations, and to the static speed over small and over large ones."""
+
+    def some(diversities: range) -> dict[int, Mapping[str, NDArray]]:
+        return {x: by[x] for x in diversities}
+
+    few, many = (_population_ratio(some(sizes), PRINTED, STATIC) for sizes in (FEW, MANY))
+    return _population_ratio(by, PRINTED, PRINTED_EXP3), few, many
 
 
 def _population_ratio(by: Mapping[int, Mapping[str, NDArray]], *pair: str) -> Estimate:

@@ -38,11 +38,15 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     lengths = play_all(known.game, players.between(0, 1), learner, known.scale, watch=watch).steps[:, 0]
     named, after_first = np.array(watch.first), watch.named
     play_all(known.game, players.between(1), learner, known.scale, watch=watch)
-    half = named[np.minimum(-(-lengths // 2), len(named)) - 1, np.arange(len(kinds))]
     sizes = np.array(known.game.sizes, float)
     by_step = {"right": named == kinds, "ratio": sizes[named] / sizes[kinds]}
     means = {key: each.reshape(len(named), n_types, -1).mean(axis=2) for key, each in by_step.items()}
-    ends = {"half": half, "first": after_first, "last": watch.named, "at_40": named[min(40, len(named)) - 1]}
+    ends = {
+        "half": watch.halfway(lengths),
+        "first": after_first,
+        "last": watch.named,
+        "at_40": named[min(40, len(named)) - 1],
+    }
     return {
         **cell,
         **{key: np.round(mean.T, 4).tolist() for key, mean in means.items()},

@@ -5,8 +5,8 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES
-from lifelore.experiments.chapter4.ball_game.methods import BEAT, STATIC
-from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game
+from lifelore.experiments.chapter4.ball_game.methods import BEAT, BEAT_PRINTED, STATIC
+from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game, sentence
 from lifelore.experiments.chapter4.reuse.looks import draw_ratio_grid, legend_below, lines_of, size_lines
 from lifelore.experiments.engine.predicate import Condition
 from lifelore.figures.curves import draw_curves
@@ -42,13 +42,16 @@ def draw(result: Mapping) -> Figure:
 
 
 def _draw_games(axes: Axes, games: Sequence[Mapping]) -> None:
-    """Each game's numbers as shares of their bounds, bold where the condition is met."""
-    asked = asked_of_every_game()
+    """Each game's numbers as shares of their bounds, bold where the condition is met; the sentence first."""
+    headlines = [one.condition for one in sentence()]
+    told = {c.measure for c in headlines}
+    asked = [*headlines, *(c for c in asked_of_every_game() if c.measure not in told)]
     shares = [[_of_bound(row[c.measure]["value"], c) for c in asked] for row in games]
-    met = [[row["met"][c.measure] for c in asked] for row in games]
+    met = [[(row["met"] | row["sentence"])[c.measure] for c in asked] for row in games]
     look = {"neutral": 1.0, "spread": 1.35, "good": "low", "ratio": True, "words": "{:.2f}".format}
     draw_heat_grid(axes, shares, met, [row["words"] for row in games], [c.name for c in asked], **look)
-    axes.set_title("every game: the number divided by its bound, at most 1 asked (bold: met)", loc="right")
+    words = "every game: the number divided by its bound, at most 1 asked (bold: met)"
+    axes.set_title(f"{words}; the first {len(headlines)} with ε as printed", loc="right")
 
 
 def _of_bound(value: float, condition: Condition) -> float:
@@ -60,12 +63,12 @@ def _of_bound(value: float, condition: Condition) -> float:
 
 def _draw_naming(axes: Axes, row: Mapping) -> None:
     looks = size_lines(SIZES)
-    series = {name: {"mean": shares} for name, shares in zip(looks, row["named"], strict=True)}
+    series = {name: {"mean": shares} for name, shares in zip(looks, row["named_printed"], strict=True)}
     draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
-    axes.set(title="speed", xlabel="steps played", ylabel="share named right for good")
-    axes.axvline(row["length"], color=GREY, linewidth=1)
+    axes.set(title="speed, ε as printed", xlabel="steps played", ylabel="share named right for good")
+    axes.axvline(row["length_printed"], color=GREY, linewidth=1)
     axes.annotate(
-        "end of the\nfirst episode", (row["length"], 1.05), xytext=(-4, 0), textcoords="offset points", fontsize=7,
+        "end of the\nfirst episode", (row["length_printed"], 1.05), xytext=(-4, 0), textcoords="offset points", fontsize=7,
         color=GREY, ha="right", va="bottom",
     )  # fmt: skip
     axes.set_ylim(0, 1.18)

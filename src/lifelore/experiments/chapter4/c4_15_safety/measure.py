@@ -4,6 +4,7 @@ The default game comes first. In every other game and normalisation of the loss,
 """
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +15,10 @@ from lifelore.experiments.chapter4.ball_game.games import Setting
 from lifelore.experiments.chapter4.ball_game.methods import BEATS, ORACLE, PRINTED_EXP3, STATIC, TUNED_EXP3
 from lifelore.experiments.chapter4.c4_15_safety.run import LAGGING
 from lifelore.experiments.chapter4.reuse.many_tasks import plain
-from lifelore.experiments.engine.estimates import share_of
+from lifelore.experiments.engine.estimates import exact_share, share_of
 from lifelore.experiments.engine.predicate import Condition
 from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.second_reading import HEADLINE, YES, ReadCondition
 
 KEYS = {"BEAT": "", "BEAT, ε as printed": "_printed"}
 GRID = "grid_"
@@ -60,11 +62,24 @@ def answers(found: Mapping[str, Estimate]) -> dict[str, bool]:
     return {c.measure: bool(c.met(numbers)) for c in asked_of_every_game()}
 
 
+def sentence() -> list[ReadCondition]:
+    """The headlines of the second reading: what the thesis says of BEAT with ε as printed, of a single game."""
+    second = claim_of("C4.15").second
+    return [one for one in second.conditions if one.role == HEADLINE] if second else []
+
+
+def sentence_holds(found: Mapping[str, Estimate]) -> bool:
+    """Whether every headline holds by its whole interval."""
+    numbers = {name: {"value": one.value, "ci95": one.ci95} for name, one in found.items()}
+    return all(one.answer(numbers) == YES for one in sentence())
+
+
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """The numbers of the default game, and the share of games that meet each condition."""
     games = [measure_game(lots) for lots in by_game(results).values()]
     met = [answers(found) for found in games]
-    return games[0] | {GRID + name: share_of([one[name] for one in met]) for name in met[0]}
+    shares = {GRID + name: share_of([one[name] for one in met]) for name in met[0]}
+    return games[0] | shares | {f"{GRID}sentence": share_of([sentence_holds(found) for found in games])}
 
 
 def measure_game(results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -84,15 +99,21 @@ def measure_game(results: Sequence[Mapping]) -> dict[str, Estimate]:
     def regret(losses: NDArray[np.float64]) -> NDArray[np.float64]:
         return (losses - oracle).mean(axis=2).ravel()
 
-    own = regret(losses_of(results, "BEAT"))
-    found["regret"] = mean_estimate(own)
-    found |= {f"regret_to_{name}": ratio_estimate(own, regret(other)) for name, other in others.items()}
+    for method, key in KEYS.items():
+        own = regret(losses_of(results, method))
+        found[f"regret{key}"] = mean_estimate(own)
+        found |= {f"regret_to_{name}{key}": ratio_estimate(own, regret(other)) for name, other in others.items()}
     lagging = losses_of(results, LAGGING).mean(axis=2)
     found["to_static_with_lag"] = ratio_estimate(lagging, static.mean(axis=2))
     needed = joined(results, "needed")
     found |= {f"steps_needed_b{b}": median_steps(steps) for b, steps in zip(SIZES, needed, strict=True)}
     within = (needed >= 0) & (needed <= joined(results, "lengths"))
     found["named_within_first_episode"] = mean_estimate(within)
+    for key in KEYS.values():
+        half = joined(results, f"half{key}")
+        found[f"right_half{key}"] = exact_share(half.ravel().tolist())
+        by_type = [exact_share(right.tolist()) for right in half[1:]]
+        found[f"least_right_half_but_smallest{key}"] = min(by_type, key=lambda number: number.value)
     found["right_speed_at_end"] = mean_estimate(joined(results, "right_speed"))
     return found
 
@@ -120,14 +141,20 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     methods = (STATIC, ORACLE, *BEATS, LAGGING, PRINTED_EXP3, TUNED_EXP3)
     losses = {method: losses_of(default, method).mean(axis=1) for method in methods}
     found += [{"method": m, "loss": np.round(mean, 4).tolist()} for m, mean in losses.items()]
-    needed, length = joined(default, "needed"), float(joined(default, "lengths").mean())
-    shares = [[float(((row >= 0) & (row < s)).mean()) for s in STEPS] for row in needed]
-    return [*found, {"steps": STEPS, "named": np.round(shares, 3).tolist(), "length": length}]
+    naming: dict[str, Any] = {"steps": STEPS}
+    for key in KEYS.values():
+        shares = [
+            [float(((row >= 0) & (row < s)).mean()) for s in STEPS] for row in joined(default, f"needed{key}")
+        ]
+        naming[f"named{key}"] = np.round(shares, 3).tolist()
+        naming[f"length{key}"] = float(joined(default, f"lengths{key}").mean())
+    return [*found, naming]
 
 
 def _game_row(game: tuple, lots: Sequence[Mapping]) -> dict:
     found = measure_game(lots)
-    met = answers(found)
-    return {"game": list(game), "words": Setting(*game).words, "met": met} | plain(
-        {name: found[name] for name in met}
-    )
+    met, words = answers(found), Setting(*game).words
+    asked = {*met, *(one.condition.measure for one in sentence())}
+    numbers = plain({name: number for name, number in found.items() if name in asked})
+    yes = {one.condition.measure: one.answer(numbers) == YES for one in sentence()}
+    return {"game": list(game), "words": words, "met": met, "sentence": yes} | numbers

@@ -11,6 +11,8 @@ from lifelore.core.streams import stream
 from lifelore.experiments.chapter4.ball_game.games import NORMALISATIONS, Setting
 from lifelore.experiments.chapter4.ball_game.games import check_games as check
 from lifelore.experiments.chapter4.ball_game.methods import (
+    BEAT_PRINTED,
+    BEATS,
     NamedTypes,
     beat_learner,
     crowd_of,
@@ -34,7 +36,11 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Losses (n_types, players, episodes) by method, and the steps until the type that BEAT names stays right."""
+    """Losses (n_types, players, episodes) by method, and how soon BEAT names the right type.
+
+    ``needed``: steps until the type named stays right. ``half``: whether it is right half-way through the first
+    episode, whose steps are ``lengths``. ``_printed`` marks those of BEAT with ε as printed.
+    """
     setting = Setting(*cell["game"])
     known = known_of(setting, settings["training"], settings["tuning"], seed)
     n_types = known.game.n_types
@@ -44,9 +50,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     found = run_methods(known, crowd, seed, name)
     lagging = beat_learner(known, n, stream(seed, name, LAGGING), {})
     found[LAGGING] = known.losses(crowd.players, lagging, lag=settings["lag"])
-    learner = beat_learner(known, n, stream(seed, name, "naming"), {})
-    watch = NamedTypes(learner)
-    played = play_all(known.game, crowd.players, learner, known.scale, watch=watch)
+    watches, lengths = {}, {}
+    for key, words, variant in (("", "naming", {}), ("_printed", "naming, ε as printed", BEATS[BEAT_PRINTED])):
+        learner = beat_learner(known, n, stream(seed, name, words), variant)
+        watches[key] = NamedTypes(learner)
+        played = play_all(known.game, crowd.players, learner, known.scale, watch=watches[key])
+        lengths[key] = played.steps[:, 0]
     best_speed = known.value.argmax(axis=1)
 
     def by_type(values: np.ndarray) -> list:
@@ -55,8 +64,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     return {
         **cell,
         "losses": {method: by_type(np.round(lost, 4)) for method, lost in found.items()},
-        "needed": by_type(watch.steps_needed(kinds)),
         # Types with the same best speed need not be distinguished.
-        "right_speed": by_type(best_speed[watch.named] == best_speed[kinds]),
-        "lengths": by_type(played.steps[:, 0]),
+        "right_speed": by_type(best_speed[watches[""].named] == best_speed[kinds]),
+        **{f"needed{key}": by_type(watch.steps_needed(kinds)) for key, watch in watches.items()},
+        **{f"half{key}": by_type(watch.halfway(lengths[key]) == kinds) for key, watch in watches.items()},
+        **{f"lengths{key}": by_type(steps) for key, steps in lengths.items()},
     }

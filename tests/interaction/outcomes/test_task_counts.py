@@ -1,0 +1,40 @@
+"""Counted outcomes of one task: all policies are computed anew at once, with the bits of one after another."""
+
+import numpy as np
+import pytest
+
+from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
+
+
+def renewed_alone(task, policy):
+    """Mean, deviation and variance of the mean of a policy, computed from its own row alone."""
+    row, weights = task._rows[policy], np.exp(task.log_weights)
+    probs = np.tensordot(weights, row.probs(), axes=1)
+    counts = probs * (task.outcomes.totals[policy] + row.shown.sum())[:, None]
+    alone = task.outcomes.of(task.outcomes._where(), counts[None], task.outcomes.pseudo_count)
+    mean, variance = row.mean_and_variance(task.outcomes.cell_means)
+    spread = weights @ variance + weights @ (mean - weights @ mean) ** 2
+    return alone.mean[:, 0], alone.deviation[:, 0], spread
+
+
+@pytest.mark.parametrize(("n_types", "n_policies", "n_cells"), [(2, 3, 4), (6, 5, 9), (3, 7, 40)])
+def test_many_policies_are_renewed_with_the_bits_of_each_alone(n_types, n_policies, n_cells):
+    generator = np.random.default_rng(n_cells)
+    samples = generator.normal(size=(n_types, n_policies, 12)) + generator.normal(size=(n_types, n_policies, 1))
+    task = HistogramOutcomes.from_samples(samples, np.linspace(-9, 9, n_cells + 1)).for_task()
+    at_start = task.mean.copy()
+    for step in range(3 * n_policies):
+        policy = int(generator.integers(n_policies - 1))
+        gain = generator.normal(size=len(task.log_weights))
+        task.learn(policy, float(np.clip(generator.normal(), -8, 8)), task.weights_gained(gain))
+        if step % 4 == 0:
+            task.fade(0.75)
+        if step % 2:
+            continue  # several policies are stale at the next reading
+        for tried in task.tried:
+            mean, deviation, variance = renewed_alone(task, tried)
+            assert (task.mean[:, tried] == mean).all()
+            assert (task.deviation[:, tried] == deviation).all()
+            assert (task.mean_variance[:, tried] == variance).all()
+    assert (task.mean[:, -1] == at_start[:, -1]).all()
+    assert len(task.tried) > 1
