@@ -45,6 +45,7 @@ BENCHES = {
     "long_user": "interaction",
     "changing_types": "interaction",
     "bands": "interaction",
+    "perfect_information": "interaction",
     "evaluation": "interaction",
     "novelty": "interaction",
     "log": "interaction",
