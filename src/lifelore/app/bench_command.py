@@ -12,7 +12,7 @@ def bench(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
             "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, customer_fleet, courier, recognition, "
             "lidar, destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, "
-            "views, registration, pictures, deep, deep_layouts, novelty, changing_types, bands, "
+            "puzzles, views, registration, pictures, deep, deep_layouts, novelty, changing_types, bands, "
             "perfect_information, long_lived_worlds, changing_customers. "
             "Statistics: evaluation."
         ),
