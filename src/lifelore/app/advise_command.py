@@ -12,7 +12,12 @@ Option = typer.Option
 def advise(
     world: Annotated[str, typer.Argument(metavar="MAP|MAZE", help="A ROS map's YAML, or NAME:SEED (advice:3).")],
     experts: Annotated[
-        str, Option(metavar="FILE", help='JSON lines {"agent", "state", "action"} of agents that know the paths.')
+        str,
+        Option(
+            metavar="FILE",
+            help='JSON lines {"agent", "state", "action"} of agents that know the paths; '
+            'for --method classes also "class".',
+        ),
     ],
     goals: Annotated[
         str | None,
@@ -22,7 +27,10 @@ def advise(
         str, Option(metavar="FILE", help="JSON lines with the steps of the agents to advise; - is stdin.")
     ] = "-",
     method: Annotated[
-        str, Option(help="better (one goal at a time), or thesis (one prior over all goals).")
+        str,
+        Option(
+            help="better (one goal at a time), thesis (one prior over all goals), or classes (a prior a class)."
+        ),
     ] = "better",
     kappa: Annotated[float, Option(help="Least gain κ of advice, in nats.")] = 0.5,
     window: Annotated[int, Option(help="Number of last steps of an agent that count as evidence.")] = 300,

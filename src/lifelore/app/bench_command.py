@@ -13,7 +13,7 @@ def bench(
             "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, customer_fleet, courier, recognition, "
             "lidar, destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, "
             "puzzles, views, registration, pictures, deep, deep_layouts, novelty, changing_types, bands, "
-            "perfect_information, long_lived_worlds, changing_customers. "
+            "perfect_information, advice_classes, long_lived_worlds, changing_customers. "
             "Statistics: evaluation."
         ),
     ],

@@ -42,6 +42,7 @@ BENCHES = {
     "worlds": "lives",
     "tabletop_lives": "lives",
     "contexts": "action",
+    "advice_classes": "action",
     "deep_layouts": "action",
     "long_user": "interaction",
     "changing_types": "interaction",
