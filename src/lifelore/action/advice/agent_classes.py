@@ -3,8 +3,8 @@
     P(c | H) ∝ P(c) Π P(a | s, M_c)  over the window H
 
 Each class has its own experts, whose actions give the model M_c and the advice θ_c. An agent gets the advice of
-the class that is most probable for it. Where a uniform or a name tag shows the class, P(c) says so. The thesis names
-"hospital staff vs visitors" and their uniforms, and measures neither way (§3.7).
+the class that is most probable for it. Where a uniform or a name tag shows the class, P(c) says so. The thesis
+names "hospital staff vs visitors" and their uniforms, and measures neither way (§3.7).
 """
 
 from collections.abc import Mapping, Sequence
