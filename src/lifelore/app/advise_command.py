@@ -29,9 +29,13 @@ def advise(
     method: Annotated[
         str,
         Option(
-            help="better (one goal at a time), thesis (one prior over all goals), or classes (a prior a class)."
+            help="better (one goal at a time), thesis (one prior over all goals), or classes (one goal, by class)."
         ),
     ] = "better",
+    shown: Annotated[
+        str | None,
+        Option(metavar="CLASS", help="With --method classes: the class that the agents show, as by a uniform."),
+    ] = None,
     kappa: Annotated[float, Option(help="Least gain κ of advice, in nats.")] = 0.5,
     window: Annotated[int, Option(help="Number of last steps of an agent that count as evidence.")] = 300,
     share: Annotated[
@@ -53,7 +57,7 @@ def advise(
     from lifelore.app.console import print_json
 
     session = AdviceSession(
-        AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius)
+        AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius, shown=shown)
     )
     name = "stdin" if watch == "-" else watch
     with nullcontext(sys.stdin) if watch == "-" else _opened(watch) as lines:

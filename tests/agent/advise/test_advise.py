@@ -1,6 +1,7 @@
 """The verb `advise`: lines in, advice out; and what it makes of experts' files."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -182,6 +183,13 @@ def test_classes_have_priors_of_their_own(tmp_path):
     # Of one expert and pseudo-counts of 0.1, with 5 % of every model spread over four moves.
     west = {name: 0.95 * count / 1.4 + 0.0125 for name, count in (("staff", 0.1), ("visitor", 1.1))}
     assert second["classes"]["visitor"] == pytest.approx(west["visitor"] / sum(west.values()))
+    tagged = next(iter(advise([line("x", 5, None)], replace(settings, shown="staff"))))
+    assert tagged["classes"]["staff"] == pytest.approx(0.99)
+    assert tagged["theta"] == np.eye(4)[EAST].tolist()
+    with pytest.raises(NotFoundError, match="shown must be a class of the experts, staff, visitor, got 'nurse'"):
+        AdviceSession(replace(settings, shown="nurse"))
+    with pytest.raises(InputError, match="shown applies to method classes, got 'staff' for better"):
+        AdviseSettings("lattice", str(path), shown="staff")
     assert second["theta"] == np.eye(4)[WEST].tolist()
     path.write_text(json.dumps({"agent": "s", "state": 2, "action": EAST}) + "\n")
     with pytest.raises(InputError, match=r"experts.jsonl line 1: class must be a name such as staff, got None"):

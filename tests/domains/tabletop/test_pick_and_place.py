@@ -67,6 +67,15 @@ def test_blocks_go_where_they_are_put(hand):
     assert not any(hand.holds(ADJACENT, 1, other) for other in (0, 2))
 
 
+def test_a_block_is_put_beside_a_tower(hand):
+    # The upper block stands over the lower one and reaches over its edge.
+    hand.poses[1] = hand.poses[1].moved(np.array([0.01, 0.0, 0.0]))
+    assert hand.pick_up(2) is None
+    assert hand.put_beside(2, 0) is None
+    assert hand.holds(ADJACENT, 2, 0)
+    assert hand.holds(ON, 1, 0)
+
+
 def test_a_block_that_misses_the_other_falls(hand, monkeypatch):
     # More than half of the block hangs in the air.
     monkeypatch.setattr(hand, "_missed", lambda place: (place[0] + 0.035, place[1]))
@@ -76,6 +85,7 @@ def test_a_block_that_misses_the_other_falls(hand, monkeypatch):
 
 def test_a_full_table_has_no_room(hand, monkeypatch):
     monkeypatch.setattr(pick_and_place, "ROOM", 2.0)
+    monkeypatch.setattr(pick_and_place, "BESIDE", 2.0)
     hand.pick_up(1)
     assert hand.put_on_table(1) == NO_ROOM
     assert hand.put_beside(1, 0) == NO_ROOM

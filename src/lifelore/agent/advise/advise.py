@@ -11,7 +11,7 @@ from typing import Any
 
 from lifelore.action.advice.advice import WatchedAgent
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import OWN_STEPS, class_advisor, class_probs
+from lifelore.action.advice.agent_classes import ClassAdvisor, classes_with_goals
 from lifelore.action.advice.behaviour_models import Behaviour, Tabulated
 from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
@@ -29,6 +29,8 @@ from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
 
 METHODS = ("better", "thesis", "classes")
+SURE = 0.99
+"""P(class) of agents that show their class: a name tag may be borrowed. Nearer 1 takes longer to see that."""
 
 
 @dataclass(frozen=True)
@@ -45,7 +47,7 @@ class AdviseSettings:
         File of JSON lines ``{"state": …}``; default: the ends of the experts' walks, near ends joined.
     method : {"better", "thesis", "classes"}
         One goal at a time, dropping goals that the agent has passed; one prior over all goals (§3.7.1); or one
-        prior for each class of agents, which the lines of the experts name (``"class": "staff"``).
+        goal at a time by class of agent, which the lines of the experts name (``"class": "staff"``).
     kappa : float
         Least gain of advice, κ, in nats.
     window : int
@@ -56,6 +58,8 @@ class AdviseSettings:
         Metres, for maps: 0.5 and 0.2.
     burst : float, optional
         With a share below 1: number of saved steps at which advice begins; default 120.
+    shown : str, optional
+        Method ``classes``: the class that the advised agents show, by a uniform or a name tag.
     """
 
     world: str
@@ -68,10 +72,15 @@ class AdviseSettings:
     cell: float | None = None
     robot_radius: float | None = None
     burst: float | None = None
+    shown: str | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise NotFoundError(f"method must be one of {', '.join(METHODS)}, got '{self.method}'")
+        if self.shown is not None and self.method != "classes":
+            raise InputError(
+                f"shown applies to method classes, got '{self.shown}' for {self.method}; leave it out"
+            )
 
 
 class AdviceSession:
@@ -97,9 +106,10 @@ class AdviceSession:
             raise InputError(f"{settings.experts} must hold at least one step with an action, got none")
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
-        self.classes: tuple[str, ...] = ()
+        self.classes: ClassAdvisor | None = None
         if settings.method == "classes":
-            self.classes, self.advisor = _advisor_of_classes(settings, self.world)
+            self.classes = _classes(settings, self.goals, self.world)
+            self.advisor = self.classes.advisor
         else:
             self.advisor = _advisor(settings, walks, self.goals, self.world)
         self._agents: dict[str | int, tuple[WatchedAgent, bool]] = {}
@@ -118,8 +128,8 @@ class AdviceSession:
             "p_normal": advice.p_normal,
             "gain": advice.gain,
         }
-        if self.classes:
-            answer["classes"] = dict(zip(self.classes, class_probs(self.advisor, agent).tolist(), strict=True))
+        if self.classes is not None:
+            answer["classes"] = self.classes.probs(agent)
         return answer
 
     def forget(self, agent: str | int) -> None:
@@ -205,19 +215,28 @@ def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int]
     return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
 
 
-def _advisor_of_classes(settings: AdviseSettings, world: GridWorld) -> tuple[tuple[str, ...], Advisor]:
-    """The classes in the order of their names, and an advisor with a prior of each."""
+def _classes(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
+    """Goal models of each class, classes by name."""
     class_of = read_classes(_lines_of(settings.experts), settings.experts)
     steps = list(read_steps(_lines_of(settings.experts), world, settings.experts))
+    names = sorted(set(class_of.values()))
+    if settings.shown is not None and settings.shown not in names:
+        raise NotFoundError(f"shown must be a class of the experts, {', '.join(names)}, got '{settings.shown}'")
     experts: dict[str, list[GoalModel]] = {}
-    for name in sorted(set(class_of.values())):
+    for name in names:
         walks = trajectories((step for step in steps if class_of[step.agent] == name), world)
-        experts[name] = [GoalModel.from_trajectories(walks, world.n_states, len(MOVES))]
-    return tuple(experts), class_advisor(experts, _advice_settings(settings))
+        experts[name] = goal_models(walks, goals, world)
+    shares = None
+    if settings.shown is not None and len(names) > 1:
+        rest = (1 - SURE) / (len(names) - 1)
+        shares = {name: SURE if name == settings.shown else rest for name in names}
+    ends = [model.goals[0] for models in experts.values() for model in models]
+    others = non_expert_models(world, ends)
+    return classes_with_goals(experts, world.neighbour, _advice_settings(settings), shares, others)
 
 
 def _advice_settings(settings: AdviseSettings) -> AdviceSettings:
-    base = {"better": BETTER, "thesis": AdviceSettings(), "classes": OWN_STEPS}[settings.method]
+    base = AdviceSettings() if settings.method == "thesis" else BETTER
     chosen = replace(base, kappa=settings.kappa, window=settings.window)
     if settings.share is not None:
         chosen = replace(chosen, share=settings.share)

@@ -6,6 +6,7 @@ forces say. So a plan that was made from wrong relations fails here as it would 
 """
 
 from collections.abc import Sequence
+from itertools import product
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,10 +25,16 @@ MISS = 0.003
 """Metres: standard deviation of the place where an object is put down, along each axis of the table."""
 MOVED = 0.015
 """Metres that an object may shift when another is moved; more, and it was knocked over or fell."""
-ROOM = 0.06
-"""Metres of table around an object that is put down apart from the others."""
-TOUCHING = 0.004
-"""Metres between neighbours that are put side by side."""
+ROOM = 0.12
+"""Metres of table around an object that is put down apart from the others: room for a cube beside it."""
+BESIDE = 0.025
+"""Metres between an object that is put beside another and all others, so that it is beside no other."""
+DIRECTIONS = 12
+"""Number of sides on which an object may be put beside another, its faces among them."""
+GAPS = (0.004, 0.011, 0.018)
+"""Metres between neighbours that are put side by side, the first with room; all count as adjacent."""
+CLEARANCE = 0.002
+"""Metres between an object that is put on the table and what stands on others, such as the top of a tower."""
 ON_TABLE, CLEAR = "on-table", "clear"
 COVERED, FELL, NO_ROOM = "something rests on it", "something falls", "no room on the table"
 """Faults: an object is picked up from under another, objects do not stay where they were put, nowhere is free."""
@@ -106,13 +113,21 @@ class PickAndPlace:
         return NO_ROOM
 
     def put_beside(self, thing: int, other: int) -> str | None:
-        """Put the held object on the table against a face of another; the fault, or None."""
-        beside, others = self._placed(other), [self._placed(one) for one in self._here if one != other]
+        """Put the held object on the table beside another, at a face where there is room; the fault, or None."""
+        beside = self._placed(other)
+        others = [
+            (self._placed(one), BESIDE if self.holds(ON_TABLE, one) else CLEARANCE)
+            for one in self._here
+            if one != other
+        ]
         turn = _yaw(beside.pose)
         first = float(np.arctan2(turn[1, 0], turn[0, 0]))
-        for direction in first + np.pi / 2 * np.arange(4):
-            (item,) = put_beside([beside], [stand(self.shapes[thing], turn)], direction, TOUCHING)
-            if all(separation([item], [one]) > ROOM / 2 for one in others):
+        turns = 2 * np.pi / DIRECTIONS * np.arange(DIRECTIONS)
+        # Faces first: multiples of a quarter turn.
+        faces_first = first + turns[np.argsort(np.arange(DIRECTIONS) % (DIRECTIONS // 4) > 0, kind="stable")]
+        for gap, direction in product(GAPS, faces_first):
+            (item,) = put_beside([beside], [stand(self.shapes[thing], turn)], direction, gap)
+            if all(separation([item], [one]) > room for one, room in others):
                 along = abs(self._generator.normal(0, MISS)) * np.array([np.cos(direction), np.sin(direction)])
                 return self._put(thing, item.moved(*along))
         return NO_ROOM

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advised_walk import Walk, advised_walk
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import OWN_STEPS, class_advisor, class_probs
-from lifelore.action.advice.goal_model import GoalModel, extend_goal_models
+from lifelore.action.advice.agent_classes import ClassAdvisor, classes_with_goals, pooled_classes
+from lifelore.action.advice.goal_model import GoalModel
+from lifelore.agent.advise.advise import SURE
 from lifelore.agent.advise.walk_building import spread_places
 from lifelore.core.metrics import mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
@@ -32,13 +33,13 @@ CLASSES = ("staff", "visitor")
 KNOWLEDGE = (0.0, 0.25, 0.5)
 EXPERT_WALKS, ERRANDS, MOST_STEPS = 30, 20, 3000
 """Walks of experts to each place; errands of each class in a world; steps after which an errand is given up."""
-SURE = 0.99
-"""P(class) where a name tag shows it."""
+NAMED_AFTER = 30
+"""Steps of an agent without advice, after which its class is named."""
 ONE, INFERRED, SHOWN = "one prior", "class inferred", "class shown"
 APART, APART_SHOWN = "goals apart", "goals apart, class shown"
 NONE = "no advice"
 AS_THESIS, LIMITED = "no limit", "at most 40 steps in 100"
-SETTINGS = {AS_THESIS: AdviceSettings(), LIMITED: OWN_STEPS}
+SETTINGS = {AS_THESIS: AdviceSettings(), LIMITED: BETTER}
 """As in the thesis, all steps are evidence; else only those without advice."""
 Case = tuple[str, float, str, str]
 """Worlds, knowledge, settings and advisor."""
@@ -54,66 +55,53 @@ class Place(NamedTuple):
 def bench_advice_classes(repeats: int, progress: Progress) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`. Each round is an office and a maze of its own."""
     steps: dict[Case, list[float]] = {}
-    right: dict[tuple[str, float], list[float]] = {}
+    right: dict[tuple[str, float, str], list[float]] = {}
     for number, (round_, kind) in enumerate(product(range(repeats), WORLDS)):
         for case, mean in measured(kind, round_, right).items():
             steps.setdefault(case, []).append(mean)
         progress(number + 1, repeats * len(WORLDS), kind)
     rows, ratios = [], {}
-    for case, means in steps.items():
-        kind, knowledge, settings, way = case
+    for (kind, knowledge, settings, way), means in steps.items():
         name = f"{kind}, knowledge {knowledge:g}, {settings}, {way}"
         rows.append(estimated_row(f"steps, {name}", mean_estimate(means), "steps"))
-        if way not in (ONE, NONE):
-            estimate = ratio_estimate(means, steps[kind, knowledge, settings, ONE])
-            rows.append(estimated_row(f"steps beside {ONE}, {name}", estimate, "ratio"))
-            ratios[case] = estimate.value
-    for (kind, knowledge), shares in right.items():
-        name = f"class named rightly by 30 steps without advice, {kind}, knowledge {knowledge:g}"
+        reference = {INFERRED: ONE, SHOWN: ONE, APART: ONE, APART_SHOWN: APART}.get(way)
+        if reference is not None:
+            estimate = ratio_estimate(means, steps[kind, knowledge, settings, reference])
+            ratios[name] = estimate.value
+            rows.append(estimated_row(f"steps beside {reference}, {name}", estimate, "ratio"))
+    for (kind, knowledge, way), shares in right.items():
+        name = f"class named rightly by {NAMED_AFTER} steps without advice, {kind}, knowledge {knowledge:g}, {way}"
         rows.append(estimated_row(name, mean_estimate(shares), "share"))
-    goals = [
-        at_most(f"steps beside {ONE}, {kind}, knowledge 0.25, {LIMITED}, {INFERRED}", 0.9,
-                ratios.get((kind, 0.25, LIMITED, INFERRED)))
-        for kind in WORLDS
-    ]  # fmt: skip
-    return {"rows": rows, "goals": goals}
+    judged = (f"{kind}, knowledge 0.25, {LIMITED}, {INFERRED}" for kind in WORLDS)
+    return {
+        "rows": rows,
+        "goals": [at_most(f"steps beside {ONE}, {name}", 0.9, ratios.get(name)) for name in judged],
+    }
 
 
-def measured(kind: str, round_: int, right: dict[tuple[str, float], list[float]]) -> dict[Case, float]:
-    """Mean steps of all errands of a world by case; adds to `right` the share of classes named rightly."""
+def measured(kind: str, round_: int, right: dict[tuple[str, float, str], list[float]]) -> dict[Case, float]:
+    """Mean steps of all errands of a world by case; adds to `right` the shares of classes named rightly."""
     world = make_world(WORLDS[kind], seed=round_)
     classes = places_of(world, kind, round_)
-    tables = advisors_of(world, classes)
+    advisors, silent = advisors_of(world, classes), {}
+    errands = [
+        (name, number, classes[name][goal].found)
+        for name in CLASSES
+        for number, goal in enumerate(_errands(kind, round_, name, len(classes[name])))
+    ]
     found: dict[Case, float] = {}
     for knowledge in KNOWLEDGE:
-        for settings, by_class in tables.items():
-            walks = {
-                way: [
-                    _walk(
-                        world,
-                        classes[name][goal].found,
-                        knowledge,
-                        by_class[name][way],
-                        (kind, round_, name, number),
-                    )
-                    for name in CLASSES
-                    for number, goal in enumerate(_errands(kind, round_, name, len(classes[name])))
-                ]
-                for way in by_class[CLASSES[0]]
-            }
-            for way, of_way in walks.items():
-                found[kind, knowledge, settings, way] = float(np.mean([len(walk.states) for walk in of_way]))
-        advisor = tables[LIMITED][CLASSES[0]][INFERRED]
-        named = [
-            _named(
-                advisor,
-                _walk(world, classes[name][goal].found, knowledge, advisor, (kind, round_, name, number), False),
-            )
-            == name
-            for name in CLASSES
-            for number, goal in enumerate(_errands(kind, round_, name, len(classes[name])))
-        ]
-        right.setdefault((kind, knowledge), []).append(float(np.mean(named)))
+        for (settings, way), of_class in advisors.items():
+            lengths = []
+            for name, number, errand in errands:
+                walk = _walk(world, errand, knowledge, of_class[name], (kind, round_, name, number))
+                lengths.append(len(walk.states))
+                if way == NONE:
+                    silent[knowledge, name, number] = walk
+            found[kind, knowledge, settings, way] = float(np.mean(lengths))
+        for way, known in class_advisors(world, classes).items():
+            named = [_named(known, silent[knowledge, name, number]) == name for name, number, _ in errands]
+            right.setdefault((kind, knowledge, way), []).append(float(np.mean(named)))
     return found
 
 
@@ -133,31 +121,29 @@ def places_of(world: GridWorld, kind: str, round_: int) -> dict[str, list[Place]
     return found
 
 
-def advisors_of(world: GridWorld, classes: Mapping[str, list[Place]]) -> dict[str, dict[str, dict[str, Advisor]]]:
-    """By settings, class of the agent and way: the advisor that the agent meets."""
+def advisors_of(world: GridWorld, classes: Mapping[str, list[Place]]) -> dict[tuple[str, str], dict[str, Advisor]]:
+    """By settings and way: the advisor that an agent of each class meets."""
     models = {name: [place.model for place in places] for name, places in classes.items()}
     every = [model for of_class in models.values() for model in of_class]
-    found: dict[str, dict[str, dict[str, Advisor]]] = {}
+    found: dict[tuple[str, str], dict[str, Advisor]] = {}
     for settings, chosen in SETTINGS.items():
-        silent = replace(chosen, kappa=1e9)
-        one, inferred = Advisor.of_thesis(every, chosen), class_advisor(models, chosen)
-        shown = {
-            name: class_advisor(models, chosen, {of: SURE if of == name else 1 - SURE for of in CLASSES})
-            for name in CLASSES
-        }
-        found[settings] = {
-            name: {
-                NONE: Advisor.of_thesis(every, silent), ONE: one, INFERRED: inferred, SHOWN: shown[name],
-            }
-            for name in CLASSES
-        }  # fmt: skip
-    apart = Advisor(extend_goal_models(every, world.neighbour), None, BETTER)
-    for name in CLASSES:
-        found[LIMITED][name] |= {
-            APART: apart,
-            APART_SHOWN: Advisor(extend_goal_models(models[name], world.neighbour), None, BETTER),
-        }
-    return found
+        found[settings, NONE] = dict.fromkeys(CLASSES, Advisor.of_thesis(every, replace(chosen, kappa=1e9)))
+        found[settings, ONE] = dict.fromkeys(CLASSES, Advisor.of_thesis(every, chosen))
+        found[settings, INFERRED] = dict.fromkeys(CLASSES, pooled_classes(models, chosen).advisor)
+        found[settings, SHOWN] = {name: pooled_classes(models, chosen, _tag(name)).advisor for name in CLASSES}
+    apart = classes_with_goals(models, world.neighbour).advisor
+    shown = {name: classes_with_goals(models, world.neighbour, None, _tag(name)).advisor for name in CLASSES}
+    return found | {(LIMITED, APART): dict.fromkeys(CLASSES, apart), (LIMITED, APART_SHOWN): shown}
+
+
+def class_advisors(world: GridWorld, classes: Mapping[str, list[Place]]) -> dict[str, ClassAdvisor]:
+    """The two advisors that infer a class, by way."""
+    models = {name: [place.model for place in places] for name, places in classes.items()}
+    return {INFERRED: pooled_classes(models), APART: classes_with_goals(models, world.neighbour)}
+
+
+def _tag(shown: str) -> dict[str, float]:
+    return {name: SURE if name == shown else 1 - SURE for name in CLASSES}
 
 
 def _errands(kind: str, round_: int, name: str, n_places: int) -> list[int]:
@@ -165,13 +151,10 @@ def _errands(kind: str, round_: int, name: str, n_places: int) -> list[int]:
     return random.integers(0, n_places, ERRANDS).tolist()
 
 
-def _walk(
-    world: GridWorld, found: Errand, knowledge: float, advisor: Advisor, names: tuple, heeds: bool = True
-) -> Walk:
-    is_open = world.neighbour >= 0
-    policy = knowledge * _shares(found.best) + (1 - knowledge) * _shares(is_open)
+def _walk(world: GridWorld, found: Errand, knowledge: float, advisor: Advisor, names: tuple) -> Walk:
+    policy = knowledge * _shares(found.best) + (1 - knowledge) * _shares(world.neighbour >= 0)
     random = stream(0, "bench", "advice classes", *names, "walk", f"{knowledge:g}")
-    return advised_walk(found.tables, policy, advisor, random, MOST_STEPS, follows_advice=heeds)
+    return advised_walk(found.tables, policy, advisor, random, MOST_STEPS)
 
 
 def _shares(chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
@@ -180,10 +163,11 @@ def _shares(chosen: NDArray[np.bool_]) -> NDArray[np.float64]:
     return chosen / chosen.sum(axis=1, keepdims=True)
 
 
-def _named(advisor: Advisor, walk: Walk, n_steps: int = 30) -> str:
+def _named(known: ClassAdvisor, walk: Walk, n_steps: int | None = None) -> str:
     """The most probable class after the first steps of a walk."""
-    agent = advisor.watch()
+    n_steps, agent = NAMED_AFTER if n_steps is None else n_steps, known.advisor.watch()
     for state, action in zip(walk.states[:n_steps], walk.actions[:n_steps], strict=True):
-        advisor.observe(agent, int(state), int(action))
-    advisor.consider(agent, int(walk.states[min(n_steps, len(walk.states) - 1)]))
-    return CLASSES[int(class_probs(advisor, agent).argmax())]
+        known.advisor.observe(agent, int(state), int(action))
+    known.advisor.consider(agent, int(walk.states[min(n_steps, len(walk.states) - 1)]))
+    probs = known.probs(agent)
+    return max(CLASSES, key=probs.__getitem__)

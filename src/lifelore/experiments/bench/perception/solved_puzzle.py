@@ -26,7 +26,7 @@ from lifelore.perception.relations.relation_classifier import shipped_model
 from lifelore.perception.scene import Scene
 from lifelore.perception.segmentation.table_frame import segmented_scene
 
-SEED = 2511
+SEED = 2512
 LOOKS = 3
 """Most looks at a puzzle, from all around the table."""
 SOLVED = "solved"
