@@ -12,7 +12,12 @@ Option = typer.Option
 def advise(
     world: Annotated[str, typer.Argument(metavar="MAP|MAZE", help="A ROS map's YAML, or NAME:SEED (advice:3).")],
     experts: Annotated[
-        str, Option(metavar="FILE", help='JSON lines {"agent", "state", "action"} of agents that know the paths.')
+        str,
+        Option(
+            metavar="FILE",
+            help='JSON lines {"agent", "state", "action"} of agents that know the paths; '
+            'for --method classes also "class".',
+        ),
     ],
     goals: Annotated[
         str | None,
@@ -22,8 +27,15 @@ def advise(
         str, Option(metavar="FILE", help="JSON lines with the steps of the agents to advise; - is stdin.")
     ] = "-",
     method: Annotated[
-        str, Option(help="better (one goal at a time), or thesis (one prior over all goals).")
+        str,
+        Option(
+            help="better (one goal at a time), thesis (one prior over all goals), or classes (one goal, by class)."
+        ),
     ] = "better",
+    shown: Annotated[
+        str | None,
+        Option(metavar="CLASS", help="With --method classes: the class that the agents show, as by a uniform."),
+    ] = None,
     kappa: Annotated[float, Option(help="Least gain κ of advice, in nats.")] = 0.5,
     window: Annotated[int, Option(help="Number of last steps of an agent that count as evidence.")] = 300,
     share: Annotated[
@@ -45,7 +57,7 @@ def advise(
     from lifelore.app.console import print_json
 
     session = AdviceSession(
-        AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius)
+        AdviseSettings(world, experts, goals, method, kappa, window, share, cell, robot_radius, shown=shown)
     )
     name = "stdin" if watch == "-" else watch
     with nullcontext(sys.stdin) if watch == "-" else _opened(watch) as lines:

@@ -1,6 +1,7 @@
 """The verb `advise`: lines in, advice out; and what it makes of experts' files."""
 
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -167,6 +168,37 @@ def test_answers_have_the_promised_form(maze, experts):
             assert answer["gain"] >= 0
 
 
+def test_classes_have_priors_of_their_own(tmp_path):
+    # Staff walk east and visitors west, all from the middle.
+    def expert(agent, of_class, action, states):
+        return [{"agent": agent, "class": of_class, "state": state, "action": action} for state in states]
+
+    steps = [*expert("s", "staff", EAST, range(2, 9)), *expert("v", "visitor", WEST, range(8, 1, -1))]
+    path = tmp_path / "experts.jsonl"
+    path.write_text("".join(json.dumps(step) + "\n" for step in steps))
+    settings = AdviseSettings("lattice", str(path), method="classes", kappa=9.0)  # never advised
+    first, second = advise([line("x", 5, None), line("x", 5, WEST)], settings)
+    assert list(first) == ["agent", "advise", "theta", "p_normal", "gain", "classes"]
+    assert first["classes"] == {"staff": 0.5, "visitor": 0.5}
+    # Of one expert and pseudo-counts of 0.1, with 5 % of every model spread over four moves.
+    west = {name: 0.95 * count / 1.4 + 0.0125 for name, count in (("staff", 0.1), ("visitor", 1.1))}
+    assert second["classes"]["visitor"] == pytest.approx(west["visitor"] / sum(west.values()))
+    tagged = next(iter(advise([line("x", 5, None)], replace(settings, shown="staff"))))
+    assert tagged["classes"]["staff"] == pytest.approx(0.99)
+    assert tagged["theta"] == np.eye(4)[EAST].tolist()
+    with pytest.raises(NotFoundError, match="shown must be a class of the experts, staff, visitor, got 'nurse'"):
+        AdviceSession(replace(settings, shown="nurse"))
+    with pytest.raises(InputError, match="shown applies to method classes, got 'staff' for better"):
+        AdviseSettings("lattice", str(path), shown="staff")
+    assert second["theta"] == np.eye(4)[WEST].tolist()
+    path.write_text(json.dumps({"agent": "s", "state": 2, "action": EAST}) + "\n")
+    with pytest.raises(InputError, match=r"experts.jsonl line 1: class must be a name such as staff, got None"):
+        AdviceSession(settings)
+    path.write_text("".join(json.dumps(steps[i] | {"agent": "s"}) + "\n" for i in (0, -1)))
+    with pytest.raises(InputError, match="line 2: agent 's' must have one class, got 'visitor' after 'staff'"):
+        AdviceSession(settings)
+
+
 def test_agents_are_told_apart(maze, experts):
     # What x does moves nothing of what y is told.
     start = int(maze_goals(maze)[0])
@@ -200,7 +232,7 @@ def test_worlds_by_name_and_seed_or_by_map(tmp_path):
 
 
 def test_mistakes_are_one_clear_line(experts, tmp_path):
-    with pytest.raises(NotFoundError, match="method must be one of better, thesis, got 'best'"):
+    with pytest.raises(NotFoundError, match="method must be one of better, thesis, classes, got 'best'"):
         AdviseSettings(MAZE, experts, method="best")
     with pytest.raises(NotFoundError, match="file 'none' does not exist"):
         AdviceSession(AdviseSettings(MAZE, "none"))

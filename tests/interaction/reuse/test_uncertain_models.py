@@ -16,7 +16,7 @@ from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse import reuse_algorithm
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.reuse_session import load_session, save_session, session_bytes
-from lifelore.interaction.selection import ExpectedImprovement, Greedy, InformationDirected, rule_named
+from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy, InformationDirected, rule_named
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.transition_signal import TransitionSignal
 
@@ -123,8 +123,7 @@ def test_every_rule_selects_with_every_kind_of_model(model):
     samples = random.integers(0, 3, (5, 4, 6)).astype(float)
     options = {"edges": [-0.5, 0.5, 1.5, 2.5]} if model == "histogram" else {}
     library = PolicyLibrary.from_samples(samples, model=model, **options)
-    for name in ("greedy", "epsilon-greedy", "sampling", "probability-of-improvement", "expected-improvement",
-                 "belief-entropy", "knowledge-gradient", "information-directed"):  # fmt: skip
+    for name in RULES:
         agent = BayesianPolicyReuse(library, rule_named(name), seed=1)
         for _ in range(4):
             agent.update(agent.select(), float(random.integers(0, 3)))

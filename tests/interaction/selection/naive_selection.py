@@ -153,3 +153,15 @@ def information_ratio(belief, mean, laws):
     return [
         (best - u) ** 2 / (before - h) if before - h > 1e-9 else inf for u, h in zip(worth, after, strict=True)
     ]
+
+
+def perfect_gain(belief, mean):
+    """Expected rise of the best utility if a single policy's mean pay became known, by every type it may have."""
+    now = utilities(belief, mean)
+    best = max(range(len(now)), key=now.__getitem__)
+    found = []
+    for policy in range(len(now)):
+        other = max((u for q, u in enumerate(now) if q != policy), default=-inf)
+        known = sum(b * max(row[policy], other) for b, row in zip(belief, mean, strict=True))
+        found.append(known - now[best])
+    return found

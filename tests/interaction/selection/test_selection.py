@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.stats import norm
 
 from lifelore.core.errors import InputError, NotFoundError
 from lifelore.interaction.beliefs.belief import entropy
@@ -21,6 +22,7 @@ from lifelore.interaction.selection import (
     InformationDirected,
     KnowledgeGradient,
     ProbabilityOfImprovement,
+    ValueOfPerfectInformation,
     choose,
     rule_named,
     tied_shares,
@@ -44,6 +46,7 @@ EVERY_RULE = [
     ExpectedImprovement(of="outcome"),
     KnowledgeGradient("thesis"),
     KnowledgeGradient(candidates="all", mass=1.0),
+    ValueOfPerfectInformation("once"),
     ProbabilityOfImprovement(variant="thesis"),
 ]
 
@@ -96,6 +99,10 @@ def test_every_rule_agrees_with_its_plain_twin(seed):
     for candidates in ("auto", "all"):
         scores = KnowledgeGradient(mass=1.0, candidates=candidates).scores(library, belief, episodes_left=7)
         assert scores == pytest.approx(now + 7 * gained, abs=1e-9)
+    perfect = np.array(naive.perfect_gain(b, mean))
+    for counted, weight in (("episodes", 7), ("once", 1)):
+        scores = ValueOfPerfectInformation(counted).scores(library, belief, episodes_left=7)
+        assert scores == pytest.approx(now + weight * perfect, abs=1e-9)
     ratio = naive.information_ratio(b, mean, laws)
     assert InformationDirected(mass=1.0).scores(library, belief) ** 2 == pytest.approx(ratio, rel=1e-5)
 
@@ -221,6 +228,34 @@ def test_improvement_of_the_pay_by_hand():
     loud = PolicyLibrary.from_means(library.performance.mean, 1e4)
     assert ExpectedImprovement().scores(loud, belief).tolist() == [1.5, 3.0]
     assert ExpectedImprovement(of="outcome").scores(loud, belief).min() > 1e3
+
+
+def test_perfect_information_by_hand():
+    # A pays 5 on both types, B 0 or 8, C 2 or 3: 5, 4 and 2.5 are expected.
+    library = PolicyLibrary.from_means([[5.0, 0.0, 2.0], [5.0, 8.0, 3.0]], 1.0)
+    rule, belief = ValueOfPerfectInformation(lookahead=4.0), np.array([0.5, 0.5])
+    # Half of the time B turns out 3 above A; A and C are never known to change the choice.
+    assert rule.scores(library, belief).tolist() == [5.0, 4.0 + 4 * 1.5, 2.5]
+    assert rule.scores(library, belief, episodes_left=0).tolist() == [5.0, 4.0, 2.5]
+    # The best policy is known to be bad half of the time: then the second best is chosen, which pays 4 more.
+    risky = PolicyLibrary.from_means([[0.0, 4.0], [10.0, 4.0]], 1.0)
+    assert rule.scores(risky, belief).tolist() == [5.0 + 4 * 2.0, 4.0]
+    assert rule.scores(PolicyLibrary.from_means([[3.0], [5.0]], 1.0), belief).tolist() == [4.0]
+
+
+def test_perfect_information_about_uncertain_means_agrees_with_an_integral():
+    samples = np.random.default_rng(3).normal([[10, 13, 9], [14, 8, 12]], 4.0, (6, 2, 3)).transpose(1, 2, 0)
+    task = PolicyLibrary.from_samples(samples).for_task()
+    task.performance.learn(1, 11.0)
+    model, belief = task.performance, np.array([0.3, 0.7])
+    now = belief @ model.mean
+    found = ValueOfPerfectInformation("once").scores(task, belief) - now
+    for policy in range(3):
+        other = np.delete(now, policy).max()
+        means = [norm(model.mean[t, policy], model.mean_variance[t, policy] ** 0.5) for t in range(2)]
+        known = sum(b * law.expect(lambda m, o=other: max(m, o)) for b, law in zip(belief, means, strict=True))
+        assert found[policy] == pytest.approx(known - now.max(), rel=1e-4)
+        assert found[policy] > 0
 
 
 @pytest.mark.parametrize("noise", [1.0, 1e3])
@@ -452,6 +487,8 @@ def test_a_flat_belief_over_symmetric_types_ties_all_policies():
         (lambda: BeliefEntropy(mass=0.0), "mass must lie in"),
         (lambda: KnowledgeGradient(lookahead=INF), "lookahead must be at least 0"),
         (lambda: KnowledgeGradient(candidates="some"), "candidates must be"),
+        (lambda: ValueOfPerfectInformation("always"), "counted must be 'episodes'"),
+        (lambda: ValueOfPerfectInformation(lookahead=-1.0), "lookahead must be at least 0"),
         (lambda: InformationDirected(mass=1.5), "mass must lie in"),
     ],
 )
@@ -478,4 +515,4 @@ def test_rules_that_look_ahead_need_signals_that_can_be_listed():
 
 def test_every_rule_is_registered_under_its_name():
     assert all(rule.name == name for name, rule in RULES.items())
-    assert len(RULES) == 8
+    assert len(RULES) == 9

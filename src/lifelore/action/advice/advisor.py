@@ -114,6 +114,8 @@ class Advisor:
     weights : (1 + len(others),) float, optional
         P(M) of the experts and of each of `others`, positive; default equal. The models of an entry share its
         probability equally.
+    goal_weights : (len(goal_models),) float, optional
+        Shares of the goal models in P(M) of the experts, positive; default equal.
 
     Raises
     ------
@@ -133,6 +135,7 @@ class Advisor:
         others: Sequence[Behaviour | Sequence[Behaviour]] | None = None,
         settings: AdviceSettings | None = None,
         weights: ArrayLike | None = None,
+        goal_weights: ArrayLike | None = None,
     ) -> None:
         _check_goal_models(goal_models)
         self.settings = settings or AdviceSettings()
@@ -140,7 +143,9 @@ class Advisor:
         experts = [Experts(model.prior) for model in goal_models]
         others = [Uniform(self.n_actions)] if others is None else others
         kinds = [_per_goal(entry, len(goal_models)) for entry in (experts, *others)]
-        self.guide = self._guide(goal_models, kinds, _checked_weights(weights, len(kinds)))
+        shares = _checked_weights(goal_weights, len(goal_models), "goal_weights", "one for each goal model")
+        kind_weights = _checked_weights(weights, len(kinds), "weights", "experts first")
+        self.guide = self._guide(goal_models, kinds, kind_weights, shares)
         chosen = self.settings
         self.rule = AdviceRule(
             float(chosen.kappa), float(chosen.share), float(chosen.burst), chosen.own_steps_only
@@ -151,10 +156,11 @@ class Advisor:
         """M₁ from all experts pooled, M₂ uniform (§3.7.1.2)."""
         return cls([GoalModel.pooled(goal_models)], None, settings)
 
-    def _guide(self, goal_models, kinds, weights) -> Guide:
+    def _guide(self, goal_models, kinds, weights, shares) -> Guide:
         models = [model for kind in kinds for model in kind]
         goal_of_model = [g if len(kind) > 1 else -1 for kind in kinds for g in range(len(kind))]
         prior = np.concatenate([np.full(len(kind), w / len(kind)) for kind, w in zip(kinds, weights, strict=True)])
+        prior[: len(goal_models)] = weights[0] * shares / shares.sum()
         goal_of_state = np.full(self.n_states, -1, np.int32)
         for g, model in enumerate(goal_models):
             goal_of_state[list(model.goals)] = g
@@ -278,10 +284,10 @@ def _per_goal(entry, n_goals: int) -> list[Behaviour]:
     return list(entry)
 
 
-def _checked_weights(weights: ArrayLike | None, n_kinds: int) -> NDArray[np.float64]:
-    weights = np.ones(n_kinds) if weights is None else np.asarray(weights, np.float64)
-    if weights.shape != (n_kinds,) or not (weights > 0).all():
-        raise InputError(f"weights must be {n_kinds} positive numbers, experts first, got {weights}")
+def _checked_weights(weights: ArrayLike | None, n: int, name: str, order: str) -> NDArray[np.float64]:
+    weights = np.ones(n) if weights is None else np.asarray(weights, np.float64)
+    if weights.shape != (n,) or not (weights > 0).all():
+        raise InputError(f"{name} must be {n} positive numbers, {order}, got {weights}")
     return weights
 
 

@@ -11,16 +11,26 @@ from typing import Any
 
 from lifelore.action.advice.advice import WatchedAgent
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
+from lifelore.action.advice.agent_classes import ClassAdvisor, classes_with_goals
 from lifelore.action.advice.behaviour_models import Behaviour, Tabulated
 from lifelore.action.advice.goal_model import GoalModel, Trajectory, extend_goal_models
 from lifelore.agent.advise.expert_trajectories import goal_models, goals_of_ends, state_after, trajectories
-from lifelore.agent.advise.step_lines import NO_ACTION, StepLine, read_objects, read_steps, state_number
+from lifelore.agent.advise.step_lines import (
+    NO_ACTION,
+    StepLine,
+    read_classes,
+    read_objects,
+    read_steps,
+    state_number,
+)
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.domains.advice.explorers import EXPLORERS, explorer_probs
 from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
 
-METHODS = ("better", "thesis")
+METHODS = ("better", "thesis", "classes")
+SURE = 0.99
+"""P(class) of agents that show their class: a name tag may be borrowed. Nearer 1 takes longer to see that."""
 
 
 @dataclass(frozen=True)
@@ -35,8 +45,9 @@ class AdviseSettings:
         File of JSON lines, see `step_lines`.
     goals : str, optional
         File of JSON lines ``{"state": …}``; default: the ends of the experts' walks, near ends joined.
-    method : {"better", "thesis"}
-        One goal at a time, dropping goals that the agent has passed; or one prior over all goals (§3.7.1).
+    method : {"better", "thesis", "classes"}
+        One goal at a time, dropping goals that the agent has passed; one prior over all goals (§3.7.1); or one
+        goal at a time by class of agent, which the lines of the experts name (``"class": "staff"``).
     kappa : float
         Least gain of advice, κ, in nats.
     window : int
@@ -47,6 +58,8 @@ class AdviseSettings:
         Metres, for maps: 0.5 and 0.2.
     burst : float, optional
         With a share below 1: number of saved steps at which advice begins; default 120.
+    shown : str, optional
+        Method ``classes``: the class that the advised agents show, by a uniform or a name tag.
     """
 
     world: str
@@ -59,10 +72,15 @@ class AdviseSettings:
     cell: float | None = None
     robot_radius: float | None = None
     burst: float | None = None
+    shown: str | None = None
 
     def __post_init__(self) -> None:
         if self.method not in METHODS:
             raise NotFoundError(f"method must be one of {', '.join(METHODS)}, got '{self.method}'")
+        if self.shown is not None and self.method != "classes":
+            raise InputError(
+                f"shown applies to method classes, got '{self.shown}' for {self.method}; leave it out"
+            )
 
 
 class AdviceSession:
@@ -88,7 +106,12 @@ class AdviceSession:
             raise InputError(f"{settings.experts} must hold at least one step with an action, got none")
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
-        self.advisor = _advisor(settings, walks, self.goals, self.world)
+        self.classes: ClassAdvisor | None = None
+        if settings.method == "classes":
+            self.classes = _classes(settings, self.goals, self.world)
+            self.advisor = self.classes.advisor
+        else:
+            self.advisor = _advisor(settings, walks, self.goals, self.world)
         self._agents: dict[str | int, tuple[WatchedAgent, bool]] = {}
 
     def answer(self, step: StepLine) -> dict[str, Any]:
@@ -98,13 +121,16 @@ class AdviceSession:
             self.advisor.observe(agent, step.state, step.action, advised)
         advice = self.advisor.consider(agent, state_after(self.world, step))
         self._agents[step.agent] = (agent, advice.advise)
-        return {
+        answer = {
             "agent": step.agent,
             "advise": advice.advise,
             "theta": advice.theta.tolist() if advice.theta.any() else None,
             "p_normal": advice.p_normal,
             "gain": advice.gain,
         }
+        if self.classes is not None:
+            answer["classes"] = self.classes.probs(agent)
+        return answer
 
     def forget(self, agent: str | int) -> None:
         """Forget the steps of an agent."""
@@ -119,7 +145,8 @@ def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") 
     dict
         ``agent``; ``advise``, whether to advise the agent now; ``theta``, the advised probabilities of the moves
         (north, south, east, west) in the state after its step, None where no expert was; ``p_normal``, P(M | H)
-        of the experts' models; ``gain`` of the advice in nats.
+        of the experts' models; ``gain`` of the advice in nats; with method ``classes`` also ``classes``, the
+        probability of each.
 
     Raises
     ------
@@ -181,16 +208,41 @@ def _goals(settings: AdviseSettings, walks: list[Trajectory], world: GridWorld) 
 
 
 def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int], world: GridWorld) -> Advisor:
-    base = BETTER if settings.method == "better" else AdviceSettings()
+    chosen = _advice_settings(settings)
+    if settings.method == "thesis":
+        return Advisor([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
+    models = extend_goal_models(goal_models(walks, goals, world), world.neighbour)
+    return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
+
+
+def _classes(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
+    """Goal models of each class, classes by name."""
+    class_of = read_classes(_lines_of(settings.experts), settings.experts)
+    steps = list(read_steps(_lines_of(settings.experts), world, settings.experts))
+    names = sorted(set(class_of.values()))
+    if settings.shown is not None and settings.shown not in names:
+        raise NotFoundError(f"shown must be a class of the experts, {', '.join(names)}, got '{settings.shown}'")
+    experts: dict[str, list[GoalModel]] = {}
+    for name in names:
+        walks = trajectories((step for step in steps if class_of[step.agent] == name), world)
+        experts[name] = goal_models(walks, goals, world)
+    shares = None
+    if settings.shown is not None and len(names) > 1:
+        rest = (1 - SURE) / (len(names) - 1)
+        shares = {name: SURE if name == settings.shown else rest for name in names}
+    ends = [model.goals[0] for models in experts.values() for model in models]
+    others = non_expert_models(world, ends)
+    return classes_with_goals(experts, world.neighbour, _advice_settings(settings), shares, others)
+
+
+def _advice_settings(settings: AdviseSettings) -> AdviceSettings:
+    base = AdviceSettings() if settings.method == "thesis" else BETTER
     chosen = replace(base, kappa=settings.kappa, window=settings.window)
     if settings.share is not None:
         chosen = replace(chosen, share=settings.share)
     if settings.burst is not None:
         chosen = replace(chosen, burst=settings.burst)
-    if settings.method == "thesis":
-        return Advisor([GoalModel.from_trajectories(walks, world.n_states, len(MOVES))], None, chosen)
-    models = extend_goal_models(goal_models(walks, goals, world), world.neighbour)
-    return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
+    return chosen
 
 
 def non_expert_models(world: GridWorld, goals: list[int]) -> list[Behaviour | list[Behaviour]]:

@@ -39,6 +39,27 @@ def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[St
             raise InputError(f"{name} line {number}: {error}") from None
 
 
+def read_classes(lines: Iterable[str], name: str) -> dict[str | int, str]:
+    """The ``class`` of each agent, such as staff or visitor.
+
+    Raises
+    ------
+    InputError
+        A line has no class, or an agent two; the message gives `name` and the number of the line.
+    """
+    found: dict[str | int, str] = {}
+    for number, document in read_objects(lines, name):
+        given = document.get("class")
+        if not isinstance(given, str) or not given:
+            raise InputError(f"{name} line {number}: class must be a name such as staff, got {given!r}")
+        agent = _agent(document)
+        if found.setdefault(agent, given) != given:
+            raise InputError(
+                f"{name} line {number}: agent {agent!r} must have one class, got {given!r} after {found[agent]!r}"
+            )
+    return found
+
+
 def read_objects(lines: Iterable[str], name: str) -> Iterator[tuple[int, dict[str, Any]]]:
     """The number of each line, from 1, and its object."""
     for number, line in enumerate(_decoded(lines, name), 1):

@@ -113,11 +113,11 @@ def walk_building(name: str, maps: Mapping[str, str]) -> WalkBuilding:
             "serve a map of a part of it"
         )
     floor = floor_of_cells(world) if occupancy is None else floor_of(occupancy, world)
-    places, distance = _spread_places(name, world)
+    places, distance = spread_places(name, world)
     return WalkBuilding(name, world, places, distance, visible_places(floor, world, REACH))
 
 
-def _spread_places(name: str, world: GridWorld) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
+def spread_places(name: str, world: GridWorld) -> tuple[NDArray[np.int64], NDArray[np.int32]]:
     """Places far from each other, each the farthest state from all places before it; and the moves to them."""
     first = int(stream(0, "walk places", name).integers(world.n_states))
     chosen = [int(np.argmax(_distances(world, first)))]

@@ -20,6 +20,7 @@ BENCHES = {
     "perceive": "perception",
     "relations": "perception",
     "plans": "perception",
+    "puzzles": "perception",
     "pictures": "perception",
     "views": "perception",
     "registration": "perception",
@@ -41,10 +42,12 @@ BENCHES = {
     "worlds": "lives",
     "tabletop_lives": "lives",
     "contexts": "action",
+    "advice_classes": "action",
     "deep_layouts": "action",
     "long_user": "interaction",
     "changing_types": "interaction",
     "bands": "interaction",
+    "perfect_information": "interaction",
     "evaluation": "interaction",
     "novelty": "interaction",
     "log": "interaction",
@@ -69,6 +72,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         Interleaved rounds, 1 to `MOST_REPEATS`; medians over them are reported. For ``courier`` and ``lidar``:
         lives; for ``recognition`` and ``destinations``: offices; for ``relations``, ``segmentation``, ``plans``,
         ``views`` and ``registration``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind;
+        for ``puzzles``: lots of 20 puzzles; for ``perfect_information``: groups of ten tasks in each world;
         for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
         two lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
         ``changing_customers``: lives; for ``customer_fleet``: worlds; for ``evaluation``: 60 simulated studies

@@ -21,6 +21,7 @@ from lifelore.interaction.selection.information_directed import InformationDirec
 from lifelore.interaction.selection.knowledge_gradient import KnowledgeGradient
 from lifelore.interaction.selection.probability_of_improvement import ProbabilityOfImprovement
 from lifelore.interaction.selection.rule import SelectionRule
+from lifelore.interaction.selection.value_of_perfect_information import ValueOfPerfectInformation
 
 RULES: dict[str, type] = {
     rule.name: rule
@@ -32,6 +33,7 @@ RULES: dict[str, type] = {
         ExpectedImprovement,
         BeliefEntropy,
         KnowledgeGradient,
+        ValueOfPerfectInformation,
         InformationDirected,
     )
 }
@@ -49,8 +51,8 @@ BEFORE: dict[str, dict[str, Any]] = {
 
 __all__ = [
     "DEFAULT_RULE", "RULES", "BeliefEntropy", "BeliefSampling", "EpsilonGreedy", "ExpectedImprovement", "Greedy",
-    "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule", "choose",
-    "default_rule", "restored_rule", "rule_named", "tied_shares",
+    "InformationDirected", "KnowledgeGradient", "ProbabilityOfImprovement", "SelectionRule",
+    "ValueOfPerfectInformation", "choose", "default_rule", "restored_rule", "rule_named", "tied_shares",
 ]  # fmt: skip
 
 

@@ -1,0 +1,115 @@
+"""Advice by class: Bayes by hand, the advice of the likeliest class, and what a name tag does."""
+
+import numpy as np
+import pytest
+
+from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
+from lifelore.action.advice.agent_classes import classes_with_goals, pooled_classes
+from lifelore.action.advice.goal_model import GoalModel, Trajectory
+from lifelore.core.errors import InputError
+
+STAFF, VISITOR = 0, 1
+PLAIN = AdviceSettings(kappa=0.0)
+
+
+def walker(actions, n_states=3):
+    """Experts of one goal who take the same actions in states 0, 1, … each time."""
+    walk = Trajectory(np.arange(len(actions) + 1), np.array(actions))
+    return GoalModel.from_trajectories([walk] * 4, n_states, 2)
+
+
+@pytest.fixture
+def models():
+    """Staff go by action 0 and visitors by action 1 in state 1; in state 0 all take action 0."""
+    return {"staff": [walker([0, 0])], "visitor": [walker([0, 1])]}
+
+
+def test_the_class_is_inferred_by_bayes(models):
+    known = pooled_classes(models, PLAIN)
+    advisor = known.advisor
+    agent = advisor.watch()
+    advisor.consider(agent, 0)
+    assert known.probs(agent) == {"staff": 0.5, "visitor": 0.5}
+    advisor.observe(agent, 0, 0)
+    advisor.consider(agent, 1)
+    assert known.probs(agent) == {"staff": 0.5, "visitor": 0.5}, "all take this way"
+    advisor.observe(agent, 1, 1)
+    # Four experts and pseudo-counts of 0.1: P(1 | staff) = 0.1 / 4.2, P(1 | visitor) = 4.1 / 4.2.
+    advice = advisor.consider(agent, 1)
+    assert list(known.probs(agent).values()) == pytest.approx([0.1 / 4.2, 4.1 / 4.2])
+    assert advice.goal == VISITOR
+    assert advice.theta.tolist() == [0, 1]
+    # With the uniform model: P(M | H) of both classes together.
+    likelihood = np.array([0.1, 4.1]) / 4.2 * 4.1 / 4.2
+    assert advice.p_normal == pytest.approx(likelihood.sum() / 4 / (likelihood.sum() / 4 + 0.5 * 0.25))
+
+
+def test_a_name_tag_is_a_prior_and_no_proof(models):
+    known = pooled_classes(models, PLAIN, {"visitor": 1.0, "staff": 9.0})
+    advisor = known.advisor
+    agent = advisor.watch()
+    assert advisor.consider(agent, 1).goal == STAFF
+    assert list(known.probs(agent).values()) == pytest.approx([0.9, 0.1])
+    advisor.observe(agent, 1, 1)
+    assert advisor.consider(agent, 1).goal == VISITOR
+    assert list(known.probs(agent).values()) == pytest.approx(np.array([0.9 * 0.1, 0.1 * 4.1]) / (0.09 + 0.41))
+
+
+def test_advised_steps_do_not_confirm_a_class(models):
+    known = pooled_classes(models)
+    advisor = known.advisor
+    assert advisor.settings == BETTER
+    agent = advisor.watch()
+    for _ in range(50):
+        advisor.observe(agent, 1, 1, advised=True)
+    advisor.consider(agent, 1)
+    assert known.probs(agent) == {"staff": 0.5, "visitor": 0.5}
+
+
+def test_one_class_is_the_thesis(models):
+    every = [*models["staff"], *models["visitor"]]
+    ours, thesis = pooled_classes({"anyone": every}, PLAIN).advisor, Advisor.of_thesis(every, PLAIN)
+    steps = np.random.default_rng(0).integers(0, 2, (2, 60))
+    for found, wanted in zip(ours.assess(*steps), thesis.assess(*steps), strict=True):
+        assert np.array_equal(found, wanted)
+
+
+def test_goals_apart_are_as_likely_as_their_class():
+    # A corridor of six places; staff go to its left end, visitors to its right end and to place 3.
+    moves = np.array([[max(i - 1, 0), min(i + 1, 5)] for i in range(6)])
+    moves[0, 0] = moves[5, 1] = -1
+
+    def to(goal, start):
+        step = 1 if goal > start else -1
+        states = np.arange(start, goal + step, step)
+        walk = Trajectory(states, np.full(len(states) - 1, int(step > 0)))
+        return GoalModel.from_trajectories([walk], 6, 2, [goal])
+
+    experts = {"staff": [to(0, 5)], "visitor": [to(5, 0), to(3, 0)]}
+    known = classes_with_goals(experts, moves, PLAIN)
+    assert known.class_of_goal.tolist() == [0, 1, 1]
+    agent = known.advisor.watch()
+    known.advisor.consider(agent, 2)
+    # Half of the prior is that of the experts, and one class has two goals.
+    assert agent.posterior == pytest.approx([0.25, 0.125, 0.125, 0.5])
+    assert known.probs(agent) == pytest.approx({"staff": 0.5, "visitor": 0.5})
+    shown = classes_with_goals(experts, moves, PLAIN, {"staff": 98.0, "visitor": 2.0})
+    agent = shown.advisor.watch()
+    assert shown.advisor.consider(agent, 2).goal == STAFF
+    assert shown.probs(agent) == pytest.approx({"staff": 0.98, "visitor": 0.02})
+    for state in (1, 2, 3):
+        shown.advisor.observe(agent, state, 1)
+    assert shown.advisor.consider(agent, 4).goal == VISITOR, "who walks right is no staff, whatever the tag says"
+    # The agent left place 3 without staying, so it is bound for the right end.
+    assert agent.dropped.tolist() == [False, False, True]
+
+
+def test_classes_without_experts_and_strange_shares_are_refused(models):
+    for make in (pooled_classes, lambda experts, *more: classes_with_goals(experts, np.zeros((3, 2), int), *more)):
+        with pytest.raises(InputError, match=r"a goal model for each class, got none for \['guest'\]"):
+            make(models | {"guest": []})
+        with pytest.raises(InputError, match="got none for any class"):
+            make({})
+        for shares in ({"staff": 1.0}, {"staff": 1.0, "visitor": 0.0}):
+            with pytest.raises(InputError, match="shares must be positive numbers of staff, visitor, got"):
+                make(models, None, shares)
