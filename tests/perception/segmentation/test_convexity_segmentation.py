@@ -103,6 +103,25 @@ def test_without_a_camera_the_outer_side_is_guessed():
     assert_found(under_and_over(), camera=None)
 
 
+def seen_at(parts, far, seed=0):
+    """The scene moved `far` metres from the camera: fewer points, depth noise that grows with range squared, as a
+    Kinect's: 1.6 mm at 1 m, and its steps of 3 mm."""
+    points = np.concatenate(parts)[:: max(1, round(far**2))]
+    aim = far * CAMERA / np.linalg.norm(CAMERA)
+    sight = points - aim
+    away = np.linalg.norm(sight, axis=1)
+    noisy = away + 0.0016 * away**2 * np.random.default_rng(seed).normal(size=len(points))
+    stepped = 1 / (np.round(1 / noisy / 0.003) * 0.003)
+    return convex_objects(aim + sight * (stepped / away)[:, None], aim, LEAST).labels
+
+
+@pytest.mark.parametrize("far", [1.0, 1.5, 2.0, 2.5])
+def test_noise_at_range_does_not_cut_a_box_into_pieces(far):
+    labels = seen_at([box(0, 0, 0.01, 0.2, 0.2, 0.15), box(0.5, 0, 0.01, 0.15, 0.15, 0.2)], far)
+    assert len(np.unique(labels[labels > 0])) == 2
+    assert np.mean(labels > 0) > 0.97
+
+
 def test_labels_are_by_size_and_specks_are_noise():
     large, small = box(0, 0, 0.01, 0.2, 0.2, 0.08), box(0.4, 0, 0.01, 0.05, 0.05, 0.05)
     labels = convex_objects(np.concatenate([small, large, [[0.0, 0.5, 0.1]]]), CAMERA, LEAST).labels
@@ -132,6 +151,17 @@ def test_an_empty_table_has_no_objects():
     table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.8, 0)).reshape(-1, 3)
     labels = segmented(table, None, SegmentationSettings(), CAMERA)
     assert set(labels) == {TABLE}
+
+
+@pytest.mark.parametrize(("height", "objects"), [(0.013, 0), (0.03, 1)])
+def test_a_thin_sheet_over_a_far_table_is_its_noise(height, objects):
+    table = face((-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.8, 0)).reshape(-1, 3)
+    sheet = face((0, 0, height), (0.1, 0, 0), (0, 0.1, 0)).reshape(-1, 3)
+    points = np.concatenate([table, sheet])
+    far = 1.3 * CAMERA / np.linalg.norm(CAMERA)
+    for camera, found in ((far, objects), (0.7 * far, 1), (None, 1)):
+        labels = segmented(points, None, SegmentationSettings(), camera)
+        assert set(labels) - {0, TABLE} == set(range(2, 2 + found))
 
 
 def test_the_same_cloud_gives_the_same_labels():

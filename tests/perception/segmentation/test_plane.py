@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError
-from lifelore.perception.segmentation.plane import Plane, dominant_plane, over_outline, refined
+from lifelore.perception.segmentation.plane import Plane, dominant_plane, refined
 
 
 def slab(rng, normal, offset, n, noise):
@@ -69,13 +69,6 @@ def test_refining_keeps_the_side():
     points = np.random.default_rng(8).uniform(-1, 1, (200, 3)) * [1, 1, 0]
     plane = refined(points, Plane(np.array([0.0, 0.005, -1.0]), 0.001))
     np.testing.assert_allclose(plane.normal, [0, 0, -1], atol=1e-9)
-
-
-def test_over_an_outline():
-    square = np.array([[0.0, 0], [1, 0], [1, 1], [0, 1]])
-    asked = np.array([[0.5, 0.5], [1.1, 0.5], [0.2, -0.1]])
-    assert over_outline(asked, square).tolist() == [True, False, False]
-    assert over_outline(asked, square[:2]).all()  # a line has no outline
 
 
 @pytest.mark.parametrize("tilt", [0.0, 0.02, 0.1])

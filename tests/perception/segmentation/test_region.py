@@ -68,3 +68,50 @@ def test_too_many_objects_stop_with_one_line():
     assert len(segmented_scene(cloud, "z", clusters).cloud.objects) == 12
     with pytest.raises(InputError, match=r"cut into 12 objects, but at most 11 .*--roi, --max-range"):
         segmented_scene(cloud, "z", clusters, Region(max_objects=11))
+
+
+CAMERA = np.array([0.5, -0.8, 0.9])
+
+
+def sheet(low, high, spacing=0.005):
+    """Points on a level or upright rectangle, or in a box of no thickness along one axis."""
+    steps = [np.arange(a, b + spacing / 2, spacing) for a, b in zip(low, high, strict=True)]
+    return np.stack(np.meshgrid(*steps, indexing="ij"), -1).reshape(-1, 3)
+
+
+def box_faces(low, high):
+    """The front and the top of a box, as a camera at `CAMERA` sees them."""
+    front = sheet(low, (high[0], low[1], high[2]))
+    return np.concatenate([front, sheet((low[0], low[1], high[2]), high)])
+
+
+@pytest.mark.parametrize("back", [0.65, 0.70, 0.80])
+def test_an_object_beyond_the_visible_table_keeps_its_points_and_a_wall_stays_out(back):
+    """A box hides the end of the table: its top reaches beyond what is visible, as far as `back` says."""
+    table, box = sheet((0, 0, 0), (1, 0.6, 0)), box_faces((0.4, 0.55, 0), (0.6, back, 0.12))
+    wall = sheet((0, 0.9, -0.5), (1, 0.9, 0.5))
+    rng = np.random.default_rng(3)
+    parts = [table, box, wall, box_faces((0.1, 0.2, 0), (0.2, 0.3, 0.1))]
+    points = np.concatenate(parts)
+    cloud = PointCloud(points + rng.normal(0, 0.001, points.shape), camera=CAMERA)
+    of_table, of_box, of_wall, _ = np.split(
+        segmented_scene(cloud).cloud.labels, np.cumsum([len(part) for part in parts])[:-1]
+    )
+    label = np.bincount(of_box).argmax()
+    assert label > 1
+    # Below 10 mm, a twelfth of the front counts as table.
+    assert np.mean(of_box == label) > 0.9
+    assert (of_wall == 0).all()
+    assert np.mean(of_table == 1) > 0.95
+
+
+def test_furniture_beside_the_table_is_no_object():
+    """A chair's back 1 cm behind the table's end is linked to a box, but stands beside the table."""
+    table, box = sheet((0, 0, 0), (1, 0.6, 0)), box_faces((0.4, 0.45, 0), (0.6, 0.6, 0.12))
+    chair = sheet((0.3, 0.61, -0.3), (0.7, 0.61, 0.4))
+    rng = np.random.default_rng(3)
+    points = np.concatenate([table, box, chair])
+    cloud = PointCloud(points + rng.normal(0, 0.001, points.shape), camera=CAMERA)
+    labels = segmented_scene(cloud).cloud.labels
+    assert labels.max() == 2
+    assert np.mean(labels[-len(chair) :] == 0) > 0.95

@@ -12,17 +12,24 @@ from lifelore.core.labelled_cloud import UNLABELLED
 from lifelore.perception.segmentation.cut_confidence import CutCloud, cut_confidence
 from lifelore.perception.segmentation.patch_convexity import evidence, signed_angles
 from lifelore.perception.segmentation.patch_merging import merged, without_fragments
+from lifelore.perception.segmentation.plane import NEAR
+from lifelore.perception.segmentation.range_noise import band
 from lifelore.perception.segmentation.supervoxels import supervoxels
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 
 VOXEL = 0.005
-"""Metres. Less resolves smaller objects, more tolerates more noise."""
+"""Metres, where the noise is that of the near range; voxels and patches grow with the noise of the objects' median
+range (`range_noise`). Less resolves smaller objects, more tolerates more noise."""
+NOISIEST = 4.0
+"""Limit of that growth, reached at a range of 2.6 m; larger patches would be whole objects."""
 PATCH = 0.020
 """Metres between the seeds of patches: about half the smallest object."""
 FRAGMENT = 150
 """Voxels of that size, 37 cm² of surface; a smaller region joins the neighbour of the longest border. Less leaves
 slivers at creases, more swallows small objects that touch others."""
 _MOST_VOXELS = 100_000
+_SPARSE = 3 * VOXEL
+"""Size to which the voxels of sparse points grow."""
 
 
 def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | None, min_area: float) -> CutCloud:
@@ -39,7 +46,9 @@ def convex_objects(points: NDArray[np.float64], camera: NDArray[np.float64] | No
     """
     if len(points) == 0:
         return CutCloud(np.empty(0, np.int64))
-    surface = surface_voxels(points, camera, VOXEL, _MOST_VOXELS)
+    # Voxels of less than the noise would be layers of a surface, and not its surface.
+    noisier = min(float(np.median(band(points, camera))) / NEAR, NOISIEST)
+    surface = surface_voxels(points, camera, VOXEL * noisier, _MOST_VOXELS, _SPARSE)
     patches = supervoxels(surface, PATCH * surface.size / VOXEL)
     odds = evidence(signed_angles(patches))
     regions = merged(len(patches.counts), patches.pairs, patches.borders, odds)

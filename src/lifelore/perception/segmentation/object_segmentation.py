@@ -3,6 +3,7 @@
 The methods have modules of their own: `convexity_segmentation`, `distance_segmentation`, `colour_segmentation`.
 """
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Literal
 
@@ -10,11 +11,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.labelled_cloud import TABLE, UNLABELLED
 from lifelore.perception.segmentation.cut_confidence import CutCloud
-from lifelore.perception.segmentation.plane import over_outline
+from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.range_noise import noise
 
 METHODS = ("convexity", "clusters", "colour")
+STANDING = 0.25
+"""Least share of an object's points over the visible table. Of one at its far end, only the front is over it."""
+RISE = 1.5
+"""Bands of noise (`range_noise`) above the table; an object of which less than that share is higher is noise."""
 
 
 @dataclass(frozen=True)
@@ -86,21 +92,46 @@ def cut_cloud(
     labels = np.zeros(len(points), np.int64)
     labels[np.abs(points[:, 2]) <= settings.table_band] = TABLE
     above = np.flatnonzero((points[:, 2] > settings.table_band) & (points[:, 2] <= settings.reach))
-    above = above[over_outline(points[above, :2], points[labels == TABLE, :2])]
+    cut = _objects(points[above], None if colours is None else colours[above], settings, camera)
+    tests = [over_outline(points[above, :2], points[labels == TABLE, :2])]
+    if camera is not None and (labels == TABLE).any():
+        tests.append(points[above, 2] > RISE * noise(points[above], camera))
+    cut = _standing(cut, tests)
+    labels[above] = cut.labels
+    return CutCloud(labels, cut.confidence)
+
+
+def _objects(
+    points: NDArray[np.float64],
+    colours: NDArray[np.uint8] | None,
+    settings: SegmentationSettings,
+    camera: NDArray[np.float64] | None,
+) -> CutCloud:
+    """Labels of points above the table: 2 … objects by size, 0 the rest."""
     if settings.method == "colour":
         from lifelore.perception.segmentation.colour_segmentation import colour_classes
 
         if colours is None:
             raise InputError("method=colour needs colours, and the cloud has none; use method=convexity")
-        labels[above] = colour_classes(points[above], colours[above], settings.colours)
-    if settings.method == "convexity":
-        from lifelore.perception.segmentation.convexity_segmentation import convex_objects
-
-        found = convex_objects(points[above], camera, settings.min_area)
-        labels[above] = found.labels
-        return CutCloud(labels, found.confidence)
+        return CutCloud(colour_classes(points, colours, settings.colours))
     if settings.method == "clusters":
         from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
 
-        labels[above] = euclidean_clusters(points[above], settings.tolerance, settings.min_area)
-    return CutCloud(labels)
+        return CutCloud(euclidean_clusters(points, settings.tolerance, settings.min_area))
+    from lifelore.perception.segmentation.convexity_segmentation import convex_objects
+
+    return convex_objects(points, camera, settings.min_area)
+
+
+def _standing(cut: CutCloud, shares: Iterable[NDArray[np.bool_]]) -> CutCloud:
+    """The objects of which at least `STANDING` of the points are in each of `shares` (n,), numbered again."""
+    n = int(cut.labels.max(initial=TABLE)) + 1
+    counts = np.maximum(np.bincount(cut.labels, minlength=n), 1)
+    keep = np.arange(n) > TABLE
+    for share in shares:
+        keep &= np.bincount(cut.labels[share], minlength=n) >= STANDING * counts
+    kept = np.flatnonzero(keep)
+    number = np.full(n, UNLABELLED, np.int64)
+    number[kept] = np.arange(2, 2 + len(kept))
+    confidence = {int(number[label]): sure for label, sure in cut.confidence.items() if number[label]}
+    return CutCloud(number[cut.labels], confidence)

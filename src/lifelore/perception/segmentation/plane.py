@@ -119,17 +119,3 @@ def _hypotheses(
         facing = np.abs(normals @ up) >= np.cos(np.radians(15.0))
         normals, a = normals[facing][:_HYPOTHESES], a[facing][:_HYPOTHESES]
     return normals, -np.einsum("ij,ij->i", normals, a)
-
-
-def over_outline(points: NDArray[np.float64], table: NDArray[np.float64]) -> NDArray[np.bool_]:
-    """(n,) bool: whether points (n, 2) lie over the convex outline of table (m, 2); all do where there is none."""
-    from scipy.spatial import ConvexHull, QhullError
-
-    try:
-        equations = ConvexHull(table).equations
-    except (QhullError, ValueError):
-        return np.ones(len(points), bool)
-    inside = np.ones(len(points), bool)
-    for x, y, offset in equations:
-        inside &= points[:, 0] * x + points[:, 1] * y + offset <= 0.0
-    return inside

@@ -16,7 +16,10 @@ def band(points: NDArray[np.floating], camera: NDArray[np.float64] | None) -> ND
     A triangulating depth camera's error grows with the square of the range. Without a `camera` (3,) the range is
     unknown, and the band is `plane.NEAR` everywhere.
     """
-    if camera is None:
-        return np.full(len(points), NEAR)
+    return np.maximum(NEAR, noise(points, camera)) if camera is not None else np.full(len(points), NEAR)
+
+
+def noise(points: NDArray[np.floating], camera: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(n,) metres: half width of the band that the noise alone fills; it has no least width."""
     offset = points - camera
-    return np.maximum(NEAR, GROWTH * np.einsum("ij,ij->i", offset, offset))
+    return GROWTH * np.einsum("ij,ij->i", offset, offset)

@@ -9,13 +9,17 @@ from numpy.typing import NDArray
 from lifelore.core.errors import InputError
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.range_noise import band
-from lifelore.perception.segmentation.table_evidence import REACH
+from lifelore.perception.segmentation.table_evidence import FRINGE, REACH
 from lifelore.perception.segmentation.table_search import Table
 
 AXES = ("XMIN", "XMAX", "YMIN", "YMAX", "ZMIN", "ZMAX")
 MAX_OBJECTS = 60
 """Most objects of a cloud without labels; more come from a region that is too large."""
+OVERHANG = 0.30
+"""Metres that an object on the table may reach beyond the table's visible outline."""
 _INSIDE_SHARE = 0.5
+_LINK = 0.02
+"""Metres: cells of this side that touch are linked."""
 
 
 @dataclass(frozen=True)
@@ -108,3 +112,44 @@ def over_table(
         if np.count_nonzero(near & over) < _INSIDE_SHARE * np.count_nonzero(near):
             over &= ~near
     return on_it, over
+
+
+def reaching_out(
+    points: NDArray[np.float64], camera: NDArray[np.float64] | None, table: Table, over: NDArray[np.bool_]
+) -> NDArray[np.bool_]:
+    """(n,) bool: points beyond the table's visible outline that are linked to points `over` (n,) it.
+
+    The visible part of a table is not the whole: an object hides the table behind it, the picture ends, and an
+    object may overhang. Large flat patches (walls, furniture) are left out.
+    """
+    heights, bands = table.plane.height(points), band(points, camera)
+    beyond = (heights > bands) & (heights <= REACH) & ~over
+    beyond[beyond] = table.patch.covers(points[beyond], OVERHANG)
+    at_border = beyond.copy()
+    at_border[beyond] = table.patch.covers(points[beyond], _LINK)
+    beyond[at_border] = ~table.patch.covers(points[at_border])
+    for patch in table.background:
+        near = np.flatnonzero(beyond)
+        near = near[np.abs(patch.plane.height(points[near])) <= FRINGE * bands[near]]
+        beyond[near[patch.covers(points[near], _LINK)]] = False
+    among = np.flatnonzero(over | beyond)
+    cluster = _linked(points[among])
+    met = np.bincount(cluster[(over | at_border)[among]], minlength=int(cluster.max(initial=-1)) + 1) > 0
+    beyond[among] &= met[cluster]
+    return beyond
+
+
+def _linked(points: NDArray[np.float64]) -> NDArray[np.int64]:
+    """(n,) number of the cluster of each point: cells of `_LINK` that touch are one cluster."""
+    from scipy.sparse import coo_array
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import KDTree
+
+    if len(points) == 0:
+        return np.empty(0, np.int64)
+    cells = np.floor((points - points.min(axis=0)) / _LINK).astype(np.int64)
+    key, cell = np.unique(np.ravel_multi_index(tuple(cells.T), tuple(cells.max(axis=0) + 1)), return_inverse=True)
+    places = np.stack(np.unravel_index(key, tuple(cells.max(axis=0) + 1)), axis=1)
+    a, b = KDTree(places).query_pairs(1.8, output_type="ndarray").T
+    graph = coo_array((np.ones(len(a), np.int8), (a, b)), shape=(len(key),) * 2)
+    return connected_components(graph, directed=False)[1].astype(np.int64)[cell.reshape(-1)]

@@ -8,7 +8,8 @@ from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import LabelledCloud
 from lifelore.perception.clouds.voxel import voxelised
-from lifelore.perception.segmentation.plane import Plane, over_outline
+from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.plane import Plane
 from lifelore.perception.segmentation.range_noise import band
 
 COARSEST = 0.02
@@ -84,9 +85,9 @@ class Patch:
     area: float
     corners: NDArray[np.float64]
 
-    def covers(self, points: NDArray[np.float64]) -> NDArray[np.bool_]:
-        """(n,) bool: whether points (n, 3) lie over or under its convex outline."""
-        return over_outline(points @ self.flat.T, self.corners)
+    def covers(self, points: NDArray[np.float64], margin: float = 0.0) -> NDArray[np.bool_]:
+        """(n,) bool: whether points (n, 3) lie over or under its convex outline, grown by `margin` metres."""
+        return over_outline(points @ self.flat.T, self.corners, margin)
 
 
 def oriented_voxels(

@@ -17,7 +17,7 @@ _SUPPORT = 3.6
 DENSE = 1.5
 """Least mean number of points in a voxel; below, a surface has holes between its voxels, and they grow."""
 COARSER, COARSEST = 1.25, 3.0
-"""Step and limit of that growth, in sizes asked for."""
+"""Step and usual limit of that growth, in sizes asked for."""
 _LEVEL = 0.5
 """Without a camera, a normal steeper than this points up; the others point away from the middle of their
 surface."""
@@ -47,17 +47,22 @@ class SurfaceVoxels:
 
 
 def surface_voxels(
-    points: NDArray[np.float64], camera: NDArray[np.float64] | None, size: float, most: int
+    points: NDArray[np.float64],
+    camera: NDArray[np.float64] | None,
+    size: float,
+    most: int,
+    sparse: float | None = None,
 ) -> SurfaceVoxels:
-    """The voxels of points (n, 3), n ≥ 1; `size` grows until they are dense, and at most `most`.
+    """The voxels of points (n, 3), n ≥ 1; `size` grows up to `sparse` until they are dense, and until they are
+    at most `most`.
 
     Without a `camera`, level surfaces face upwards and the others away from the middle of their connected surface.
     """
     from scipy.spatial import KDTree
 
     unlabelled = LabelledCloud(points, np.zeros(len(points), np.int64))
-    thin, limit = voxelised(unlabelled, size), COARSEST * size
-    while len(points) < DENSE * len(thin.counts) and COARSER * size <= limit:
+    thin, sparse = voxelised(unlabelled, size), COARSEST * size if sparse is None else sparse
+    while len(points) < DENSE * len(thin.counts) and COARSER * size <= sparse:
         size *= COARSER
         thin = voxelised(unlabelled, size)
     while len(thin.counts) > most:

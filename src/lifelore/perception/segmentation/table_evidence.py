@@ -22,7 +22,7 @@ LEAST_TABLE = 0.03
 """Square metres; a smaller patch is no table."""
 BELOW_SHARE = 0.3
 _SPECK = 4
-_FRINGE = 2.0
+FRINGE = 2.0
 """Bands of a large patch within which a voxel is its noise, and no evidence for another patch."""
 _RISE = 1.5
 """Bands that a cluster must rise above a plane; a lower one may be the plane's own noise."""
@@ -114,7 +114,7 @@ def _surroundings(voxels: OrientedVoxels, large: Sequence[Patch]) -> _Surroundin
         owner[patch.voxels] = number
     fringe = np.zeros((len(large), n), bool)
     for near, patch in zip(fringe, large, strict=True):
-        near[:] = (np.abs(patch.plane.height(voxels.points)) <= _FRINGE * voxels.bands) & (owner < 0)
+        near[:] = (np.abs(patch.plane.height(voxels.points)) <= FRINGE * voxels.bands) & (owner < 0)
         near[near] = patch.covers(voxels.points[near])
     free = np.flatnonzero(owner < 0)
     loose = np.full(n, -1)

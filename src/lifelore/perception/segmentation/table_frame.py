@@ -15,8 +15,9 @@ from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.clouds.voxel import thinned
 from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, cut_cloud
-from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane, over_outline
-from lifelore.perception.segmentation.region import Region, inside, over_table
+from lifelore.perception.segmentation.outline import over_outline
+from lifelore.perception.segmentation.plane import NEAR, Plane, dominant_plane
+from lifelore.perception.segmentation.region import Region, inside, over_table, reaching_out
 from lifelore.perception.segmentation.table_evidence import REACH
 from lifelore.perception.segmentation.table_search import Search, Table, find_table, no_table
 
@@ -150,7 +151,7 @@ def _cut(
         camera = None if camera is None else camera + lift
     else:
         on_it, over = over_table(points, cloud.camera, table)
-        chosen = on_it | over
+        chosen = on_it | over | reaching_out(points, cloud.camera, table, over)
         # The band of a far table is wider than that of the segmentation: its points are laid onto the plane.
         upright_points[on_it, 2] = 0.0
     colours = None if cloud.colours is None else cloud.colours[chosen]
