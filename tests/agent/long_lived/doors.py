@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from lifelore.agent.long_lived.task_family import Plan, Step
+from lifelore.agent.long_lived.task_family import SAME_SCENE, Plan, Step
 from lifelore.core.streams import stream
 from lifelore.domains.task_stream import DrawnTask, TaskStream
 
@@ -24,6 +24,7 @@ class Doors:
     n_effects = 2
     n_results = 1
     judges = np.ones(N, np.bool_)
+    constancy = np.full(N, SAME_SCENE)
 
     @property
     def groups(self):

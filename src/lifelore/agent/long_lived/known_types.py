@@ -5,7 +5,7 @@ The law of a cause under type i, after the counts c of the present task:
     group(e)  ∝ Σ_j n_j(e), over all causes of the group, + α₀ p₀(e)
     pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
     type_i(e) ∝ n_i(e) + κ pooled(e)
-    P_i(e)    ∝ s type_i(e) + c(e)
+    P_i(e)    ∝ s type_i(e) + c(e), s from the family (`TaskFamily.constancy`)
 
 An unknown type has n = 0 and, instead of pooled, (1 − η) pooled + η p₀: it mostly behaves as types usually do,
 until its own task shows otherwise.
@@ -36,8 +36,6 @@ TELLING = 2.5
 """Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
 NEW = 0.3
 """Share of what a family calls possible in the law of an unknown type: it may differ from all known ones."""
-SCENE = 0.5
-"""Weight s of the type's law beside observations of the present task; the same scene mostly answers alike."""
 
 
 def effect_counts(family: TaskFamily, effects: Effects, weight: float = 1.0) -> ActionPrior:
@@ -133,7 +131,7 @@ class KnownTypes:
         rows += POOLED * self.pooled
         if generator is not None:
             rows = _drawn(rows, generator)
-        rows *= SCENE / rows.sum(axis=2, keepdims=True)
+        rows *= self.family.constancy[:, None] / rows.sum(axis=2, keepdims=True)
         rows += self.family.smoothed(own.reshape(-1, *own.shape[-2:]))
         if generator is not None:
             rows = _drawn(rows, generator)

@@ -16,6 +16,9 @@ from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
 
+SAME_SCENE = 0.5
+"""A usual `TaskFamily.constancy`: the same scene mostly answers alike."""
+
 
 @dataclass(frozen=True)
 class Step:
@@ -194,6 +197,14 @@ class TaskFamily(Protocol):
     @property
     def judges(self) -> NDArray[np.bool_]:
         """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
+        ...
+
+    @property
+    def constancy(self) -> Array:
+        """(n_causes,) weight of a type's law beside observations of the present task, in observations.
+
+        Little where the same task answers the same cause alike, much where a cause is met in several forms.
+        """
         ...
 
     def meet(self, number: int, abilities: Abilities, context: int | None = None) -> tuple[DrawnTask, AgentTask]:

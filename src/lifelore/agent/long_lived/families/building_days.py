@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 from scipy.sparse import csgraph
 
-from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
+from lifelore.agent.long_lived.task_family import SAME_SCENE, Abilities, Plan, SharedKnowledge, Step
 from lifelore.domains.buildings import building_days as days
 from lifelore.domains.buildings.building_days import BuildingDays, BuildingWay
 from lifelore.domains.task_stream import DrawnTask
@@ -70,6 +70,7 @@ class BuildingFamily:
         # The cells of a region are alike, and regions are alike.
         self.groups = np.concatenate([self.region_of, np.full(n_regions, n_regions)])
         self.judges = np.arange(self.n_causes) >= self.n_cells
+        self.constancy = np.full(self.n_causes, SAME_SCENE)
         start, move = np.nonzero(world.neighbour >= 0)
         end, shape = world.neighbour[start, move], (self.n_cells, self.n_cells)
         self.entries = sparse.csr_matrix((np.ones(len(end)), (end, start)), shape=shape)

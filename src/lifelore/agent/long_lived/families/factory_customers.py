@@ -21,7 +21,7 @@ from lifelore.agent.long_lived.families.order_planning import (
     OrderTable,
     set_weights,
 )
-from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
+from lifelore.agent.long_lived.task_family import SAME_SCENE, Abilities, Plan, SharedKnowledge, Step
 from lifelore.domains.factory.customer_orders import CustomerOrder, FactoryCustomers
 from lifelore.domains.factory.factory import ASSEMBLE, ASSEMBLED, N_COMPONENTS, PROCURE, PROCURED, RAW
 from lifelore.domains.task_stream import DrawnTask, TaskStream
@@ -64,6 +64,7 @@ class FactoryFamily:
     possible = np.full((len(ACTS), len(EFFECTS)), 1 / len(EFFECTS))
     groups = np.arange(len(ACTS)) // N_COMPONENTS
     judges = np.ones(len(ACTS), np.bool_)
+    constancy = np.full(len(ACTS), SAME_SCENE)
 
     def order(self, number: int, context: int | None = None, episode: int = 0) -> tuple[DrawnTask, CustomerOrder]:
         """Order `number` in an episode, drawn and as the world has it."""

@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.families.by_name import TABLETOP_TYPES
-from lifelore.agent.long_lived.families.tabletop import N_SITUATED, SPILLED, TabletopFamily
+from lifelore.agent.long_lived.families.tabletop import TabletopFamily
+from lifelore.agent.long_lived.families.tray_states import N_SITUATED, SPILLS
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, live_task
 from lifelore.agent.long_lived.task_family import AGENTS, Abilities
@@ -144,7 +145,7 @@ def _result(tasks: list[TaskLog], best: Array, n_types: int) -> LifeResult:
 def n_spills(task: TaskLog) -> int:
     """Acts of the first episode that spilled an object."""
     effects = [effect for decision in task.decisions[0] for effect in decision.effects]
-    return sum(cause < N_SITUATED and effect == SPILLED for cause, effect in effects)
+    return sum(cause < N_SITUATED and effect in SPILLS for cause, effect in effects)
 
 
 def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
