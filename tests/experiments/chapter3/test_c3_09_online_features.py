@@ -1,6 +1,5 @@
 """Measures of C3.9 from made-up tasks, by hand, and a few small tasks."""
 
-import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError

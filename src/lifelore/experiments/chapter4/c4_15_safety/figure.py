@@ -13,10 +13,9 @@ from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
-PRINTED = "BEAT, ε as printed"
-SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, PRINTED, BEAT, "best speed of each type")
+SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, BEAT_PRINTED, BEAT, "best speed of each type")
 
-MAPS = {BEAT: "BEAT / best static speed", PRINTED: "BEAT, ε as printed / static"}
+MAPS = {BEAT: "BEAT / best static speed", BEAT_PRINTED: "BEAT, ε as printed / static"}
 """Methods whose losses are mapped by type and episode, as shares of those of the best static speed."""
 
 
@@ -68,8 +67,8 @@ def _draw_naming(axes: Axes, row: Mapping) -> None:
     axes.set(title="speed, ε as printed", xlabel="steps played", ylabel="share named right for good")
     axes.axvline(row["length_printed"], color=GREY, linewidth=1)
     axes.annotate(
-        "end of the\nfirst episode", (row["length_printed"], 1.05), xytext=(-4, 0), textcoords="offset points", fontsize=7,
-        color=GREY, ha="right", va="bottom",
+        "end of the\nfirst episode", (row["length_printed"], 1.05), xytext=(-4, 0), textcoords="offset points",
+        fontsize=7, color=GREY, ha="right", va="bottom",
     )  # fmt: skip
     axes.set_ylim(0, 1.18)
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
