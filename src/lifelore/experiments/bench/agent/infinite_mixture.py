@@ -6,8 +6,8 @@ known beforehand (Chinese restaurant process), and each class has its own probab
 are weighed by what it has answered; one of them is the class that has no order yet.
 
 Wilson et al. sample models from this posterior and follow the best policy of one of them. Here the act is the best
-one, on the average over the whole posterior, among the best tours of the classes. Contexts are not used: the thesis's source
-has none (§4.7.4).
+one, on the average over the whole posterior, among the best tours of the classes. Contexts are not used, because
+the method has none. Thesis: §4.7.4.
 """
 
 import numpy as np

@@ -1,7 +1,7 @@
 """Other methods on the orders of factory customers, task by task: all have the same number of episodes.
 
-R-max with a remembered model, successor features and `infinite_mixture` act as the long-lived agent does: they know
-the floor, walk to a point and use it, and remember what the order in progress has answered. Q-learning and
+R-max with a remembered model, successor features and `infinite_mixture` act as the long-lived agent does: they
+know the floor, walk to a point and use it, and remember what the order in progress has answered. Q-learning and
 probabilistic policy reuse take single moves in the world's own states.
 """
 

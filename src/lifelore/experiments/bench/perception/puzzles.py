@@ -21,6 +21,7 @@ from lifelore.experiments.bench.perception.solved_puzzle import (
     solved_puzzle,
 )
 from lifelore.experiments.bench.rounds import at_least, estimated_row, row
+from lifelore.experiments.engine.estimates import exact_share
 
 PUZZLES = 20
 """Puzzles a round, each once with labels and once without."""
@@ -56,7 +57,7 @@ def bench_puzzles(repeats: int, progress: Progress, out: Path = OUT) -> dict:
 
 def _solved(found: Sequence[Ending], looks: int | None = None) -> Estimate:
     """Share of puzzles that are solved, with at most so many looks."""
-    return mean_estimate([float(end.outcome == SOLVED and (looks is None or end.looks <= looks)) for end in found])
+    return exact_share(end.outcome == SOLVED and (looks is None or end.looks <= looks) for end in found)
 
 
 def _rows(way: str, found: Sequence[Ending]) -> list[dict]:
