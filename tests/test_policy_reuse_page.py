@@ -146,6 +146,32 @@ def test_the_hazards_are_those_of_the_benchmark():
             )
 
 
+def test_the_regrets_of_perfect_information_are_those_of_the_benchmark():
+    found = json.loads((RESULTS / "bench_perfect_information.json").read_text(encoding="utf-8"))
+    rows = {row["name"]: row for row in found["rows"]}
+
+    def cell(name):
+        if name not in rows:
+            return "–"
+        low, high = rows[name]["ci95"]
+        return f"{rows[name]['value']:.2f} [{low:.2f} {high:.2f}]"
+
+    told = PAGE.split("| rule | exact models | ten runs, plug-in |")[1].splitlines()[2:7]
+    for line in told:
+        rule, *cells, stuck = (part.strip() for part in line.strip("|").split("|"))
+        names = [f"{rule}, {models} models" for models in ("exact", "learnt", "uncertain")]
+        assert cells == [cell(f"relative regret, {name}") for name in names]
+        most = max(rows.get(f"stuck above the least, at most, {name}", {"value": 0})["value"] for name in names)
+        assert float(stuck.strip(" %")) == pytest.approx(100 * most, abs=0.51)
+    exact, learnt = (
+        cell(f"regret of perfect information / knowledge gradient, {models} models")
+        for models in ("exact", "learnt")
+    )
+    assert f"it has {exact} times the regret with exact models (goal: at most 1.1, **missed**)" in PAGE
+    assert f"{learnt} times with models of ten runs (met)" in PAGE
+    assert [goal["met"] for goal in found["goals"]] == [False, True]
+
+
 def test_the_losses_of_models_of_categories_are_those_of_the_benchmark():
     found = json.loads((RESULTS / "bench_bands.json").read_text(encoding="utf-8"))
     values = [row["value"] for row in found["rows"]]

@@ -11,6 +11,7 @@ from lifelore.domains.task_stream import TaskStream
 from lifelore.experiments.bench import BENCHES
 from lifelore.experiments.bench.agent import long_lived_worlds as case
 from lifelore.experiments.bench.agent import world_lives
+from lifelore.experiments.bench.agent.infinite_mixture import PSEUDO_COUNT, InfiniteMixture
 from lifelore.experiments.bench.agent.order_peers import PEERS, RememberedRmax, SuccessorFeatures, best_moves
 
 ONE_CUSTOMER = FactoryFamily(TaskStream(("carts",), n_contexts=1))
@@ -30,13 +31,49 @@ def test_the_policies_that_are_reused_are_the_best_of_their_order(items):
         assert first[np.arange(factory.n_cells), moves[0]] == pytest.approx(first.max(axis=1), abs=1e-6)
 
 
-@pytest.mark.parametrize("kind", [RememberedRmax, SuccessorFeatures])
+@pytest.mark.parametrize("kind", [RememberedRmax, SuccessorFeatures, InfiniteMixture])
 def test_peers_learn_a_single_customer(kind):
     peer, best = kind(), [ONE_CUSTOMER.best_return(number) for number in range(8)]
     missed = np.array([best[number] - np.array(peer.live(ONE_CUSTOMER, number, 2)) for number in range(8)])
     assert missed.min() > -1e-9
     assert missed[0, 0] > 1
     assert missed[-1] == pytest.approx([0, 0], abs=1e-6)
+
+
+def orders_of(*customers):
+    """What orders of these customers answer; n components."""
+    found = np.zeros((len(customers), 9))
+    for row, name in zip(found, customers, strict=True):
+        row[list(CUSTOMERS[name])] = 1
+    return found
+
+
+def test_the_mixture_finds_the_customers_that_it_was_not_told():
+    peer = InfiniteMixture()
+    names = ["bicycles", "chairs", "drones"] * 8
+    for answers in orders_of(*names):
+        peer.learn(answers)
+    groups = {name: {peer.classes[i] for i, own in enumerate(names) if own == name} for name in set(names)}
+    assert all(len(group) == 1 for group in groups.values())
+    assert len(set(peer.classes)) == 3
+
+
+def test_answers_weigh_the_classes_by_bayes():
+    peer = InfiniteMixture()
+    peer.wanted, peer.classes = list(orders_of("bicycles", "bicycles", "chairs")), [0, 0, 1]
+    unknown = np.full(9, np.nan)
+    weights, laws = peer.laws(unknown)
+    assert weights == pytest.approx([2 / 4, 1 / 4, 1 / 4])
+    often, once = (2 + PSEUDO_COUNT) / 3, (1 + PSEUDO_COUNT) / 2
+    assert laws[0, :9, 0] == pytest.approx([often] * 4 + [1 - often] * 5)
+    assert laws[1, 4, 0] == once
+    assert laws[2, :9, 0].tolist() == [0.5] * 9
+    assert laws.sum(axis=2) == pytest.approx(np.ones((3, 18)))
+    # Component 4 is wanted: by chairs, and by no bicycle.
+    answered = unknown.copy()
+    answered[4] = 1
+    joint = np.array([2 * (1 - often), once, 0.5])
+    assert peer.laws(answered)[0] == pytest.approx(joint / joint.sum())
 
 
 def test_q_learning_and_policy_reuse_have_as_many_episodes_and_no_more_than_the_best_return():

@@ -75,6 +75,28 @@ def test_valid_plans_at_the_default(how, words):
     assert told[5] == ("met" if row["value"] >= float(told[4]) else "**missed**")
 
 
+def test_puzzles():
+    found = rows("puzzles")
+    told = re.findall(
+        r"^\| (labels given|without labels) \| (\d\.\d{3} \[.+) \| (.+) \| (\d+) \| (\d+) \|$", PAGE, flags=re.M
+    )
+    assert [way for way, *_ in told] == ["labels given", "without labels"]
+    for way, *cells, missed, failed in told:
+        for name, cell in zip(("solved", "solved at the first look"), cells, strict=True):
+            value, *ends = map(float, re.findall(r"\d\.\d+", cell))
+            assert value == pytest.approx(found[f"{way}: {name}"]["value"], abs=6e-4)
+            assert ends == pytest.approx(found[f"{way}: {name}"]["ci95"], abs=6e-3)
+        reasons = {
+            name.partition("not solved, ")[2]: row["value"] for name, row in found.items() if f"{way}: not" in name
+        }
+        assert int(missed) == reasons.pop("a block is not found")
+        assert int(failed) == sum(reasons.values())
+    planned = sum(found[f"{way}: puzzles with a plan"]["value"] for way in ("labels given", "without labels"))
+    assert f"All {planned} plans that were made reached their goal" in PAGE
+    assert f"in {found['labels given: steps of a solved puzzle']['value']:.1f} steps on the average" in PAGE
+    assert [goal["met"] for goal in bench("puzzles")["goals"]] == [True, False]
+
+
 def check_views(found, how, cells):
     """The cells of a line: what is told of scenes seen so."""
     for measure, cell in zip(("exact", "on", "contacts found"), cells.split("|"), strict=True):

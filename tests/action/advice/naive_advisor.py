@@ -32,12 +32,12 @@ class NaiveAdvisor:
         if self.spending and self.target in shown and self.target not in self.dropped:
             return self.target
         open_goals = [g for g in shown if g not in self.dropped and self.guide.goal_of_state[s] != g]
-        left = len(purposes) - len(self.dropped)
+        left = sum(self.guide.goal_share[g] for g in purposes if g not in self.dropped)
         worth = {}
         for g in open_goals:
             own = sum(p for m, p in enumerate(posterior) if self.guide.goal_of_model[m] == g)
             aimless = sum(p for m, p in enumerate(posterior) if self.guide.goal_of_model[m] < 0)
-            worth[g] = (own + aimless / left) / (1 + self.guide.steps[g][s])
+            worth[g] = (own + aimless * self.guide.goal_share[g] / left) / (1 + self.guide.steps[g][s])
         return max(worth, key=worth.__getitem__) if worth else -1
 
     def consider(self, s) -> tuple[bool, float, list[float]]:

@@ -41,7 +41,8 @@ def random_advisor(random, n_goals, options) -> Advisor:
     n_states, n_actions = 9, 3
     headed = Tabulated(random.dirichlet(np.ones(n_actions), (n_states, n_actions + 1)))
     bound = [Tabulated(random.dirichlet(np.ones(n_actions), n_states)) for _ in range(n_goals)]
-    return Advisor(random_goal_models(random, n_goals, n_states, n_actions), [Uniform(3), headed, bound], options)
+    models, likely = random_goal_models(random, n_goals, n_states, n_actions), random.uniform(0.2, 2.0, n_goals)
+    return Advisor(models, [Uniform(3), headed, bound], options, goal_weights=likely)
 
 
 # ---- by hand ---------------------------------------------------------------------------------------

@@ -51,8 +51,11 @@ def test_a_name_tag_is_a_prior_and_no_proof(models):
     assert advisor.consider(agent, 1).goal == STAFF
     assert list(known.probs(agent).values()) == pytest.approx([0.9, 0.1])
     advisor.observe(agent, 1, 1)
-    assert advisor.consider(agent, 1).goal == VISITOR
+    advisor.consider(agent, 1)
     assert list(known.probs(agent).values()) == pytest.approx(np.array([0.9 * 0.1, 0.1 * 4.1]) / (0.09 + 0.41))
+    for _ in range(5):
+        advisor.observe(agent, 1, 1)
+    assert advisor.consider(agent, 1).goal == VISITOR
 
 
 def test_advised_steps_do_not_confirm_a_class(models):
@@ -97,6 +100,15 @@ def test_goals_apart_are_as_likely_as_their_class():
     agent = shown.advisor.watch()
     assert shown.advisor.consider(agent, 2).goal == STAFF
     assert shown.probs(agent) == pytest.approx({"staff": 0.98, "visitor": 0.02})
+    # Of one who walks at random, the tag tells the goal, although the visitors' place 3 is nearer.
+    lost = shown.advisor.watch()
+    for _ in range(40):
+        for action in (0, 1):
+            shown.advisor.observe(lost, 2, action)
+    assert shown.advisor.consider(lost, 2).p_normal < 0.01
+    assert shown.advisor.consider(lost, 2).goal == STAFF
+    # Without a tag staff and visitors are as likely, and visitors have two goals.
+    assert known.advisor.guide.goal_share == pytest.approx([1.5, 0.75, 0.75])
     for state in (1, 2, 3):
         shown.advisor.observe(agent, state, 1)
     assert shown.advisor.consider(agent, 4).goal == VISITOR, "who walks right is no staff, whatever the tag says"

@@ -34,6 +34,7 @@ class Guide(NamedTuple):
     log_prior : (M,) float64, log P(M)
     is_expert : (M,) bool, whether a model describes experts
     goal_of_model : (M,) int32, goal model whose goal the behaviour model walks to, -1: none
+    goal_share : (G,) float64, how likely each goal is beforehand, relative to their mean: 1 where all are alike
     """
 
     theta: NDArray[np.float64]
@@ -43,6 +44,7 @@ class Guide(NamedTuple):
     log_prior: NDArray[np.float64]
     is_expert: NDArray[np.bool_]
     goal_of_model: NDArray[np.int32]
+    goal_share: NDArray[np.float64]
 
 
 class AdviceRule(NamedTuple):
@@ -172,7 +174,10 @@ def _target_goal(guide, agent, s):
     present = cursor[TARGET]
     if present >= 0 and cursor[SPENDING] == 1 and not dropped[present] and _is_shown(guide, present, s):
         return present
-    left = dropped.size - dropped.sum()
+    left = 0.0
+    for g in range(dropped.size):
+        if not dropped[g]:
+            left += guide.goal_share[g]
     chosen, best = -1, -1.0
     for g in range(dropped.size):
         if dropped[g] or guide.goal_of_state[s] == g or not _is_shown(guide, g, s):
@@ -182,7 +187,8 @@ def _target_goal(guide, agent, s):
             if guide.goal_of_model[m] == g:
                 weight += posterior[m]
             elif guide.goal_of_model[m] < 0:
-                weight += posterior[m] / left
+                # An agent without a goal of a model's own has each of those left by how likely it is beforehand.
+                weight += posterior[m] * guide.goal_share[g] / left
         weight /= 1.0 + guide.steps[g, s]
         if weight > best:
             best, chosen = weight, g

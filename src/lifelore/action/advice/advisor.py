@@ -113,9 +113,9 @@ class Advisor:
     settings : AdviceSettings
     weights : (1 + len(others),) float, optional
         P(M) of the experts and of each of `others`, positive; default equal. The models of an entry share its
-        probability equally.
+        probability by `goal_weights`.
     goal_weights : (len(goal_models),) float, optional
-        Shares of the goal models in P(M) of the experts, positive; default equal.
+        How likely each goal is beforehand, for experts and all others, in any positive scale; default equal.
 
     Raises
     ------
@@ -159,8 +159,10 @@ class Advisor:
     def _guide(self, goal_models, kinds, weights, shares) -> Guide:
         models = [model for kind in kinds for model in kind]
         goal_of_model = [g if len(kind) > 1 else -1 for kind in kinds for g in range(len(kind))]
-        prior = np.concatenate([np.full(len(kind), w / len(kind)) for kind, w in zip(kinds, weights, strict=True)])
-        prior[: len(goal_models)] = weights[0] * shares / shares.sum()
+        of_goals, alone = shares / shares.sum(), np.ones(1)
+        prior = np.concatenate(
+            [w * (of_goals if len(kind) > 1 else alone) for kind, w in zip(kinds, weights, strict=True)]
+        )
         goal_of_state = np.full(self.n_states, -1, np.int32)
         for g, model in enumerate(goal_models):
             goal_of_state[list(model.goals)] = g
@@ -172,6 +174,7 @@ class Advisor:
             np.log(prior / prior.sum()),
             np.arange(len(models)) < len(goal_models),
             np.array(goal_of_model, np.int32),
+            shares / shares.mean(),
         )
 
     def _table(self, model: Behaviour) -> NDArray[np.float64]:

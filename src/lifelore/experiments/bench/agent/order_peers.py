@@ -1,8 +1,8 @@
 """Other methods on the orders of factory customers, task by task: all have the same number of episodes.
 
-R-max with a remembered model and successor features act as the long-lived agent does: they know the floor, walk to
-a point and use it, and remember what the order in progress has answered. Q-learning and probabilistic policy reuse
-take single moves in the world's own states.
+R-max with a remembered model, successor features and `infinite_mixture` act as the long-lived agent does: they
+know the floor, walk to a point and use it, and remember what the order in progress has answered. Q-learning and
+probabilistic policy reuse take single moves in the world's own states.
 """
 
 from typing import Protocol
@@ -18,6 +18,7 @@ from lifelore.core.learning.q_learning import uniform_rows
 from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS, LONGEST
 from lifelore.domains.factory.factory import ASSEMBLED, N_STAGES, PROCURE, RAW, FactoryTask
+from lifelore.experiments.bench.agent.infinite_mixture import InfiniteMixture
 from lifelore.interaction.baselines.probabilistic_policy_reuse import ProbabilisticPolicyReuse
 
 Array = NDArray[np.float64]
@@ -207,6 +208,7 @@ def _tabular(family: FactoryFamily, number: int):
 PEERS: dict[str, type[Peer]] = {
     "R-max, remembered model": RememberedRmax,
     "successor features, GPI": SuccessorFeatures,
+    "infinite mixture, Gibbs sampling": InfiniteMixture,
     "probabilistic policy reuse": PolicyReuse,
     "Q-learning": FlatQLearning,
 }

@@ -7,6 +7,7 @@ relation of the goal holds.
 from collections.abc import Sequence
 from pathlib import Path
 
+from lifelore.bridges.planner import Step
 from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.tabletop.pick_and_place import COVERED, FELL, NO_ROOM
@@ -20,14 +21,15 @@ from lifelore.experiments.bench.perception.solved_puzzle import (
     solved_puzzle,
 )
 from lifelore.experiments.bench.rounds import at_least, estimated_row, row
+from lifelore.experiments.engine.estimates import exact_share
 
 PUZZLES = 20
 """Puzzles a round, each once with labels and once without."""
 WAYS = {"labels given": True, "without labels": False}
 GOALS = {"labels given": 0.95, "without labels": 0.8}
 REASONS = (NOT_FOUND, NO_PLAN, NO_BLOCK, COVERED, FELL, NO_ROOM, NOT_REACHED)
-DRAWN_STEPS = (6, 10)
-"""Fewest and most steps of the puzzle that is drawn."""
+DRAWN_STEPS = 6
+"""Steps of the puzzle that is drawn: a picture before, and one after each block that is put down."""
 OUT = Path("results")
 
 
@@ -35,7 +37,7 @@ def bench_puzzles(repeats: int, progress: Progress, out: Path = OUT) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`. Rows also have ``ci95`` and ``n``.
 
     With two rounds or more, the figure ``bench_puzzles.png`` shows the first puzzle that was solved without labels
-    in a fair number of steps.
+    in `DRAWN_STEPS` steps.
     """
     n = PUZZLES * repeats
     endings: dict[str, list[Ending]] = {way: [] for way in WAYS}
@@ -55,7 +57,7 @@ def bench_puzzles(repeats: int, progress: Progress, out: Path = OUT) -> dict:
 
 def _solved(found: Sequence[Ending], looks: int | None = None) -> Estimate:
     """Share of puzzles that are solved, with at most so many looks."""
-    return mean_estimate([float(end.outcome == SOLVED and (looks is None or end.looks <= looks)) for end in found])
+    return exact_share(end.outcome == SOLVED and (looks is None or end.looks <= looks) for end in found)
 
 
 def _rows(way: str, found: Sequence[Ending]) -> list[dict]:
@@ -76,16 +78,18 @@ def _draw(found: Sequence[Ending], out: Path) -> None:
     from lifelore.figures.scenes.cloud_sequence import draw_cloud_sequence
     from lifelore.figures.style import save_figure
 
-    fewest, most = DRAWN_STEPS
-    fit = (n for n, end in enumerate(found) if end.outcome == SOLVED and fewest <= len(end.steps) <= most)
+    fit = (n for n, end in enumerate(found) if end.outcome == SOLVED and len(end.steps) == DRAWN_STEPS)
     number = next(fit, None)
     if number is None:
         return
     shown = solved_puzzle(number, labels=True, pictures=True)
-    captions = ["before"]
-    for step in shown.steps[1::2]:
-        captions.append(
-            " ".join((step.action.replace("-", " "), *step.arguments)).replace("put on table", "on the table:")
-        )
     out.mkdir(parents=True, exist_ok=True)
-    save_figure(draw_cloud_sequence(shown.clouds, captions, columns=3), out / "bench_puzzles.png")
+    captions = ["before", *map(_caption, shown.steps[1::2])]
+    save_figure(draw_cloud_sequence(shown.clouds, captions), out / "bench_puzzles.png")
+
+
+def _caption(step: Step) -> str:
+    """A step that puts an object down, in words."""
+    name, *others = (argument.removeprefix("o") for argument in step.arguments)
+    where = {"put-on": "on", "put-beside": "beside", "put-on-table": "on the table"}[step.action]
+    return " ".join((name, where, *others))
