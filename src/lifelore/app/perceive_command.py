@@ -29,7 +29,9 @@ def perceive(
     index: Annotated[int | None, Option(help="Number of a rosbag's cloud, from 0 [0].")] = None,
     segment: Annotated[
         str | None,
-        Option(help="Segmentation of a cloud without labels: convexity, clusters or colour [convexity]."),
+        Option(
+            help="Segmentation of a cloud without labels: convexity, clusters, curvature or colour [convexity]."
+        ),
     ] = None,
     colours: Annotated[
         int | None, Option(help="--segment colour: number of colour clusters; the smallest is background [3].")

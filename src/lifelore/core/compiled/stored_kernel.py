@@ -146,10 +146,15 @@ class StoredKernel(KernelPart):
             if isinstance(expected, ArrayType):
                 if value.dtype != expected.dtype or value.ndim != expected.ndim or not value.flags.carray:
                     return None
-                flat += (None, None, value.size, value.itemsize, value.ctypes.data, *value.shape, *value.strides)
+                flat += (None, None, value.size, value.itemsize, _address(value), *value.shape, *value.strides)
             else:
                 flat.append(_SCALARS[expected][0](value))
         return flat
+
+
+def _address(array: np.ndarray) -> int:
+    """Where a writeable, contiguous array begins; several times as fast as ``array.ctypes.data``."""
+    return ctypes.addressof(ctypes.c_char.from_buffer(array)) if array.size else array.ctypes.data
 
 
 def stored_kernel(signature: str) -> Callable[[Callable], Any]:

@@ -85,7 +85,7 @@ def _places_over(points: NDArray[np.float64]) -> NDArray[np.float64]:
     """Places above an object's top, ``(n, 3)``: filled between its highest points, and one cell around."""
     height = float(np.quantile(points[:, 2], 0.98))
     top = points[points[:, 2] >= height - TOP, :2]
-    cells = np.unique(np.floor(top / CELL).astype(np.int64), axis=0)
+    cells = np.floor(top / CELL).astype(np.int64)
     low = cells.min(axis=0) - 1
     grid = np.zeros(cells.max(axis=0) - low + 2, bool)
     grid[tuple((cells - low).T)] = True

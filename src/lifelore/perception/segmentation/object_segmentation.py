@@ -1,6 +1,7 @@
 """Objects of a cloud without labels: the settings of a segmentation, and the labels that its method gives.
 
-The methods have modules of their own: `convexity_segmentation`, `distance_segmentation`, `colour_segmentation`.
+The methods have modules of their own: `convexity_segmentation`, `distance_segmentation`,
+`curvature_segmentation`, `colour_segmentation`.
 """
 
 from collections.abc import Iterable
@@ -16,7 +17,7 @@ from lifelore.perception.segmentation.cut_confidence import CutCloud
 from lifelore.perception.segmentation.outline import over_outline
 from lifelore.perception.segmentation.range_noise import noise
 
-METHODS = ("convexity", "clusters", "colour")
+METHODS = ("convexity", "clusters", "curvature", "colour")
 STANDING = 0.25
 """Least share of an object's points over the visible table. Of one at its far end, only the front is over it."""
 RISE = 1.5
@@ -29,8 +30,9 @@ class SegmentationSettings:
 
     Parameters
     ----------
-    method : {"convexity", "clusters", "colour"}
-        Surfaces that meet in creases are cut apart; Euclidean clusters; or the thesis's colour histogram (§2.3.3).
+    method : {"convexity", "clusters", "curvature", "colour"}
+        Surfaces that meet in creases are cut apart; Euclidean clusters; surfaces are cut at every sharp bend; or
+        the thesis's colour histogram (§2.3.3).
     table_band : float
         Metres; points no higher than this above the table, and no deeper below it, are the table.
     reach : float
@@ -43,7 +45,7 @@ class SegmentationSettings:
         Clusters of colour under ``"colour"``; the smallest is the background.
     """
 
-    method: Literal["convexity", "clusters", "colour"] = "convexity"
+    method: Literal["convexity", "clusters", "curvature", "colour"] = "convexity"
     table_band: float = 0.010
     reach: float = 0.60
     tolerance: float = 0.012
@@ -118,6 +120,10 @@ def _objects(
         from lifelore.perception.segmentation.distance_segmentation import euclidean_clusters
 
         return CutCloud(euclidean_clusters(points, settings.tolerance, settings.min_area))
+    if settings.method == "curvature":
+        from lifelore.perception.segmentation.curvature_segmentation import smooth_surfaces
+
+        return CutCloud(smooth_surfaces(points, camera, settings.min_area))
     from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 
     return convex_objects(points, camera, settings.min_area)

@@ -254,11 +254,10 @@ def opening_along(
     length = float(np.linalg.norm(way))
     along = way / length
     stations = np.linspace(0, length, max(int(np.ceil(2 * length / clearance)), 2) + 1)
-    at_own, at_others = (own - start) @ along, (others - start) @ along
+    slices_own, slices_others = _Slices(own, (own - start) @ along), _Slices(others, (others - start) @ along)
 
     def nearest(x: float) -> Nearest | None:
-        here, there = np.abs(at_own - x) <= clearance / 2, np.abs(at_others - x) <= clearance / 2
-        return nearest_points(own[here], others[there])
+        return nearest_points(slices_own.around(x, clearance / 2), slices_others.around(x, clearance / 2))
 
     ends = nearest(stations[0]), nearest(stations[-1])
     if ends[0] is None or ends[1] is None:
@@ -275,3 +274,18 @@ def opening_along(
     free = [f for f in open_ if f]
     border = [start, *(f.own for f in free), end, *(f.other for f in reversed(free))]
     return Opening(width, np.array(border))
+
+
+class _Slices:
+    """Points ``(n, 3)`` with their place along a line, ``(n,)``, sorted once for all slices."""
+
+    def __init__(self, points: NDArray[np.float64], at: NDArray[np.float64]) -> None:
+        self._points, self._at = points, at
+        self._order = np.argsort(at)
+        self._sorted = at[self._order]
+
+    def around(self, x: float, half: float) -> NDArray[np.float64]:
+        """The points at most `half` from `x`, in their order in the cloud."""
+        first, last = np.searchsorted(self._sorted, (x - 1.001 * half, x + 1.001 * half))
+        rows = np.sort(self._order[first:last])
+        return self._points[rows[np.abs(self._at[rows] - x) <= half]]

@@ -1,8 +1,9 @@
 """`bench segmentation`: objects found in clouds without labels, and the relations perceived between them.
 
-Segmentation by convexity beside distance clusters, the thesis's colour clusters (§2.3.3) and given labels, on the
-real scenes and on simulated scenes with shapes of their own. `segmentation_scoring` and `segmented_relations`
-define the measures. Four real scenes are drawn as each method finds them, under ``results/segmentation``.
+Segmentation by convexity beside distance clusters, cuts at sharp curvature, the thesis's colour clusters (§2.3.3)
+and given labels, on the real scenes and on simulated scenes with shapes of their own. `segmentation_scoring` and
+`segmented_relations` define the measures. Four real scenes are drawn as most methods find them, under
+``results/segmentation``.
 """
 
 from collections.abc import Sequence
@@ -15,6 +16,7 @@ import numpy as np
 from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.perception.segmentation_scenes import (
+    CURVATURE,
     GIVEN,
     METHODS,
     FoundScene,
@@ -135,6 +137,8 @@ def _draw(panels: Sequence[tuple[TrueScene, dict[str, FoundScene]]], out: Path) 
 
     rows = []
     for scene, results in panels:
-        clouds = {GIVEN: results[GIVEN].cloud} | {name: results[name].cloud for name in METHODS if name != GIVEN}
+        # A fifth picture in a row would be too small to see; cuts at every edge are easy to imagine.
+        names = [GIVEN, *(name for name in METHODS if name not in (GIVEN, CURVATURE))]
+        clouds = {name: results[name].cloud for name in names}
         rows.append((scene.name, true_labels(scene), clouds))
     save_figure(draw_segmentations(rows), out / "segmentation.png")

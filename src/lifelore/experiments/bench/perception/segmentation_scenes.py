@@ -22,10 +22,11 @@ from lifelore.perception.relations.relation_truth import read_relations
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings
 from lifelore.perception.segmentation.table_frame import Up, segmented_scene, to_scene
 
-GIVEN = "labels given"
+CURVATURE, GIVEN = "curvature", "labels given"
 METHODS = {
     "convexity": SegmentationSettings(method="convexity"),
     "distance clusters": SegmentationSettings(method="clusters"),
+    CURVATURE: SegmentationSettings(method="curvature"),
     "colour clusters": SegmentationSettings(method="colour"),
     GIVEN: None,
 }
