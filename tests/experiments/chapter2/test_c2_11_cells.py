@@ -65,6 +65,18 @@ def test_the_shift_to_a_gap_by_hand():
     assert shift_to(np.array([[0.03, 0, 0]]), other, sideways, 0.01) <= 1e-4
 
 
+@pytest.mark.parametrize("seed", range(20))
+def test_whether_a_cloud_is_nearer_than_a_gap_as_by_all_distances(seed):
+    rng = np.random.default_rng(seed)
+    first, second = rng.normal(size=(30, 3)), rng.normal(size=(20, 3))
+    tree = KDTree(second)
+    for offset in np.linspace(0, 9, 10):
+        moved = first + np.array([offset, 0.0, 0.0])
+        distance = np.linalg.norm(moved[:, None] - second[None], axis=2).min()
+        for gap in (0.5 * distance, 0.999 * distance, 1.001 * distance, 3 * distance):
+            assert parted_pairs._is_nearer(moved, tree, gap) is bool(distance < gap)
+
+
 def test_one_thing_alone_is_moved_and_no_gap_is_too_wide_to_be_asked(monkeypatch):
     asked = []
 
