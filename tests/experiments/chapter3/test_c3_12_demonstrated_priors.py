@@ -80,6 +80,9 @@ def test_numbers_by_hand():
     found = measure(SETTINGS, made_up())
     assert found["shown_minus_self_of_distance"].value == pytest.approx(-20 / 3000)
     assert found["shown_minus_self_of_optimal"].value == pytest.approx(-20 / 50)
+    assert found["grid_comparable_of_optimal"].value == 0.0
+    alike = [{**result, "optimal_size": 5000.0} for result in made_up()]
+    assert measure(SETTINGS, alike)["grid_comparable_of_optimal"].value == found["grid_comparable"].value > 0
     assert found["varied_minus_self_of_optimal"].value == pytest.approx(-300 / 50)
     assert found["varied_minus_self_of_distance"].value == pytest.approx(-0.1)
     assert found["shown_minus_uniform"].value == pytest.approx(1980)

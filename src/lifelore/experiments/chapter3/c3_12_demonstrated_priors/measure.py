@@ -69,11 +69,14 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         measured[f"all_{name}"] = mean_estimate(compared.rewards(method, default))
     grid = [compared.shown(cell) for cell in compared.grid.cells]
     good = [is_comparable(cell["of_distance"]) and is_above(cell["gain"], 0.0) for cell in grid]
-    return measured | {"grid_comparable": share_of(good)} | _demonstrations(settings, results)
+    of_optimal = [compared.of_optimal(compared.rewards(SHOWN, cell), cell) for cell in compared.grid.cells]
+    strict = [is_comparable(x) and is_above(cell["gain"], 0.0) for x, cell in zip(of_optimal, grid, strict=True)]
+    shares = {"grid_comparable": share_of(good), "grid_comparable_of_optimal": share_of(strict)}
+    return measured | shares | _demonstrations(settings, results)
 
 
 def is_comparable(number: Estimate) -> bool:
-    """Whether the whole interval lies within 5 % of the distance."""
+    """Whether the whole interval lies within 5 % of what the number is a share of."""
     return number.ci95 is not None and max(map(abs, number.ci95)) <= COMPARABLE
 
 
