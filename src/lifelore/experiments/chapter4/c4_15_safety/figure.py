@@ -30,7 +30,7 @@ def draw(result: Mapping) -> Figure:
         by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
         legend_below(by_episode, 0.75)
         draw_ratio_grid(by_type, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
-        by_type.set(xlabel="episode", title="safety: BEAT, ε as printed, to the static speed")
+        by_type.set(xlabel="episode; loss of BEAT to that of the static speed", title="safety, ε as printed")
         _draw_naming(naming, result["rows"][-1])
         _draw_games(figure.add_subplot(places[1, :]), games)
     return figure
@@ -44,7 +44,8 @@ def _draw_games(axes: Axes, games: Sequence[Mapping]) -> None:
     shares = [[_of_bound(row[c.measure]["value"], c) for c in asked] for row in games]
     met = [[(row["met"] | row["sentence"])[c.measure] for c in asked] for row in games]
     look = {"neutral": 1.0, "spread": 1.35, "good": "low", "ratio": True, "words": "{:.2f}".format}
-    draw_heat_grid(axes, shares, met, [row["words"] for row in games], [c.name for c in asked], **look)
+    names = [c.name.replace(", ", ",\n") for c in asked]
+    draw_heat_grid(axes, shares, met, [row["words"] for row in games], names, **look)
     words = "every game: the number divided by its bound, at most 1 asked (bold: met)"
     axes.set_title(f"{words}; the first {len(headlines)} with ε as printed", loc="right")
 
@@ -62,8 +63,9 @@ def _draw_naming(axes: Axes, row: Mapping) -> None:
     draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
     axes.set(title="speed, ε as printed", xlabel="steps played", ylabel="share named right for good")
     axes.axvline(row["length_printed"], color=GREY, linewidth=1)
+    box = {"fc": "white", "ec": "none", "pad": 0.5}  # the words lie over curves
     place = {"xy": (row["length_printed"], 0.02), "xytext": (3, 0), "textcoords": "offset points"}
-    axes.annotate("end of the first episode", **place, fontsize=7, color=GREY, rotation=90, va="bottom")
+    axes.annotate("end of the first episode", **place, fontsize=7, color=GREY, rotation=90, va="bottom", bbox=box)
     axes.set_ylim(0, 1.03)
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
     axes.minorticks_off()
