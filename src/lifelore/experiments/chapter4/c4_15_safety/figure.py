@@ -48,7 +48,8 @@ def _draw_games(axes: Axes, games: Sequence[Mapping]) -> None:
     shares = [[_of_bound(row[c.measure]["value"], c) for c in asked] for row in games]
     met = [[(row["met"] | row["sentence"])[c.measure] for c in asked] for row in games]
     look = {"neutral": 1.0, "spread": 1.35, "good": "low", "ratio": True, "words": "{:.2f}".format}
-    draw_heat_grid(axes, shares, met, [row["words"] for row in games], [c.name for c in asked], **look)
+    names = [c.name.replace(", ", ",\n") for c in asked]
+    draw_heat_grid(axes, shares, met, [row["words"] for row in games], names, **look)
     words = "every game: the number divided by its bound, at most 1 asked (bold: met)"
     axes.set_title(f"{words}; the first {len(headlines)} with ε as printed", loc="right")
 

@@ -18,6 +18,7 @@ from lifelore.experiments.chapter4.reuse.many_tasks import plain
 from lifelore.experiments.engine.estimates import exact_share, share_of
 from lifelore.experiments.engine.predicate import Condition
 from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.results_table import computed_once
 from lifelore.experiments.engine.second_reading import HEADLINE, YES, ReadCondition
 
 KEYS = {"BEAT": "", "BEAT, ε as printed": "_printed"}
@@ -76,10 +77,16 @@ def sentence_holds(found: Mapping[str, Estimate]) -> bool:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """The numbers of the default game, and the share of games that meet each condition."""
-    games = [measure_game(lots) for lots in by_game(results).values()]
+    games = list(numbers_by_game(settings, results).values())
     met = [answers(found) for found in games]
     shares = {GRID + name: share_of([one[name] for one in met]) for name in met[0]}
     return games[0] | shares | {f"{GRID}sentence": share_of([sentence_holds(found) for found in games])}
+
+
+@computed_once
+def numbers_by_game(settings: Mapping, results: Sequence[Mapping]) -> dict[tuple, dict[str, Estimate]]:
+    """`measure_game` of each game under each normalisation, in order."""
+    return {game: measure_game(lots) for game, lots in by_game(results).items()}
 
 
 def measure_game(results: Sequence[Mapping]) -> dict[str, Estimate]:
@@ -136,7 +143,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """By game, the conditions' numbers and whether each is met; then, of the default game, mean loss by type and
     episode of each method, and the share of players named right by each step."""
     games = by_game(results)
-    found = [_game_row(game, lots) for game, lots in games.items()]
+    found = [_game_row(game, numbers) for game, numbers in numbers_by_game(settings, results).items()]
     default = next(iter(games.values()))
     methods = (STATIC, ORACLE, *BEATS, LAGGING, PRINTED_EXP3, TUNED_EXP3)
     losses = {method: losses_of(default, method).mean(axis=1) for method in methods}
@@ -151,8 +158,7 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     return [*found, naming]
 
 
-def _game_row(game: tuple, lots: Sequence[Mapping]) -> dict:
-    found = measure_game(lots)
+def _game_row(game: tuple, found: Mapping[str, Estimate]) -> dict:
     met, words = answers(found), Setting(*game).words
     asked = {*met, *(one.condition.measure for one in sentence())}
     numbers = plain({name: number for name, number in found.items() if name in asked})
