@@ -103,14 +103,14 @@ def _why(result: Mapping, rows: Sequence[Row]) -> str:
     met = sum(row.answer == YES for row in rows)
     words = [f"{met} of {len(rows)} conditions are met"]
     for answer, kind in (
-        (NO, "not met"),
-        (OPEN, "open, as the interval spans the bound"),
-        (MISSING, "not measured"),
+        (NO, "Not met"),
+        (OPEN, "Open, as the interval spans the bound"),
+        (MISSING, "Not measured"),
     ):
         names = [f"*{row.condition.name}*" for row in rows if row.answer == answer]
         if names:
-            words.append(f"{kind}: {', '.join(names[:4])}" + (f" and {len(names) - 4} more" if names[4:] else ""))
-    return f"**{verdict_now(result).capitalize()}, because** {'; '.join(words)}."
+            words.append(f"{kind}: {'; '.join(names[:4])}" + (f"; and {len(names) - 4} more" if names[4:] else ""))
+    return f"**{verdict_now(result).capitalize()}, because** {'. '.join(words)}."
 
 
 def _causes(claim: Claim, names: Sequence[str]) -> list[str]:

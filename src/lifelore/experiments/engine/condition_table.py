@@ -45,7 +45,7 @@ def condition_table(
     rows: Sequence[Row], words: Mapping[Row, str], measured: Mapping, n: bool = False
 ) -> list[str]:
     """The rows that have words, with the sample sizes where `n` is true; a line says how many have none."""
-    lines = ["| condition | asked | measured [95 %] | met |", "|---|---|---|---|"]
+    lines = ["| condition | asked | measured [95\u00a0%] | met |", "|---|---|---|---|"]
     for row in rows:
         if row in words:
             number = measured_in_words(row.condition, measured)

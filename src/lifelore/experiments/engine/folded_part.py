@@ -44,7 +44,7 @@ def _second_reading(claim: Claim, result: Mapping) -> list[str]:
     ]
     return [
         f"**Second reading: {result['second']['verdict']}.** {claim.second.why}", "",
-        "| counts as | condition | asked | measured [95 %] | met |", "|---|---|---|---|---|", *rows, "",
+        "| counts as | condition | asked | measured [95\u00a0%] | met |", "|---|---|---|---|---|", *rows, "",
     ]  # fmt: skip
 
 

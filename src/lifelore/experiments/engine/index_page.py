@@ -84,8 +84,8 @@ def _sentence(result: Mapping) -> str:
     """A line of the list: the claim's sentence, and which of its conditions are not met."""
     claim = claim_of(result["claim"])
     missed = [f"*{row.condition.name}*" for row in counted_rows(claim, result) if row.answer == NO]
-    more = f" and {len(missed) - MOST_MISSED} more" if len(missed) > MOST_MISSED else ""
-    why = f" Not met: {', '.join(missed[:MOST_MISSED])}{more}." if missed else ""
+    more = f"; and {len(missed) - MOST_MISSED} more" if len(missed) > MOST_MISSED else ""
+    why = f" Not met: {'; '.join(missed[:MOST_MISSED])}{more}." if missed else ""
     return f"- {_link(claim.id)}{'' if result.get('second') else '¹'} {claim.sentence}{why}"
 
 
