@@ -5,6 +5,7 @@ import pytest
 
 from lifelore.experiments.bench.lives import tabletop_lives
 from lifelore.experiments.bench.lives.tabletop_lives import (
+    INFORMED,
     LIVING_AGENTS,
     N_TASKS,
     RAW,
@@ -19,14 +20,23 @@ from lifelore.experiments.engine.cell_store import CellStore
 def result(first, spills=0.0, n_types=3):
     n = 2 * N_TASKS
     best = np.full(n, 8.0)
-    return LifeResult(np.full(n, first), np.full(n, 8.0), best, np.full(n, spills), np.zeros(n), n_types)
+    alarms, met = np.zeros(n), np.arange(n) % 40
+    alarms[[N_TASKS, N_TASKS + 3]] = 1  # the types of these tasks were met in no task, and in three tasks
+    return LifeResult(np.full(n, first), np.full(n, 8.0), best, np.full(n, spills), alarms, met, n_types)
 
 
 def lives(n=4):
-    firsts = {"full": 7.0, "no-perception": 4.0, "no-prior": 6.0, "no-reuse": 5.0, "scratch": 0.0, RAW: 6.5}
+    firsts = {
+        "full": 7.0,
+        "no-perception": 4.0,
+        "no-prior": 6.0,
+        "no-reuse": 5.0,
+        "scratch": 0.0,
+        RAW: 6.5,
+        INFORMED: 7.2,
+    }
     return [
-        {agent: result(firsts[agent] + 0.1 * i, float(agent == "scratch")) for agent in LIVING_AGENTS}
-        for i in range(n)
+        {agent: result(firsts[agent] + 0.1 * i, float(agent == "scratch")) for agent in firsts} for i in range(n)
     ]
 
 
@@ -36,8 +46,11 @@ def test_shares_differences_and_goals_by_hand():
     assert rows["full: first episodes on new trays"]["value"] == pytest.approx((7.0 + 0.15) / 8)
     assert rows["full less no-reuse: first episodes on new trays"]["value"] == pytest.approx(2 / 8)
     assert rows["scratch: spills in first episodes on new trays"]["value"] == 1
-    good, spilled = found["goals"]
+    assert rows["full: false alarms on new trays"]["value"] == pytest.approx(1 / 37)
+    good, informed, spilled = found["goals"]
     assert (good["met"], spilled["met"], spilled["measured"]) == (False, True, 0.0)
+    share = np.mean([(7.0 + 0.1 * i) / (7.2 + 0.1 * i) for i in range(4)])
+    assert (informed["met"], informed["measured"]) == (True, pytest.approx(share))
 
 
 def test_the_curve_is_a_mean_over_ten_tasks():
@@ -59,7 +72,7 @@ def test_a_short_round(monkeypatch, tmp_path):
     monkeypatch.setattr(tabletop_lives, "LIVING_AGENTS", agents)
     store = CellStore(tmp_path, {"code": "as now"})
     (life,) = lived_round(5, n_tasks=2, lives=1, store=store)
-    assert list(life) == ["full", "scratch", RAW]
+    assert list(life) == ["full", "scratch", RAW, INFORMED]
     for found in life.values():
         assert len(found.first) == 4
         assert (found.first <= found.best + 1e-9).all()

@@ -138,7 +138,7 @@ def test_a_single_box_is_brought_and_the_second_time_at_once():
     knowledge, returns = Knowledge.empty(family), []
     for number in range(3):
         drawn = family.stream.draw(number)
-        task = TabletopTask(JobReplay(tree, KIND.user), perception=False)
+        task = TabletopTask(JobReplay(tree, KIND.user), look_without_relations)
         lived, _ = live_task(knowledge, drawn, task, AGENTS["full"], LivingSettings(n_episodes=6), f"r.{number}")
         returns.append(lived.returns)
     best = tree.best(KIND.user).value

@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
 from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
-from lifelore.agent.long_lived.recognition import Recognition, Span
+from lifelore.agent.long_lived.recognition import Belief, Recognition, Span
 from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
@@ -193,7 +193,7 @@ def _row(known: KnownTypes, name: str) -> int:
 def decide(
     knowledge: Knowledge,
     task: AgentTask,
-    recognition: Recognition | ChangingRecognition,
+    recognition: Belief,
     generator: np.random.Generator | None = None,
     trying: bool = False,
 ) -> Decision:

@@ -1,12 +1,13 @@
 """Which type a task has: the belief over the known types, and the alarm that none fits."""
 
 from dataclasses import dataclass
-from typing import Self
+from typing import Protocol, Self
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.knowledge import Knowledge
+from lifelore.agent.long_lived.known_types import KnownTypes
 from lifelore.agent.long_lived.novelty_alarm import N_TASKS, calibrated_alarm
 from lifelore.core.streams import stream
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
@@ -37,6 +38,25 @@ class Span:
     first: int
     belief: Array
     alarmed: bool
+
+
+class Belief(Protocol):
+    """What decisions rest on: the known types, what the task has shown, and the belief over its type.
+
+    known : KnownTypes
+    own : (n_causes, n_effects) float64, or with a row for each type where types change within the task
+    belief : (n_types + 1,) float64
+        In the known types and, last, in an unknown one.
+    """
+
+    @property
+    def known(self) -> KnownTypes: ...
+
+    @property
+    def own(self) -> Array: ...
+
+    @property
+    def belief(self) -> Array: ...
 
 
 class Recognition:

@@ -11,6 +11,7 @@ What an act leads to is foreseen from the perceived scene (`tray_states`). What 
 in an earlier episode of the task, is remembered act by act.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -27,13 +28,16 @@ from lifelore.agent.long_lived.families.tray_graph import Answer, Done, TrayGrap
 from lifelore.agent.long_lived.families.tray_states import (
     ACTS,
     HANDED,
+    KNOCK,
     LOAD_NAMES,
     N_PICKS,
     N_PUSHES,
     N_SITUATED,
     PAYMENTS,
+    QUIET,
     RESULTS,
     ROOM_NAMES,
+    SPILL,
     VERB,
     TrayState,
     result_of,
@@ -42,7 +46,8 @@ from lifelore.agent.long_lived.families.tray_states import cause_name as situate
 from lifelore.agent.long_lived.task_family import Abilities, Plan, SharedKnowledge, Step
 from lifelore.domains.tabletop.settings import TabletopSettings
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
-from lifelore.domains.tabletop_job.job import LONGEST
+from lifelore.domains.tabletop_job.events import Events
+from lifelore.domains.tabletop_job.job import LONGEST, TabletopJob
 from lifelore.domains.tabletop_job.job_replay import JobReplay
 from lifelore.domains.tabletop_job.job_types import BRING, Gripper, JobType, job_type_named
 from lifelore.domains.tabletop_job.tray import sample_tray
@@ -56,6 +61,8 @@ MOST_SEARCHED = 150
 """Sequences that the search for the best possible return looks at; where it ends before, the best known counts."""
 ALLOWED = 0.05
 """Share of the counts of a context from which an act counts as sensible there."""
+USUAL_SECONDS = 4.0
+"""Seconds of an act, about: what waiting costs is counted for so long."""
 BIN = 0.5
 """Width of a bin of rewards, points."""
 LOWEST, N_BINS = -10.0, 43
@@ -72,6 +79,13 @@ def reward_bin(reward: float) -> int:
 
 
 BIN_MIDDLES = LOWEST + BIN * (np.arange(N_BINS) + 0.5)
+
+
+def points_each(payment: int, reward: float, events: Events) -> float:
+    """The reward for `USUAL_SECONDS` in which nothing happened, or for each object that was knocked or spilled."""
+    if payment == QUIET:
+        return reward * USUAL_SECONDS / max(events.seconds, 0.1)
+    return reward / max(1, {KNOCK: len(events.knocked), SPILL: len(events.spilled)}.get(payment, 1))
 
 
 @dataclass(frozen=True)
@@ -107,10 +121,10 @@ class TabletopFamily:
 
     @property
     def groups(self) -> NDArray[np.int64]:
-        """All picks; all pushes; every other cause alone."""
+        """Picks of one class of load; pushes of loaded objects and of others; every other cause alone."""
         found = np.arange(self.n_causes)
-        found[:N_PICKS] = 0
-        found[N_PICKS : N_PICKS + N_PUSHES] = N_PICKS
+        found[:N_PICKS] -= found[:N_PICKS] % len(ROOM_NAMES)
+        found[N_PICKS : N_PICKS + N_PUSHES] = N_PICKS + np.arange(N_PUSHES) % 2
         return found
 
     @property
@@ -155,7 +169,8 @@ class TabletopFamily:
     ) -> "tuple[DrawnTask, TabletopTask]":
         """Task `number`, drawn and met."""
         drawn, job = self.job(number, context)
-        return drawn, TabletopTask(job, abilities.perception, self.labelled)
+        look = look_with_labels if self.labelled else look_at_raw_cloud
+        return drawn, TabletopTask(job, look if abilities.perception else look_without_relations)
 
     def best_return(self, number: int, context: int | None = None) -> float:
         """The best possible return, from a search in the simulator."""
@@ -179,17 +194,16 @@ class TabletopTask:
     Parameters
     ----------
     job : JobReplay
-    perception, labelled : bool
-        Whether relations are perceived, and whether from points with labels.
+    look : callable
+        What the agent perceives of the job now; `TabletopFamily` chooses it by the agent's abilities.
     """
 
     moved = None
 
-    def __init__(self, job: JobReplay, perception: bool = True, labelled: bool = True) -> None:
-        self.job = job
-        self._look = (
-            look_without_relations if not perception else look_with_labels if labelled else look_at_raw_cloud
-        )
+    def __init__(
+        self, job: JobReplay, look: Callable[[TabletopJob], PerceivedTray | None] = look_with_labels
+    ) -> None:
+        self.job, self._look = job, look
         self._graph = TrayGraph()
         self.begin()
 
@@ -234,9 +248,10 @@ class TabletopTask:
         # A hand that holds something is in the picture: look when it is free again.
         looked = None if ended or observation.held is not None else self._looked()
         result = result_of(events, act, looked is None or looked.room(looked.target, looked.objects) == 0)
+        payment = before.payments(act)[result]
         effects = (
             (before.cause(act, number), result),
-            (N_SITUATED + before.payments(act)[result], reward_bin(reward)),
+            (N_SITUATED + payment, reward_bin(points_each(payment, reward, events))),
         )
         self._done = (*self._done, (VERB[act], number))
         if not ended:

@@ -3,7 +3,7 @@
 A life is forty jobs and then forty on trays that it has not met. Lives of a round share their trays, in another
 order, and draw their own users, grippers and contexts; equal actions on a tray are simulated once. Every agent
 lives each life from the start, so that all differences are paired. The best possible return is found by search in
-the simulator; it knows the true scene and the hidden type.
+the simulator; it knows the true scene and the hidden type. The informed agent knows true relations and the type.
 """
 
 import time
@@ -27,19 +27,24 @@ from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop_job.best_return import OutcomeTree
 from lifelore.domains.task_stream import TaskStream
+from lifelore.experiments.bench.lives.informed_agent import informed_returns
 from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row
 from lifelore.experiments.engine.cell_store import CellStore
 from lifelore.experiments.engine.source_key import source_key
 
 Array = NDArray[np.float64]
 
-LIVES = 2
-"""Lives of a round. The first takes some 25 minutes of a core, each other one 5: they share the trays."""
+LIVES = 5
+"""Lives of a round: they share the trays, so that the first takes longest, some 15 minutes of a core."""
 N_TASKS = 40
 """Tasks of the first part of a life, and of the second on new trays."""
 RAW = "full, raw clouds"
 LIVING_AGENTS = AGENTS | {RAW: AGENTS["full"]}
 """The agent and its ablations see points with labels; one sees raw clouds."""
+INFORMED = "informed"
+"""A bound, no agent: see `informed_agent`."""
+MET = 3
+"""Earlier tasks of a type from which an alarm in its tasks counts as false."""
 LIVING = LivingSettings(n_episodes=5)
 OUT = Path("results")
 
@@ -51,6 +56,7 @@ class LifeResult:
     first, last, best : (n_tasks,) returns of the first and last episode, and the best possible
     spills : (n_tasks,) spilling acts of the first episode
     alarms : (n_tasks,) whether no known type fitted
+    met : (n_tasks,) in how many earlier tasks of the life the type was met
     n_types : number of types that are known at the end, alike ones joined
     """
 
@@ -59,6 +65,7 @@ class LifeResult:
     best: Array
     spills: Array
     alarms: Array
+    met: Array
     n_types: int
 
     def to_dict(self) -> dict[str, Any]:
@@ -74,6 +81,12 @@ class LifeResult:
     def share(self, part: slice, episode: str = "first") -> float:
         """Share of the best possible return over some tasks."""
         return float(getattr(self, episode)[part].sum() / self.best[part].sum())
+
+    @property
+    def false_alarms(self) -> float:
+        """Share of the tasks on new trays with an alarm, of those whose type was met before."""
+        known = self.met[NEW] >= MET
+        return float(self.alarms[NEW][known].mean()) if known.any() else 0.0
 
 
 NEW = slice(N_TASKS, None)
@@ -113,9 +126,13 @@ def _life(
     lived = {
         name: _lived(families[name == RAW], agent, 2 * n_tasks, seed) for name, agent in LIVING_AGENTS.items()
     }
+    informed = informed_returns(families[False], 2 * n_tasks, LIVING.n_episodes, seed)
     # After all agents have lived: what one of them found is possible for all.
     best = np.array([families[False].best_return(task) for task in range(2 * n_tasks)])
-    return {name: _result(tasks, best, n_types) for name, (tasks, n_types) in lived.items()}
+    found = {name: _result(tasks, best, n_types) for name, (tasks, n_types) in lived.items()}
+    met, none = found["full"].met, np.zeros(2 * n_tasks)
+    found[INFORMED] = LifeResult(informed, informed, best, none, none, met, len(TABLETOP_TYPES))
+    return found
 
 
 def _lived(family: TabletopFamily, abilities: Abilities, n_tasks: int, seed: int) -> tuple[list[TaskLog], int]:
@@ -132,12 +149,14 @@ def _lived(family: TabletopFamily, abilities: Abilities, n_tasks: int, seed: int
 
 
 def _result(tasks: list[TaskLog], best: Array, n_types: int) -> LifeResult:
+    types = [task.drawn.hidden_type for task in tasks]
     return LifeResult(
         np.array([task.returns[0] for task in tasks]),
         np.array([task.returns[-1] for task in tasks]),
         best,
         np.array([n_spills(task) for task in tasks], np.float64),
         np.array([task.alarm for task in tasks], np.float64),
+        np.array([types[:number].count(one) for number, one in enumerate(types)], np.float64),
         n_types,
     )
 
@@ -149,7 +168,7 @@ def n_spills(task: TaskLog) -> int:
 
 
 def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> dict[str, Any]:
-    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is two lives on eighty trays of its own.
+    """Rows and goals; see `lifelore.experiments.bench.bench`. A round is five lives on eighty trays of its own.
 
     Two rounds or more are lived by two processes, and drawn as ``bench_tabletop_lives.png`` in `out`. A bench that
     was stopped goes on with the life that it was in.
@@ -197,13 +216,22 @@ def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
             )
     types = mean_estimate([life["full"].n_types for life in lives])
     alarms = mean_estimate([life["full"].alarms[NEW].mean() for life in lives])
+    false = mean_estimate([life["full"].false_alarms for life in lives])
+    informed = np.array([life[INFORMED].share(NEW) for life in lives])
+    of_informed = shares["full"] / informed
     rows += [
         estimated_row("full: types known at the end", types, "types"),
         estimated_row("full: alarms on new trays", alarms, "a task"),
+        estimated_row("full: false alarms on new trays", false, "a task of a type that was met thrice"),
+        estimated_row(f"{INFORMED}: first episodes on new trays", mean_estimate(informed), "of the best"),
+        estimated_row(
+            "full: first episodes on new trays, of the informed agent's", mean_estimate(of_informed), "of its"
+        ),
     ]
     scratch = float(spills["scratch"].mean())
     goals = [
         at_least("full: first episodes on new trays", 0.95, float(shares["full"].mean())),
+        at_least("full: first episodes on new trays, of the informed agent's", 0.95, float(of_informed.mean())),
         at_most("full: spills, of those of scratch", 0.05, float(spills["full"].mean()) / max(scratch, 1e-9)),
     ]
     return {"rows": rows, "goals": goals}
