@@ -17,8 +17,9 @@ from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import own_rows
 
-HOW_TO_READ = """A condition in italics is shown by its name. The folded part of each claim has all conditions in words,
-likely causes, the choices that the thesis leaves open, and the settings. [What a verdict means](index.md)."""
+HOW_TO_READ = """A condition in italics is shown by its name. The folded part of each claim has all conditions in
+words, likely causes, the choices that the thesis leaves open, and the settings.
+[What a verdict means](index.md)."""
 
 
 def render_pages(results: str | Path = "results", figures: str = "../../results") -> dict[str, str]:
