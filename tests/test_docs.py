@@ -120,3 +120,15 @@ def test_transfer_over_lifetimes_is_what_the_page_says(tmp_path):
         near = 0.015 if "." in numbers[0] and len(numbers[0].split(".")[1]) == 2 else 0.15
         assert [float(number.replace("−", "-")) for number in numbers] == pytest.approx(ours, abs=near)
     assert len(list((tmp_path / "logs").glob("life*/worker-0/*/data-log.tsv"))) == 10 * 11
+
+
+def test_acquired_features_are_those_of_the_claim():
+    measured = json.loads((DOCS.parent / "results" / "C3.19" / "result.json").read_text(encoding="utf-8"))[
+        "measured"
+    ]
+    least = measured["least_share_of_four"]
+    assert f"in {round(least['value'] * least['n'])} of {least['n']} runs or more each" in PRIORS
+    assert measured["largest_share_of_noise"]["value"] == 0
+    fall = measured["entropy_start_minus_acquired"]["value"]
+    assert f"the entropy of its prior falls by {fall:.2f} bits" in PRIORS
+    assert measured["acquired_minus_all_of_gain"]["ci95"][0] > 0, "ahead also of a prior over all ten features"

@@ -109,7 +109,7 @@ def test_goals_apart_are_as_likely_as_their_class():
     assert shown.advisor.consider(lost, 2).goal == STAFF
     # Without a tag staff and visitors are as likely, and visitors have two goals.
     assert known.advisor.guide.goal_share == pytest.approx([1.5, 0.75, 0.75])
-    for state in (1, 2, 3):
+    for state in (1, 2, 3) * 5:
         shown.advisor.observe(agent, state, 1)
     assert shown.advisor.consider(agent, 4).goal == VISITOR, "who walks right is no staff, whatever the tag says"
     # The agent left place 3 without staying, so it is bound for the right end.
