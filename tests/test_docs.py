@@ -132,3 +132,30 @@ def test_acquired_features_are_those_of_the_claim():
     fall = measured["entropy_start_minus_acquired"]["value"]
     assert f"the entropy of its prior falls by {fall:.2f} bits" in PRIORS
     assert measured["acquired_minus_all_of_gain"]["ci95"][0] > 0, "ahead also of a prior over all ten features"
+
+
+def test_steps_with_classes_are_those_of_the_benchmark():
+    found = json.loads((DOCS.parent / "results" / "bench_advice_classes.json").read_text(encoding="utf-8"))
+    rows = {row["name"]: row for row in found["rows"]}
+
+    def cell(name, digits=0):
+        low, high = rows[name]["ci95"]
+        return f"{rows[name]['value']:,.{digits}f} [{low:,.{digits}f} {high:,.{digits}f}]"
+
+    ways = ("no advice", "one prior", "class inferred", "goals apart", "goals apart, class shown")
+    for worlds, knowledge in (
+        (worlds, knowledge) for worlds in ("offices", "mazes") for knowledge in ("0", "0.25")
+    ):
+        at = f"{worlds}, knowledge {knowledge}, at most 40 steps in 100"
+        cells = [cell(f"steps, {at}, {way}") for way in ways]
+        cells.append(cell(f"steps beside goals apart, {at}, goals apart, class shown", 2))
+        assert f"| {worlds}, {knowledge} | {' | '.join(cells)} |" in PRIORS
+    offices, mazes = (goal["measured"] for goal in found["goals"])
+    assert f"{offices:.2f} in\n  offices and {mazes:.2f} in mazes: **missed**" in PRIORS
+    assert not any(goal["met"] for goal in found["goals"])
+    worst = max(row["value"] for name, row in rows.items() if "beside one prior" in name and "no limit" in name)
+    assert f"up to {worst:.1f} times the steps of one prior" in PRIORS
+    named = [
+        row["value"] for name, row in rows.items() if name.startswith("class named") and "knowledge 0," not in name
+    ]
+    assert f"{100 * min(named):.0f} to {100 * max(named):.0f} %" in PRIORS
