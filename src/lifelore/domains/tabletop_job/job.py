@@ -215,7 +215,7 @@ class TabletopJob:
         found = self._physics.contacts()
         heights = found.positions[:, 2]
         borne = bearing(found.first, found.second, found.normals, found.forces, heights, self._physics.weights)
-        return borne.lift[: self.n_objects, : self.n_objects]
+        return np.maximum(borne.lift[: self.n_objects, : self.n_objects], 0)
 
     def least_seconds(self) -> tuple[float, float]:
         """Least seconds in which the target can be picked and handed over gently, and briskly; for scoring."""
