@@ -1,10 +1,13 @@
 """The informed agent of tabletop lives: it sees true relations, and is told the type."""
 
+import numpy as np
 import pytest
 
-from lifelore.domains.tabletop_job.job import TabletopJob
+from lifelore.domains.tabletop.layout import stand
+from lifelore.domains.tabletop.shapes import box
+from lifelore.domains.tabletop_job.job import PICK, PUT_ASIDE, TabletopJob
 from lifelore.domains.tabletop_job.job_types import job_type_named
-from lifelore.domains.tabletop_job.tray import sample_tray
+from lifelore.domains.tabletop_job.tray import sample_tray, tray_of
 from lifelore.domains.task_stream import TaskStream
 
 pytest.importorskip("mujoco", reason="needs the extra sim")
@@ -15,9 +18,19 @@ from lifelore.agent.long_lived.families.tray_features import look_with_labels  #
 from lifelore.agent.long_lived.known_types import KnownType, KnownTypes  # noqa: E402
 from lifelore.experiments.bench.lives.informed_agent import (  # noqa: E402
     ToldType,
+    carried_shares,
     informed_returns,
     look_at_true_relations,
 )
+
+
+def test_a_block_carries_all_of_what_stands_on_it():
+    placed = [stand(box(0.1, 0.1, 0.06)), stand(box(0.06, 0.06, 0.05), height=0.06)]
+    job = TabletopJob(tray_of(placed, 1), job_type_named("patient/firm"))
+    np.testing.assert_allclose(carried_shares(job), [[0, 0], [1, 0]], atol=0.05)
+    job.step(PICK * 2 + 1)
+    job.step(PUT_ASIDE * 2 + 1)
+    np.testing.assert_allclose(carried_shares(job), np.zeros((2, 2)), atol=0.01)
 
 
 def test_it_sees_what_carries_what():
@@ -26,7 +39,7 @@ def test_it_sees_what_carries_what():
     assert seen is not None
     assert perceived is not None
     assert seen.objects == perceived.objects
-    carried = job.carried()
+    carried = carried_shares(job)
     for a in seen.objects:
         for b in seen.objects - {a}:
             assert (seen.carries.get((a, b), 0.0) == 1) == (carried[a, b] > 0.05)

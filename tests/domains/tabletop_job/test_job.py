@@ -92,13 +92,6 @@ def test_actions_follow_the_hand():
     assert not task.available().any()
 
 
-def test_the_block_carries_all_of_what_stands_on_it():
-    task = stack()
-    np.testing.assert_allclose(task.carried(), [[0, 0], [1, 0]], atol=0.05)
-    run(task, (PICK, 1), (PUT_ASIDE, 1))
-    np.testing.assert_allclose(task.carried(), np.zeros((2, 2)), atol=0.01)
-
-
 def test_a_job_is_cut():
     task = stack()
     for k in range(LONGEST):
