@@ -22,7 +22,6 @@ class Doors:
     acts = ("left", "middle", "right", "leave")
     n_causes = N
     n_effects = 2
-    n_results = 1
     judges = np.ones(N, np.bool_)
     constancy = np.full(N, SAME_SCENE)
 
@@ -60,7 +59,6 @@ class DoorTask:
         self.begin()
 
     context = 0
-    moved = None
 
     def begin(self):
         self.left = 2

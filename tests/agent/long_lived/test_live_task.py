@@ -157,7 +157,7 @@ def test_few_tasks_are_a_cause_of_doubt_of_their_own():
     kind = knowledge.known_types().types[0].members[0]
     seldom = {kind: 1.0}
     nothing = np.zeros((0, 4), np.bool_)
-    knowledge.learn(TaskNews(7, 31, [SpanNews(seldom, [])], [], np.zeros(0, np.int64), nothing))
+    knowledge.learn(TaskNews(7, 31, [SpanNews(seldom, [])], np.zeros(0, np.int64), nothing))
     (once,) = [one for one in curious_contexts(knowledge) if one.context == 7]
     assert once.disagreement == 0
     assert once.unsure > 2 * often
@@ -166,9 +166,7 @@ def test_few_tasks_are_a_cause_of_doubt_of_their_own():
 def test_a_task_in_which_nothing_was_tried_is_no_end_of_the_life():
     family = Doors(TaskStream(("0", "1"), n_contexts=1))
     knowledge = Knowledge.empty(family)
-    knowledge.learn(
-        TaskNews(0, 0, (SpanNews({"r.0": 1.0}, []),), [], np.zeros(0, np.int64), np.zeros((0, 4), bool))
-    )
+    knowledge.learn(TaskNews(0, 0, (SpanNews({"r.0": 1.0}, []),), np.zeros(0, np.int64), np.zeros((0, 4), bool)))
     assert len(knowledge.known_types()) == 1
     _, (first, *_), _ = lived(family, 30, start=1, knowledge=knowledge)
     assert first.prior.tolist() == [1.0]

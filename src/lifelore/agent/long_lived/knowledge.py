@@ -47,8 +47,6 @@ class TaskNews:
     context, date : int
     spans : sequence of SpanNews
         At least one; the context's usual types are learnt from the first, with which the task began.
-    moves : sequence of (int, int)
-        Codes and results of `AgentTask.moved`.
     contexts, best : (n,) int64, (n, n_acts) bool
         Best acts in the contexts of the task.
     """
@@ -56,7 +54,6 @@ class TaskNews:
     context: int
     date: int
     spans: Sequence[SpanNews]
-    moves: Effects
     contexts: NDArray[np.int64]
     best: NDArray[np.bool_]
 
@@ -134,8 +131,6 @@ class Knowledge:
                 parts[f"type/{name}"] = counts if earlier is None else ActionPrior.merged([earlier, counts])
                 if not place:
                     parts[f"sightings/{name}"] = _counted([code], [0], 1, belief)
-        codes, results = np.array(news.moves, np.int64).reshape(-1, 2).T
-        parts["moves"] = _counted(codes, results, family.n_results)
         shown = {cause for span in news.spans for cause, _ in span.effects}
         causes = np.array([*sorted(shown), family.n_causes])
         parts["causes"] = _counted(causes, np.zeros_like(causes), 1)
@@ -171,7 +166,7 @@ class Knowledge:
             name = record.key.removeprefix(prefix)
             if record.kind == KIND and name != record.key:
                 kind = name.partition("/")[0]
-                n = {"type": family.n_effects, "moves": family.n_results, "acts": len(family.acts)}.get(kind, 1)
+                n = {"type": family.n_effects, "acts": len(family.acts)}.get(kind, 1)
                 made.add({name: ActionPrior.from_record(replace(record, key=""), n)})
         return made
 

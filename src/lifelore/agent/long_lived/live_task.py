@@ -125,7 +125,6 @@ def attempt_task(
     # Act: perceive, reuse the behaviours of the known types, and let every effect tell more of the type.
     effects: list[tuple[int, int]] = []
     began: list[int] = []  # number of effects before each episode
-    moves: list[tuple[int, int]] = []
     for episode in range(settings.n_episodes):
         task.begin()
         recognition.begin_episode()
@@ -140,8 +139,6 @@ def attempt_task(
             decisions.append(decision)
             recognition.observe(step.effects)
             effects += step.effects
-            if task.moved is not None:
-                moves.append(task.moved)
         lived.returns.append(sum(decision.reward for decision in decisions))
         lived.decisions.append(decisions)
 
@@ -160,7 +157,7 @@ def attempt_task(
     # Learn and remember: types learn the effects as far as they are believed, contexts their best acts and types.
     row = _row(known, learners[-1])
     contexts, best = task.best_acts(known.laws(recognition.own)[row], shared)
-    return lived, TaskNews(drawn.context, drawn.number, tuple(taught), moves, contexts, best)
+    return lived, TaskNews(drawn.context, drawn.number, tuple(taught), contexts, best)
 
 
 def recognition_of(

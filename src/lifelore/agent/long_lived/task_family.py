@@ -94,8 +94,6 @@ class SharedKnowledge:
 
     Parameters
     ----------
-    moves : ActionPrior
-        Counts of what follows in the scene, by codes of the family's own; empty where it needs none.
     acts : ActionPrior
         How often each act was best, by context.
     causes : ActionPrior
@@ -104,7 +102,6 @@ class SharedKnowledge:
         Whether the prior over acts guides plans.
     """
 
-    moves: ActionPrior
     acts: ActionPrior
     causes: ActionPrior
     guided: bool = True
@@ -112,7 +109,7 @@ class SharedKnowledge:
     @classmethod
     def empty(cls, family: "TaskFamily") -> "SharedKnowledge":
         """Without counts."""
-        return cls(ActionPrior(family.n_results), ActionPrior(len(family.acts)), ActionPrior(1))
+        return cls(ActionPrior(len(family.acts)), ActionPrior(1))
 
 
 class AgentTask(Protocol):
@@ -121,11 +118,6 @@ class AgentTask(Protocol):
     @property
     def context(self) -> int:
         """Code of the perceived features, for the prior over acts."""
-        ...
-
-    @property
-    def moved(self) -> tuple[int, int] | None:
-        """Code and result to count in `SharedKnowledge.moves` for the last act; None for nothing."""
         ...
 
     def begin(self) -> None:
@@ -178,11 +170,6 @@ class TaskFamily(Protocol):
 
     @property
     def n_effects(self) -> int: ...
-
-    @property
-    def n_results(self) -> int:
-        """Number of results that `AgentTask.moved` may name; 1 where there are none."""
-        ...
 
     @property
     def possible(self) -> Array:

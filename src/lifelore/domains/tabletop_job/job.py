@@ -21,7 +21,7 @@ from lifelore.core.labelled_cloud import UNLABELLED, LabelledCloud
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import photograph
-from lifelore.domains.tabletop.truth import bearing
+from lifelore.domains.tabletop.physics import Contacts
 from lifelore.domains.tabletop_job.events import Events, Witness
 from lifelore.domains.tabletop_job.gripper_tray import GripperTray, TrayState
 from lifelore.domains.tabletop_job.job_types import BRING, JobType, User
@@ -210,12 +210,9 @@ class TabletopJob:
             raise InputError("object_at needs an object on the table, got none; hand over what is held")
         return min(here, key=lambda k: self._physics.distance_to(k, point))
 
-    def carried(self) -> NDArray[np.float64]:
-        """Share of each object's weight (row) that each other object (column) carries now, (n, n); for scoring."""
-        found = self._physics.contacts()
-        heights = found.positions[:, 2]
-        borne = bearing(found.first, found.second, found.normals, found.forces, heights, self._physics.weights)
-        return borne.lift[: self.n_objects, : self.n_objects]
+    def contacts(self) -> tuple[Contacts, NDArray[np.float64]]:
+        """All contacts now, and the weights of the objects (n_objects,), newtons; for scoring."""
+        return self._physics.contacts(), self._physics.weights
 
     def least_seconds(self) -> tuple[float, float]:
         """Least seconds in which the target can be picked and handed over gently, and briskly; for scoring."""

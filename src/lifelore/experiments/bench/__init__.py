@@ -74,7 +74,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         ``views`` and ``registration``: lots of scenes, judged together; for ``raw_frames``: rooms of each kind;
         for ``puzzles``: lots of 20 puzzles; for ``perfect_information``: groups of ten tasks in each world;
         for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
-        two lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
+        five lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
         ``changing_customers``: lives; for ``customer_fleet``: worlds; for ``evaluation``: 60 simulated studies
         each; for ``novelty``: libraries of each case.
     map : str, optional

@@ -55,7 +55,6 @@ class BuildingFamily:
     name = "building-days"
     acts = tuple(f"walk the best way for type {behaviour}" for behaviour in range(MOST_BEHAVIOURS))
     n_effects = len(EFFECTS)
-    n_results = 1
 
     def __post_init__(self) -> None:
         world = self.days.world
@@ -119,7 +118,6 @@ class WayTask:
     """
 
     context = 0
-    moved: tuple[int, int] | None = None
 
     def __init__(self, family: BuildingFamily, way: BuildingWay) -> None:
         self.family, self.way = family, way

@@ -60,7 +60,6 @@ class FactoryFamily:
     acts = ACTS
     n_causes = len(ACTS)
     n_effects = len(EFFECTS)
-    n_results = 1
     possible = np.full((len(ACTS), len(EFFECTS)), 1 / len(EFFECTS))
     groups = np.arange(len(ACTS)) // N_COMPONENTS
     judges = np.ones(len(ACTS), np.bool_)
@@ -127,7 +126,6 @@ class OrderTask:
     """
 
     context = 0
-    moved: tuple[int, int] | None = None
 
     def __init__(
         self, order: CustomerOrder, table: OrderTable, in_episode: Callable[[int], CustomerOrder] | None = None

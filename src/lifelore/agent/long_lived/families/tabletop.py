@@ -116,7 +116,6 @@ class TabletopFamily:
     acts = ACTS
     n_causes = N_SITUATED + len(PAYMENTS)
     n_effects = N_BINS
-    n_results = 1
     judges = np.ones(n_causes, np.bool_)
 
     @property
@@ -197,8 +196,6 @@ class TabletopTask:
     look : callable
         What the agent perceives of the job now; `TabletopFamily` chooses it by the agent's abilities.
     """
-
-    moved = None
 
     def __init__(
         self, job: JobReplay, look: Callable[[TabletopJob], PerceivedTray | None] = look_with_labels

@@ -16,7 +16,7 @@ from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.known_types import KnownType, KnownTypes, effect_counts
 from lifelore.agent.long_lived.live_task import decide
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.truth import SHARE
+from lifelore.domains.tabletop.truth import SHARE, bearing
 from lifelore.domains.tabletop_job.job import TabletopJob
 
 Array = NDArray[np.float64]
@@ -38,12 +38,19 @@ class ToldType:
         self.belief = np.eye(len(known) + 1)[row]
 
 
+def carried_shares(job: TabletopJob) -> Array:
+    """Share of each object's weight (row) that each other object (column) carries now, (n, n)."""
+    found, weights = job.contacts()
+    borne = bearing(found.first, found.second, found.normals, found.forces, found.positions[:, 2], weights)
+    return np.maximum(borne.lift[:-1, :-1], 0)
+
+
 def look_at_true_relations(job: TabletopJob) -> PerceivedTray | None:
     """The tray with true relations: an object lies on whatever carries part of its weight."""
     seen = look_with_labels(job)
     if seen is None:
         return None
-    carried = job.carried()
+    carried = carried_shares(job)
     pairs = {(a, b): 1.0 for a in seen.objects for b in seen.objects if a != b and carried[a, b] > SHARE}
     return replace(seen, carries=pairs)
 

@@ -42,7 +42,7 @@ RAW = "full, raw clouds"
 LIVING_AGENTS = AGENTS | {RAW: AGENTS["full"]}
 """The agent and its ablations see points with labels; one sees raw clouds."""
 INFORMED = "informed"
-"""A bound, no agent: see `informed_agent`."""
+"""A yardstick, see `informed_agent`; no bound, because it has seen rare types in a few tasks alone."""
 MET = 3
 """Earlier tasks of a type from which an alarm in its tasks counts as false."""
 LIVING = LivingSettings(n_episodes=5)
@@ -231,7 +231,6 @@ def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
     scratch = float(spills["scratch"].mean())
     goals = [
         at_least("full: first episodes on new trays", 0.95, float(shares["full"].mean())),
-        at_least("full: first episodes on new trays, of the informed agent's", 0.95, float(of_informed.mean())),
         at_most("full: spills, of those of scratch", 0.05, float(spills["full"].mean()) / max(scratch, 1e-9)),
     ]
     return {"rows": rows, "goals": goals}
