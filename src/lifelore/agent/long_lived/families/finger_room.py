@@ -38,7 +38,7 @@ class Grasp(NamedTuple):
     tip: float
 
 
-def grasp_of(points: Array, lowest: float) -> Grasp:
+def grasp_of(points: NDArray[np.floating], lowest: float) -> Grasp:
     """The grasp of an object with points (n, 3), whose lowest point is at a height `lowest`."""
     angles = np.linspace(0, np.pi, DIRECTIONS, endpoint=False)
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -52,7 +52,7 @@ def grasp_of(points: Array, lowest: float) -> Grasp:
     return Grasp(along, across, (float(low[best]), float(high[best])), float(sides.mean()), tip)
 
 
-def reach_into(grasp: Grasp, neighbour: Array, thicknesses: tuple[float, ...]) -> Array:
+def reach_into(grasp: Grasp, neighbour: NDArray[np.floating], thicknesses: tuple[float, ...]) -> Array:
     """How far a neighbour's points (n, 3) reach into fingers of some thicknesses, metres; at most 0 where free.
 
     Of the two fingers the one with less room counts. Points below the tips are not in the way.
