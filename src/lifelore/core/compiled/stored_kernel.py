@@ -154,7 +154,9 @@ class StoredKernel(KernelPart):
 
 def _address(array: np.ndarray) -> int:
     """Where a writeable, contiguous array begins; several times as fast as ``array.ctypes.data``."""
-    return ctypes.addressof(ctypes.c_char.from_buffer(array)) if array.size else array.ctypes.data
+    if not array.size:
+        return array.ctypes.data
+    return ctypes.addressof(ctypes.c_char.from_buffer(array))  # pyright: ignore[reportArgumentType]
 
 
 def stored_kernel(signature: str) -> Callable[[Callable], Any]:

@@ -77,8 +77,9 @@ def block_puzzle(generator: np.random.Generator, fewest: int = 4, most: int = 6)
     start = goal = _towers(generator, n)
     while len(set(_supports(start).items()) - set(_supports(goal).items())) < 2:
         goal = _towers(generator, n)
+    bottoms = [tower[0] for tower in goal]
     asked = len(goal) > 1 and generator.random() < 0.5
-    return BlockPuzzle(cubes, start, goal, (goal[0][0], goal[1][0]) if asked else None)
+    return BlockPuzzle(cubes, start, goal, (bottoms[0], bottoms[1]) if asked else None)
 
 
 def _towers(generator: np.random.Generator, n: int) -> Towers:

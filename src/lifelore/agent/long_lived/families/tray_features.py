@@ -4,7 +4,7 @@ Features are of one object among those that are still on the tray, so that the a
 another is gone. They are measured on perceived relations and on the points that the camera sees.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -54,7 +54,7 @@ class PerceivedTray:
     """
 
     target: int
-    points: dict[int, NDArray[np.floating]]
+    points: Mapping[int, NDArray[np.floating]]
     carries: dict[tuple[int, int], float]
     related: bool = True
 

@@ -112,7 +112,8 @@ class TrayGraph:
 
     def _nodes(self, done: Done) -> TrayNodes:
         first: Node = done, self.states[done]
-        number_of, order = {first: 0}, [first]
+        number_of: dict[Node, int] = {first: 0}
+        order: list[Node] = [first]
 
         def place(node: Node) -> int:
             if node not in number_of:

@@ -48,7 +48,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 def means(rows: Sequence[Mapping], names: Sequence[str]) -> dict[str, Estimate]:
     """Means of some measures over the simulated data sets of `by_data_set`."""
     records = [
-        row
+        dict(row)
         | {f"{name}_right_less_majority": row[f"{name}_right"] - row[f"{name}_majority"] for name in COMPONENTS}
         | {"agreement_on_less_adjacent": row["on_agreement"] - row["adjacent_agreement"]}
         for row in rows
