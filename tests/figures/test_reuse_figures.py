@@ -38,8 +38,10 @@ def test_call_graph_is_the_worlds():
     assert set(CALL_EDGES) == there
     axes = new_figure(7, 4).subplots()
     draw_call_graph(axes, CALL_EDGES)
-    circles = {text.get_text() for text in axes.texts}
-    assert {STATES[ANGRY], "[10]", "[3]", "(1−η)ρ"} <= circles
+    written = [text.get_text() for text in axes.texts]
+    assert STATES[ANGRY] in written
+    for part in ("[10]", "[3]", "(1−η)ρ"):
+        assert any(part in text for text in written)
 
 
 def test_reserve_map_shows_targets_hilltops_and_base():

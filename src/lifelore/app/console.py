@@ -107,7 +107,9 @@ def _lines(action: str, pace: _Pace, every: float) -> "Iterator[Progress]":
         while not ended.wait(every):
             of = f" {pace.done}/{pace.total}" if pace.total else ""
             label = f" ({pace.label})" if pace.label else ""
-            print(f"{action}{of}{label}: {pace.text()}", file=sys.stderr, flush=True)
+            # In one piece, so that lines of several processes stay whole.
+            sys.stderr.write(f"{action}{of}{label}: {pace.text()}\n")
+            sys.stderr.flush()
 
     reporter = Thread(target=report, daemon=True)
     reporter.start()

@@ -56,7 +56,7 @@ def test_a_bad_cloud_stops_none_of_the_others(clouds, tmp_path):
 def test_the_model_is_loaded_once(clouds, monkeypatch):
     loaded = []
     real = verb.model_of
-    monkeypatch.setattr(verb, "model_of", lambda settings: loaded.append(settings) or real(settings))
+    monkeypatch.setattr(verb, "model_of", lambda settings, told: loaded.append(settings) or real(settings, told))
     assert len(list(perceive_many(clouds, UPRIGHT))) == 3
     assert loaded == [UPRIGHT]
 

@@ -23,8 +23,7 @@ from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from lifelore.perception.relations.relation_model_file import model_bytes, model_from_bytes
 
-KIND, VERSION = "relation_model", 1
-EXAMPLES, EXAMPLES_VERSION = "relation_examples", 1
+KIND, EXAMPLES, VERSION = "relation_model", "relation_examples", 1
 DEFAULT_NAME = "default"
 _FORMAT = PackedFormat(
     "lifelore relation examples", 1, "labelled scene", "`lifelore learn-relations`", largest=2**28
@@ -67,10 +66,10 @@ def store_model(
     records = [Record(KIND, key, VERSION, "newest", np.arange(len(words)), words, {**about, "name": name})]
     for digest, scene in {scene.digest: scene for scene in scenes}.items():
         content = as_words(_packed(scene))
-        held = memory.recall(EXAMPLES, f"{key}/{digest}", EXAMPLES_VERSION)
+        held = memory.recall(EXAMPLES, f"{key}/{digest}", VERSION)
         if held is None or not np.array_equal(held.values[: len(content)], content):
             record = Record(
-                EXAMPLES, f"{key}/{digest}", EXAMPLES_VERSION, "newest", np.arange(len(content)), content,
+                EXAMPLES, f"{key}/{digest}", VERSION, "newest", np.arange(len(content)), content,
                 {"name": name},
             )  # fmt: skip
             records.append(record)
@@ -103,7 +102,7 @@ def recall_scenes(memory: Memory, name: str) -> list[LabelledScene]:
         A scene was written by a newer Lifelore, or is damaged.
     """
     where = f"a labelled scene of '{name}' in memory"
-    found = [memory.recall(EXAMPLES, key, EXAMPLES_VERSION) for key in _keys(memory, name)]
+    found = [memory.recall(EXAMPLES, key, VERSION) for key in _keys(memory, name)]
     return [_unpacked(as_bytes(record.values), where) for record in found if record is not None]
 
 
@@ -116,9 +115,7 @@ def scenes_not_learnt(memory: Memory, name: str) -> int:
 
 def _keys(memory: Memory, name: str) -> list[str]:
     prefix = f"{model_key(name)}/"
-    return [
-        key for key, version, _ in memory.keys(EXAMPLES) if key.startswith(prefix) and version == EXAMPLES_VERSION
-    ]
+    return [key for key, version, _ in memory.keys(EXAMPLES) if key.startswith(prefix) and version == VERSION]
 
 
 def _packed(scene: LabelledScene) -> bytes:

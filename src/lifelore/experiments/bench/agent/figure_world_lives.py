@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
-from lifelore.figures.style import BLUE, GREEN, GREY, ORANGE, PURPLE, SKY, VERMILION, house_style, new_figure
+from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, house_style, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -15,6 +15,7 @@ COLOURS = {
     "scratch": GREY,
     "R-max, remembered model": PURPLE,
     "successor features, GPI": VERMILION,
+    "infinite mixture, Gibbs sampling": INK,
     "probabilistic policy reuse": SKY,
     "Q-learning": SKY,
 }
