@@ -18,7 +18,7 @@ CHAPTERS = {
 ORDER = (HOLDS, IN_PART, UNDECIDED, FAILS, UNTESTED)
 NOTES = {"5": "These are ideas: the thesis proposes them without numbers."}
 """Words under the title of a chapter."""
-PLURALS = {HOLDS: "hold", IN_PART: "hold in part", FAILS: "do not hold"}
+PLURALS = {HOLDS: "hold", IN_PART: "hold in part", FAILS: "do not hold", UNDECIDED: "are undecided"}
 MOST_MISSED = 3
 """Names of unmet conditions after a claim's sentence."""
 OPENING = """# Reproduction
@@ -93,7 +93,7 @@ def _total(found: Sequence[Mapping]) -> str:
     """How many claims have each verdict."""
     now = [verdict_now(result) for result in found]
     counts = [f"{now.count(verdict)} {PLURALS.get(verdict, verdict)}" for verdict in ORDER if verdict in now]
-    return f"**Of {len(found)} claims with a result {', '.join(counts)}.**"
+    return f"**Of {len(found)} claims with a result, {', '.join(counts)}.**"
 
 
 def _without_answer(found: Sequence[Mapping]) -> list[str]:
