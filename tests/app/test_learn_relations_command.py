@@ -90,3 +90,21 @@ def test_words_of_a_user_are_added_to_the_core(ask, folder):
     assert "(clear_of-table o2)" in problem
     assert "(on o3 o2)" in problem
     assert "(carries ?a ?b - thing)" in domain
+
+
+@pytest.mark.slow
+def test_lessons_of_two_robots_are_learnt_together_and_perceive_says_when_they_were_not(ask, folder):
+    (folder / "one.csv").write_text("scene,a,b,relation,confidence\non,3,2,on,3\non,2,1,on,3\n")
+    (folder / "two.csv").write_text("scene,a,b,relation,confidence\noff,2,1,on,3\noff,3,1,none,3\n")
+    for robot, truth in (("karl", "one"), ("rosie", "two")):
+        assert (
+            ask("learn-relations", folder, "--truth", folder / f"{truth}.csv", "--memory", folder / robot).status
+            == 0
+        )
+    assert ask("memory", "merge", folder / "rosie", "--memory", folder / "karl").status == 0
+    look = "perceive", folder / "on.npz", "--model", "default", "--memory", folder / "karl", "--up", "z"
+    told = ask(*look).err
+    assert "the model 'default' has not learnt from 1 of the labelled scenes in memory yet" in told
+    assert f"learn-relations --name default --memory {folder / 'karl'}" in told
+    assert "2 scenes, 2 of them remembered" in ask("learn-relations", "--memory", folder / "karl").out
+    assert "has not learnt from" not in ask(*look).err

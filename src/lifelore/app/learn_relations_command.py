@@ -12,7 +12,7 @@ def learn_relations(
     folder: Annotated[
         str | None,
         typer.Argument(
-            metavar="[DIR]",
+            metavar="DIR",
             help="Folder with a labelled cloud for each scene: NAME.pcd, ply, npz. Without it, the scenes in"
             " memory are all.",
         ),

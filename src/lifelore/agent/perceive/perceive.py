@@ -270,8 +270,9 @@ def model_of(settings: PerceiveSettings, notice: Callable[[str], None] | None = 
     with open_memory(settings.memory, read_only=True) as memory:
         model = recall_model(memory, settings.model)
         if notice is not None and (new := scenes_not_learnt(memory, settings.model)):
+            place = "" if settings.memory is None else f" --memory {memory.location}"
             notice(
-                f"memory has {new} labelled scenes that the model '{settings.model}' has not learnt from:"
-                f" lifelore learn-relations --name {settings.model}"
+                f"the model '{settings.model}' has not learnt from {new} of the labelled scenes in memory yet:"
+                f" lifelore learn-relations --name {settings.model}{place}"
             )
         return model
