@@ -26,6 +26,7 @@ from lifelore.agent.advise.step_lines import StepLine, read_steps
 from lifelore.core.errors import InputError, NotFoundError, StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 
 DESK, STEPS, VERSION = "advice_desk", "advice_steps", 1
 _ACTIONS = 8
@@ -55,7 +56,7 @@ class AdviceDesk:
         if record is None:
             known = ", ".join(key for key, version, _ in memory.keys(DESK) if version == VERSION)
             raise NotFoundError(f"no advice desk '{name}'; known: {known or 'none'}; register its experts first")
-        content = record.values[: -(-record.about["bytes"] // 8)].astype("<i8").tobytes()[: record.about["bytes"]]
+        content = bytes_of(record.values, record.about["bytes"])
         self.name, self.id, self._memory = name, record.about["id"], memory
         self.session = _session(json.loads(zlib.decompress(content)), maps)
         self._known: dict[str, int] = {}
@@ -174,7 +175,7 @@ def register_desk(memory: Memory, name: str, document: Mapping[str, Any], maps: 
     digest = hashlib.sha256(content).hexdigest()[:32]
     earlier = memory.recall_state(DESK, name, VERSION)
     if earlier is None or earlier.about["digest"] != digest:
-        values = np.frombuffer(content + bytes(-len(content) % 8), "<i8").astype(np.int64)
+        values = words_of(content)
         about = {"bytes": len(content), "digest": digest, "id": f"{digest[:8]}-{time.time_ns()}"}
         record = Record(DESK, name, VERSION, "newest", np.arange(len(values)), values, about)
         robot = f"advise {name}"

@@ -18,6 +18,7 @@ from lifelore.core.packed_arrays import PackedFormat
 from lifelore.core.protocols import Record
 from lifelore.core.relations import PairLabel
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 from lifelore.perception.pairs.pair_features import PairFeatures
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.relations.relation_classifier import RelationClassifier
@@ -180,10 +181,9 @@ def as_words(content: bytes) -> NDArray[np.int64]:
 
     A shorter model does not overwrite the end of a longer one, so the reader needs the length.
     """
-    padded = content + bytes(-len(content) % 8)
-    return np.concatenate([[len(content)], np.frombuffer(padded, "<i8")]).astype(np.int64)
+    return np.concatenate([[len(content)], words_of(content)])
 
 
 def as_bytes(words: NDArray[np.int64]) -> bytes:
     """Bytes of the integers of `as_words`."""
-    return words[1:].astype("<i8").tobytes()[: int(words[0])]
+    return bytes_of(words[1:], int(words[0]))

@@ -25,6 +25,7 @@ from lifelore.interaction.adaptation.beat import Beat, epsilon_of
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.selection.epsilon_greedy import EpsilonGreedy
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 
 LIBRARY, USER, VERSION = "adapt_library", "adapt_user", 1
 _HEADER = 3
@@ -68,7 +69,7 @@ def register_adaptation(memory: Memory, name: str, library: PolicyLibrary, epsil
     earlier = memory.recall_state(LIBRARY, name, VERSION)
     if earlier is not None and earlier.about["digest"] == digest:
         return open_adaptation(memory, name)
-    values = np.frombuffer(content + bytes(-len(content) % 8), "<i8").astype(np.int64)
+    values = words_of(content)
     about = {"bytes": len(content), "epsilon": epsilon, "digest": digest, "id": f"{digest[:8]}-{time.time_ns()}"}
     record = Record(LIBRARY, name, VERSION, "newest", np.arange(len(values)), values, about)
     robot = f"adapt {name}"
@@ -87,7 +88,7 @@ def open_adaptation(memory: Memory, name: str) -> Adaptation:
         raise NotFoundError(f"no adaptation '{name}'; known: {known or 'none'}; register its library first")
     about: Mapping[str, Any] = record.about
     # Cells beyond the content are those of an earlier, larger library.
-    content = record.values[: -(-about["bytes"] // 8)].astype("<i8").tobytes()[: about["bytes"]]
+    content = bytes_of(record.values, about["bytes"])
     try:
         library = PolicyLibrary.from_bytes(content, f"adaptation '{name}'")
     except InputError as error:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 
 KIND, VERSION = "reuse_panel", 1
 COLUMNS: dict[str, tuple[tuple[str, str], ...]] = {
@@ -86,7 +87,7 @@ class PanelJournal:
         n = len(next(iter(columns.values())))
         parts = [columns[column].astype(dtype).tobytes() for column, dtype in COLUMNS[kind]]
         packed = zlib.compress(head + b"".join(parts), 1)
-        values = np.frombuffer(packed + bytes(-len(packed) % 8), "<i8").astype(np.int64)
+        values = words_of(packed)
         self._order = max(time.time_ns(), self._order + 1)
         described = {
             "study": self._study, "kind": kind, "order": self._order, "length": n, "bytes": len(packed), **about
@@ -118,7 +119,7 @@ class PanelJournal:
         record = self._memory.recall(KIND, key, VERSION)
         name = key.removeprefix(f"{self._study}/")
         try:
-            content = zlib.decompress(record.values.astype("<i8").tobytes()[: about["bytes"]])  # pyright: ignore
+            content = zlib.decompress(bytes_of(record.values, about["bytes"]))  # pyright: ignore
             n, at, columns = about["length"], 8 * about.get("new", 0), {}
             for column, dtype in COLUMNS[about["kind"]]:
                 columns[column] = np.frombuffer(content, dtype, n, at)

@@ -20,6 +20,7 @@ import numpy as np
 from lifelore.core.errors import StoreError
 from lifelore.core.protocols import Record
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 
 KIND, VERSION = "reuse_past", 1
 USERS_A_BUCKET, MOST_BUCKETS = 32, 1024
@@ -125,7 +126,7 @@ class Past:
         packed = [_pack(bucket) for bucket in buckets]
         records = []
         for number, content in enumerate(packed):
-            values = np.frombuffer(content + bytes(-len(content) % 8), "<i8").astype(np.int64)
+            values = words_of(content)
             about = {"study": study, "bytes": len(content)}
             slots = np.arange(len(values))
             records.append(Record(KIND, f"{study}/{number:04d}", VERSION, "newest", slots, values, about))
@@ -191,8 +192,7 @@ def _read_bucket(memory: Memory, study: str, number: int) -> dict[str, PastUser]
     if record is None:
         raise StoreError(f"the past of study '{study}' is damaged; fit the study anew")
     # Cells beyond the content are an earlier, longer one's.
-    length = -(-record.about["bytes"] // 8)
-    return _unpack(record.values[:length].astype("<i8").tobytes()[: record.about["bytes"]], study)
+    return _unpack(bytes_of(record.values, record.about["bytes"]), study)
 
 
 def _robot(study: str, generation: int) -> str:

@@ -26,6 +26,7 @@ from lifelore.interaction.library.task_library import TaskLibrary
 from lifelore.interaction.reuse.reuse_algorithm import ReuseAlgorithm
 from lifelore.interaction.selection import DEFAULT_RULE, SelectionRule, restored_rule, rule_named
 from lifelore.memory import Memory
+from lifelore.memory.byte_words import bytes_of, words_of
 
 KIND, VERSION = "reuse_study", 1
 ACTIVE, PILOT, RETIRED = "active", "pilot", "retired"
@@ -216,7 +217,7 @@ class Study:
     def to_record(self) -> Record:
         """What memory keeps."""
         packed = self.library.to_bytes()
-        values = np.frombuffer(packed + bytes(-len(packed) % 8), "<i8").astype(np.int64)
+        values = words_of(packed)
         table = self._stored_table()
         about = {
             "study": self.name,
@@ -286,7 +287,7 @@ def open_study(memory: Memory, name: str = "default") -> Study:
     about: Mapping[str, Any] = record.about
     # Cells beyond those of the library and its table are an earlier, larger study's.
     length = -(-about["bytes"] // 8)
-    packed = record.values[:length].astype("<i8").tobytes()[: about["bytes"]]
+    packed = bytes_of(record.values, about["bytes"])
     try:
         library = PolicyLibrary.from_bytes(packed, f"study '{name}'")
         tables = _tables(record.values[length:], about.get("table"), about.get("cuts"))
