@@ -10,6 +10,7 @@ for each episode:
         β, p and the task's own counts take in the effects of the act
 an alarm, or effects that tell the task from its type: a new type; else as believed    learn
 count the effects, the best acts, and the belief in this context                       remember
+keep the scenes in which acts have shown relations, as examples                         remember
 
 Where types may change between the episodes of a task, the belief follows them (`changing_recognition`), and types
 learn by span: from the episodes between two changes.
@@ -24,7 +25,7 @@ from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
 from lifelore.agent.long_lived.knowledge import Knowledge, SpanNews, TaskNews
 from lifelore.agent.long_lived.known_types import Effects, KnownTypes
 from lifelore.agent.long_lived.recognition import Belief, Recognition, Span
-from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan
+from lifelore.agent.long_lived.task_family import Abilities, AgentTask, Plan, ShowsRelations
 from lifelore.agent.long_lived.task_log import Decision, TaskLog
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
@@ -99,7 +100,8 @@ def live_task(
         What happened, and the records by which memory adds what was learnt.
     """
     lived, news = attempt_task(knowledge, drawn, task, abilities, settings, name, seed)
-    return lived, knowledge.learn(news)
+    examples = task.relation_examples() if isinstance(task, ShowsRelations) else []
+    return lived, [*knowledge.learn(news), *examples]
 
 
 def attempt_task(

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import DrawnTask
 
 Array = NDArray[np.float64]
@@ -149,6 +150,15 @@ class AgentTask(Protocol):
 
     def describe(self) -> str:
         """The perceived scene in a few words."""
+        ...
+
+
+@runtime_checkable
+class ShowsRelations(AgentTask, Protocol):
+    """A task whose acts show how objects are related."""
+
+    def relation_examples(self) -> list[Record]:
+        """Records by which memory keeps the perceived scenes, with labels of the pairs that acts have shown."""
         ...
 
 

@@ -65,16 +65,17 @@ def store_model(
     words = as_words(model_bytes(model.to_model(), about))
     key = model_key(name)
     records = [Record(KIND, key, VERSION, "newest", np.arange(len(words)), words, {**about, "name": name})]
-    for digest, scene in {scene.digest: scene for scene in scenes}.items():
-        content = as_words(_packed(scene))
-        held = memory.recall(EXAMPLES, f"{key}/{digest}", VERSION)
-        if held is None or not np.array_equal(held.values[: len(content)], content):
-            record = Record(
-                EXAMPLES, f"{key}/{digest}", VERSION, "newest", np.arange(len(content)), content,
-                {"name": name},
-            )  # fmt: skip
+    for record in {record.key: record for record in (scene_record(name, scene) for scene in scenes)}.values():
+        held = memory.recall(EXAMPLES, record.key, VERSION)
+        if held is None or not np.array_equal(held.values[: len(record.values)], record.values):
             records.append(record)
     memory.contribute("relations", records, process=f"learn-relations {uuid4().hex}", seq=0, task=about)
+
+
+def scene_record(name: str, scene: LabelledScene) -> Record:
+    """The record of a scene from which models of a name learn."""
+    words, key = as_words(_packed(scene)), f"{model_key(name)}/{scene.digest}"
+    return Record(EXAMPLES, key, VERSION, "newest", np.arange(len(words)), words, {"name": name})
 
 
 def recall_model(memory: Memory, name: str = DEFAULT_NAME) -> RelationClassifier:

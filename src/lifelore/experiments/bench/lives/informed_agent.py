@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.families.tabletop import TabletopFamily, TabletopTask
+from lifelore.agent.long_lived.families.tabletop import TabletopFamily
+from lifelore.agent.long_lived.families.tabletop_task import TabletopTask
 from lifelore.agent.long_lived.families.tray_features import PerceivedTray, look_with_labels
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.known_types import KnownType, KnownTypes, effect_counts
