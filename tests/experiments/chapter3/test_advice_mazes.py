@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lifelore.action.advice.goal_model import GoalModel
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.experiments.chapter3.advice.mazes import (
     AGENTS,
@@ -29,6 +30,29 @@ CELL = {"loops": 0.1, "maze": 0}
 @pytest.fixture(scope="module")
 def maze():
     return maze_of(SMALL, CELL, 0)
+
+
+def test_closed_goals_bar_the_way_and_their_errands_start_where_a_way_is_left():
+    found = maze_of({**SMALL, "size": 21}, {"loops": 0.4, "maze": 1}, 0, "wall")
+    passing = maze_of({**SMALL, "size": 21}, {"loops": 0.4, "maze": 1}, 0)
+    assert set(found.errands) <= set(passing.errands)
+    for goal, errand in found.errands.items():
+        others = [other for other in passing.errands if other != goal]
+        assert not np.isin(errand.moves, others).any()
+        assert (errand.steps[errand.tables.starts] > 0).all()
+        assert errand.best[errand.tables.starts].any(axis=1).all()
+        reached = errand.steps[errand.moves[errand.best]]
+        assert (reached >= 0).all()
+        assert (errand.steps[errand.tables.starts] >= passing.errands[goal].steps[errand.tables.starts]).all()
+
+
+def test_alpha0_in_the_advice_advises_other_actions_where_experts_passed(maze):
+    goal_models = goal_models_of(SMALL, maze, "walks")
+    plain, spread = (thesis_advisor(SMALL, goal_models, alpha0=a).guide.theta[0] for a in (0.0, 0.5))
+    passed = plain.any(axis=1)
+    counts = GoalModel.pooled(goal_models).prior.counts(np.arange(len(plain)))[passed]
+    np.testing.assert_allclose(spread[passed], (counts + 0.5) / (counts.sum(axis=1, keepdims=True) + 2))
+    assert not spread[~passed].any()
 
 
 def test_cells_are_mazes_by_loop_density():

@@ -6,7 +6,14 @@ import numpy as np
 import pytest
 
 from lifelore.experiments.chapter3.advice.learning import errand_tables, learn_errand
-from lifelore.experiments.chapter3.advice.mazes import errands_of, maze_of
+from lifelore.experiments.chapter3.advice.mazes import (
+    errands_of,
+    goal_models_of,
+    maze_of,
+    policy_of,
+    thesis_advisor,
+    walk,
+)
 from lifelore.experiments.chapter3.c3_16_advised_learning.run import run_cell, summary
 from lifelore.experiments.engine.registry import claim_of
 
@@ -45,6 +52,15 @@ def test_episodes_start_in_one_cell_or_anywhere(maze):
     assert len(any_cell) > 20
 
 
+def test_a_learner_starts_where_the_walkers_do(maze):
+    errand = errands_of(maze, 2)[1]
+    starts = errand_tables(maze, errand, 1, "walker's").starts
+    policy = policy_of(maze.world, "optimal", errand)
+    advisor = thesis_advisor(QUICK, goal_models_of(QUICK, maze, "walks"))
+    assert walk(maze, errand, policy, advisor, 1, 5).states[0] == starts[0]
+    assert len(starts) == 1
+
+
 def test_advice_is_read_in_the_branch_of_epsilon_alone(maze):
     errand = errands_of(maze, 1)[0]
     told = errand.best | ~errand.best.any(axis=1, keepdims=True)
@@ -62,6 +78,14 @@ def test_fewer_episodes_are_the_beginning_of_more(maze):
     errand = errands_of(maze, 1)[0]
     short, long = (learn_errand(QUICK, maze, errand.tables, 0, SCHEDULE, None, n)[1].steps for n in (10, 40))
     assert (long[:10] == short).all()
+
+
+def test_a_building_is_learnt_without_advice_and_with_each_alpha0():
+    small = {**QUICK, "tasks": 1, "episodes": 20, "last": 5}
+    for place, alpha0 in ((0, [None, 0.0, 0.1, 1.0]), (1, [None, 0.0])):
+        found = run_cell(small, {"building": place, "maze": 0}, 0)
+        assert json.loads(json.dumps(found)) == found
+        assert [one["alpha0"] for one in found["beside"]] == alpha0
 
 
 def test_a_cell_is_plain_data_with_every_way_of_learning():

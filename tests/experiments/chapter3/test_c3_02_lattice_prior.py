@@ -10,14 +10,17 @@ from lifelore.core.planning.planning import best_actions
 from lifelore.experiments.chapter3.c3_02_lattice_prior.measure import measure, rows
 from lifelore.experiments.chapter3.c3_02_lattice_prior.run import (
     PLAIN,
+    annealed,
     cells,
     configurations,
+    crossed_choices,
     online_priors,
     run_cell,
     run_of,
+    without_ties,
 )
 from lifelore.experiments.chapter3.learning.grid_tasks import learn_task, rows_of
-from lifelore.experiments.chapter3.learning.schedules import schedule_in_words, schedule_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_in_words, schedule_of, with_learning_rate
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.registry import claim_of
 
@@ -60,7 +63,19 @@ def made_up(first_of, to_80_of):
         found.append(
             {"kind": "online", "run": run, "optimal": 50.0, "plain": -60.0, "same": True, "first_ten": first_ten}
         )
+    for run in range(4):
+        choices = crossed_choices(SETTINGS) if run < SETTINGS["crossed_runs"] else [annealed(SETTINGS)]
+        met = {str(one): one for one in (*map(without_ties, choices), *choices)}.values()
+        methods = [{**one, **_of_choice(one, run)} for one in met]
+        found.append({"kind": "crossed", "run": run, "optimal": 50.0, "methods": methods})
     return found
+
+
+def _of_choice(choice, run):
+    """With the prior all returns are positive; only where α is annealed is it faster."""
+    ties, fast = choice["ties"], choice["learning_rate"][1] < 1
+    numbers = {"first": -40.0, "to_80": 100} if ties is None else {"first": 2.0, "to_80": 50 if fast else 150}
+    return {key: number + run for key, number in numbers.items()} | {"final": 0.9}
 
 
 def by_ties(how, run):
@@ -82,6 +97,31 @@ def test_headline_and_grid_shares_by_hand():
     assert found["optimal_return"].value == 50.0
 
 
+def test_choices_of_learning_by_hand():
+    # Two caps × two kinds of α × two of ties under one ε, without the two that the grid has.
+    assert len(crossed_choices(SETTINGS)) == 8 - 2
+    assert annealed(SETTINGS) in crossed_choices(SETTINGS)
+    found = measure(SETTINGS, made_up(by_ties, slower_for_proportion))
+    assert found["annealed_first_eps_qsap"].value == pytest.approx(3.5)
+    assert found["annealed_first_eps_qsap"].n == 4  # all runs, not those of the other choices alone
+    assert found["annealed_to_80_ratio"].value == pytest.approx(51.5 / 101.5)
+    assert found["crossed_positive_at_once"].value == pytest.approx((2 + 6) / 10)
+    assert found["crossed_faster_to_80"].value == pytest.approx((2 + 4) / 10)
+    assert found["crossed_both"].value == pytest.approx((1 + 4) / 10)
+
+
+def test_a_choice_of_learning_is_learnt_with_its_own_rate_and_cap():
+    choice = annealed(SMALL)
+    found = run_cell({**SMALL, "crossed_runs": 0}, {"kind": "crossed", "run": 0}, 0)["methods"]
+    assert [m["ties"] for m in found] == [None, "uniform"]
+    run = run_of(SMALL, 0, 0)
+    schedule = schedule_of(SMALL, choice["schedule"])
+    np.testing.assert_allclose(with_learning_rate(schedule, [0.5, 0.5, 0.2]).alpha[:4], [0.5, 0.25, 0.2, 0.2])
+    schedule = with_learning_rate(schedule, choice["learning_rate"])
+    first = [learn_task(problem, None, schedule)[0][:10].mean() for problem in run.testing]
+    assert found[0]["first_ten"] == pytest.approx(np.mean(first))
+
+
 def test_online_measures_by_hand():
     found = measure(SETTINGS, made_up(by_ties, slower_for_proportion))
     assert found["online_gain_after_0_learnt"].value == 0.0
@@ -94,7 +134,7 @@ def test_online_measures_by_hand():
 def test_rows_hold_the_whole_grid_and_its_curves():
     found = rows(SETTINGS, made_up(by_ties, slower_for_proportion))
     grid = [row for row in found if "to_80_ratio" in row]
-    assert len(grid) == 5
+    assert len(grid) == 5 + len(crossed_choices(SETTINGS))
     assert grid[0]["form"] is None
     assert grid[0]["to_80_ratio"]["value"] == 1.0
     curves = [row for row in found if "curve_of" in row]
@@ -108,6 +148,7 @@ def test_rows_hold_the_whole_grid_and_its_curves():
     ("overrides", "rule"),
     [
         ({"training_tasks": 7}, "online_tasks must contain 0 and training_tasks"),
+        ({"caps": [100]}, "caps contain max_steps"),
         ({"size": 8}, "size of a lattice must be odd"),
         ({"test_tasks": 4000}, "test_tasks must be at most the 40 cells"),
         ({"online_tasks": [0, 5, 4000]}, "online_tasks must be at most"),
@@ -135,6 +176,7 @@ def test_cells_are_runs_by_schedule_and_an_online_series_each():
     found = cells({**FULL, "runs": 2})
     assert [c["kind"] for c in found].count("grid") == 6
     assert [c["run"] for c in found if c["kind"] == "online"] == [0, 1]
+    assert [c["run"] for c in found if c["kind"] == "crossed"] == [0, 1]
 
 
 @pytest.fixture(scope="module")
@@ -194,9 +236,11 @@ def result():
         for more, (ties, alpha0, form) in enumerate(HOWS):
             how = {"ties": ties, "alpha0": alpha0, "form": form}
             first = number(10.0 * place + more)
-            rows.append(
-                {"schedule": schedule, **how, "first": first, "to_80": number(50.0), "to_80_ratio": number(1.5)}
-            )
+            numbers = {"first": first, "to_80": number(50.0), "to_80_ratio": number(1.5)}
+            rows.append({"schedule": schedule, **how, **numbers, "to_50": number(40.0)})
+            if ties:
+                other = {"schedule": schedule, "ties": ties, "learning_rate": [0.5, 0.9, 0.1], "max_steps": 70}
+                rows.append({**other, **numbers, "first": number(7.0)})
             rows.append({"curve_of": how, "schedule": schedule, "mean": [0, 1], "low": [0, 0], "high": [1, 2]})
     rows.append({"curve_edges": [0, 1, 60]})
     default = {"ties": "uniform", "schedule": SCHEDULES[0], "alpha0": 0.1, "form": "proportion"}
@@ -206,6 +250,8 @@ def result():
         "default": default,
         "episodes": 60,
         "runs": 3,
+        "crossed_runs": 3,
+        "max_steps": 60,
     }
     return {"rows": rows, "settings": settings, "measured": {"optimal_return": number(54.0)}}
 
@@ -214,11 +260,11 @@ def test_every_number_has_its_place():
     figure = CLAIM.draw(result())
     *schedules, first, ratio = figure.axes
     assert len(schedules) == 4
-    assert [text.get_text() for text in first.texts] == ["+1.0", "+2.0", "+11.0", "+12.0"]
-    assert [text.get_text() for text in ratio.texts] == ["1.50"] * 4
+    assert [text.get_text() for text in first.texts] == ["+1.0", "+2.0", "+11.0", "+12.0"] + ["+7.0"] * 4
+    assert [text.get_text() for text in ratio.texts] == ["1.50"] * 8
     # ±1 around 1 and 2 does not leave 0 for certain; around 11 and 12 it does.
-    assert [text.get_fontweight() for text in first.texts] == ["normal", "bold", "bold", "bold"]
-    assert [tick.get_text() for tick in first.get_yticklabels()] == ["proportion, α⁰ 0.1"]
+    assert [text.get_fontweight() for text in first.texts] == ["normal"] + ["bold"] * 7
+    assert [tick.get_text() for tick in first.get_yticklabels()] == ["proportion, α⁰ 0.1", "cap 70, α annealed"]
 
 
 def test_curves_are_drawn_at_the_middle_of_their_blocks():

@@ -1,5 +1,7 @@
 """Measures of C3.15 from made-up cells, by hand."""
 
+from itertools import product
+
 import pytest
 
 from lifelore.core.errors import InputError
@@ -12,7 +14,8 @@ CLAIM = claim_of("C3.15")
 FULL = dict(claim_of("C3.15").sizes["full"])
 QUICK = dict(claim_of("C3.15").sizes["quick"])
 
-SETTINGS = {**QUICK, "tasks": 4, "loops": [0.1, 0.4]}
+SETTINGS = {**QUICK, "tasks": 4, "loops": [0.1, 0.4], "advised_alpha0": [0.1]}
+SETTINGS["buildings"] = QUICK["buildings"][:2]
 ARRIVED = {"none": 1, "thesis": 3, "better": 4, "uniform only": 2, "goal unknown": 1}
 """Of four tasks, by who advises; one less in maze 0, and at loops 0.4 the thesis's advisor does not help."""
 
@@ -52,6 +55,21 @@ def made_up():
             learners = [{"experts": None, "final": [0.0, 100.0 * maze]}]
             learners += [{"experts": e, "final": [1000.0, 900.0]} for e in SETTINGS["experts"]]
             cells.append({"loops": loops, "maze": maze, "walks": walks, "learners": learners})
+    return cells + beside()
+
+
+def beside():
+    """Two buildings of three mazes: alone 100, advised 300 more by maze; with α⁰ 0.1 the bug gains nothing."""
+    cells = []
+    for place, maze in product(range(2), range(3)):
+        rewards = []
+        for alpha0 in (None, 0.0) if place else (None, 0.0, 0.1):
+            for agent in (*AGENTS, "q-learning"):
+                stays = agent == "optimal" or (agent, alpha0) == ("bug", 0.1)
+                gain = 0.0 if alpha0 is None or stays else 300.0 + 100 * maze
+                start = 1000.0 if agent == "optimal" else 100.0
+                rewards.append({"alpha0": alpha0, "agent": agent, "reward": start + gain})
+        cells.append({"building": place, "maze": maze, "walls": 0.25 + 0.25 * place, "rewards": rewards})
     return cells
 
 
@@ -83,8 +101,22 @@ def test_shares_of_the_grid_by_hand():
     assert (found["grid_all_raised"].value, found["grid_all_raised"].n) == (0.5, 4)
 
 
+def test_buildings_beside_the_default_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["one_start_explorers_raised"].value == 4
+    assert (found["one_start_random_none"].value, found["one_start_random_thesis"].value) == (100, 500)
+    assert found["one_start_q-learning_gain"].value == 400
+    assert (found["default_walls"].value, found["open_walls"].value) == (0.25, 0.5)
+    assert found["open_random_gain"].value == 400
+    # Two of four cells of the grid and the open building; not the default with α⁰ 0.1, where the bug stays.
+    assert (found["crossed_all_raised"].value, found["crossed_all_raised"].n) == (0.5, 6)
+
+
 def test_rows_hold_the_whole_grid():
     found = rows(SETTINGS, made_up())
+    by_building = [row for row in found if "building" in row]
+    assert len(by_building) == (2 + 1 + 2) * (len(AGENTS) + 1)
+    found = [row for row in found if "way" in row]
     assert len(found) == 4 * (4 * len(AGENTS) + 2)
     first = next(r for r in found if r["way"] == "thesis" and r["agent"] == "avoid")
     assert (first["gain"], first["gain_is_certain"], first["reward"]) == (500.0, True, 666.7)
@@ -107,6 +139,8 @@ def test_printed_table_and_full_size_are_the_thesiss():
     ("overrides", "rule"),
     [
         ({"q_learning": '{"tasks": 1}'}, "q_learning must have exactly"),
+        ({"buildings": "[]"}, "the first building must be the default"),
+        ({"buildings": '[{"size": 13}]'}, "a building must have name, size, loops, others"),
     ],
 )
 def test_settings_that_limits_cannot_describe(overrides, rule):

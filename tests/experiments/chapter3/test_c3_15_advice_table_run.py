@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.advisor import BETTER
-from lifelore.experiments.chapter3.advice.mazes import goal_models_of, maze_of
+from lifelore.experiments.chapter3.advice.mazes import AGENTS, goal_models_of, maze_of
 from lifelore.experiments.chapter3.c3_15_advice_table.run import better_advisor, run_cell
 from lifelore.experiments.engine.registry import claim_of
 
@@ -34,6 +34,26 @@ def test_nobody_advises_the_unadvised_and_the_better_advisor_keeps_to_its_share(
         assert entry["way"] != "none" or not shares.any()
         assert entry["way"] in ("none", "thesis") or shares.max() <= 0.4
     assert any(sum(entry["advised"]) for entry in cell["walks"] if entry["way"] == "better")
+
+
+def test_a_building_has_every_agent_without_advice_and_with_each_alpha0():
+    small = {**QUICK, "tasks": 2, "q_learning": {**QUICK["q_learning"], "tasks": 1, "episodes": 20}}
+    for place, n_alpha0 in ((0, 1 + 2), (5, 1)):
+        found = run_cell(small, {"building": place, "maze": 0}, 0)
+        assert json.loads(json.dumps(found)) == found
+        assert len(found["rewards"]) == (len(AGENTS) + 1) * (1 + n_alpha0)
+        alone = {r["agent"]: r["reward"] for r in found["rewards"] if r["alpha0"] is None}
+        assert alone["optimal"] == 1000
+        assert 0.4 < found["walls"] < 0.7
+
+
+def test_the_defaults_building_is_the_grids_maze(cell):
+    rewards = run_cell(QUICK, {"building": 0, "maze": 0}, 0)["rewards"]
+    for alpha0, experts, way in ((None, None, "none"), (0.0, "walks", "thesis")):
+        mine = {r["agent"]: r["reward"] for r in rewards if r["alpha0"] == alpha0}
+        for entry in cell["walks"]:
+            if (entry["experts"], entry["way"]) == (experts, way):
+                assert mine[entry["agent"]] == pytest.approx(1000 * np.mean(entry["reached"]))
 
 
 def test_optimal_agents_arrive_unadvised(cell):

@@ -10,6 +10,7 @@ CLAIM = claim_of("C3.16")
 QUICK = dict(claim_of("C3.16").sizes["quick"])
 
 SETTINGS = {**QUICK, "tasks": 2, "episodes": 100, "schedules": [[1.0, 0.999, 0.05]]}
+SETTINGS |= {"buildings": QUICK["buildings"][:2], "advised_alpha0": [0.1]}
 N_BLOCKS = len(block_edges(100)) - 1
 
 
@@ -36,7 +37,16 @@ def made_up():
                 how = {"starts": starts, "schedule": [1.0, 0.999, 0.05], "experts": experts}
                 learners.append({**how, **tasks(firsts), "curve": curve})
         cells.append({"loops": 0.1, "maze": maze, "learners": learners})
-    return cells
+    return cells + [beside(place, maze) for place in range(2) for maze in range(3)]
+
+
+def beside(place, maze):
+    """Advice finds both goals in ten; with α⁰ 0.1 one of them; in the other building chance finds one too."""
+    alone = [5, 100] if place else [100, 100]
+    found = [{"alpha0": None, **tasks(alone)}, {"alpha0": 0.0, **tasks([3, 10])}]
+    if place == 0:
+        found.append({"alpha0": 0.1, **tasks([3, 11])})
+    return {"building": place, "maze": maze, "beside": found}
 
 
 def test_headline_by_hand():
@@ -54,6 +64,20 @@ def test_a_handful_is_one_only_where_chance_does_not_find_it_too():
     found = measure(SETTINGS, made_up())
     # Walks from one start: yes. From anywhere half the goals are found without advice: no. Policies: no.
     assert (found["grid_handful"].value, found["grid_handful"].n) == (0.25, 4)
+
+
+def test_buildings_beside_the_default_by_hand():
+    found = measure(SETTINGS, made_up())
+    assert found["one_start_found_in_ten_advised"].value == 1.0
+    assert found["one_start_found_in_ten_plain"].value == 0.0
+    assert found["one_start_final_gain"].value == 800.0
+    assert found["open_in_ten_plain"].value == 0.5
+    # One of the grid's four cells; not half of the tasks with α⁰ 0.1, nor where chance finds them.
+    assert (found["crossed_handful"].value, found["crossed_handful"].n) == (pytest.approx(1 / 6), 6)
+    by_building = [row for row in rows(SETTINGS, made_up()) if "building" in row]
+    assert [(row["alpha0"], row["in_ten"]) for row in by_building] == [
+        (None, 0.0), (None, 0.5), (0.0, 1.0), (0.0, 1.0), (0.1, 0.5)
+    ]  # fmt: skip
 
 
 def test_rows_hold_the_grid_and_the_curves():

@@ -34,16 +34,24 @@ class GoalModel:
         Actions of the experts by state.
     steps : (n_states,) float64
         Mean number of steps that the experts still had to go, inf in states that no expert passed.
+    advised_alpha0 : float
+        α⁰ of the advice, in states that experts passed; above 0, actions that no expert took are advised at times.
     """
 
     goals: tuple[int, ...]
     prior: ActionPrior
     steps: NDArray[np.float64]
+    advised_alpha0: float = 0.0
+
+    def __post_init__(self) -> None:
+        if not self.advised_alpha0 >= 0:
+            raise InputError(f"advised_alpha0 must be at least 0, got {self.advised_alpha0}")
 
     @property
     def theta(self) -> NDArray[np.float64]:
-        """The advice, (n_states, n_actions): proportions of the counts without α⁰; zeros without counts."""
+        """The advice, (n_states, n_actions): proportions of counts and ``advised_alpha0``; 0 without counts."""
         counts = self.prior.counts(np.arange(len(self.steps)))
+        counts = np.where(counts.any(axis=1, keepdims=True), counts + self.advised_alpha0, counts)
         total = counts.sum(axis=1, keepdims=True)
         return np.divide(counts, total, out=np.zeros_like(counts), where=total > 0)
 

@@ -3,8 +3,10 @@
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+import numpy as np
 from numpy.typing import ArrayLike
 
+from lifelore.experiments.chapter3.advice.buildings import other_choices
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, SKY, VERMILION, Axes
@@ -47,3 +49,29 @@ def draw_maze_grid(
     framed = framed_row, columns.index((default["loops"], default["experts"]))
     draw_heat_grid(axes, values, certain, sides, heads, outlined=framed, **look)
     axes.set(title=title, xlabel="experts, and share of walls opened into loops")
+
+
+def draw_buildings(
+    axes: Axes,
+    settings: Mapping,
+    pairs: Sequence[Sequence[tuple[float, float]]],
+    sides: Sequence[str],
+    **look: Any,
+) -> None:
+    """Draw numbers without and with advice in every building, and with other α⁰ in the advice.
+
+    `pairs` are (n_sides, n_choices), choices in the order of the default and `other_choices`; a cell is shaded by
+    its gain.
+    """
+    named = [building["name"] for building in settings["buildings"]]
+    heads = [
+        f"{named[place]}\nα⁰ {alpha0:g}" if alpha0 else _in_brief(settings["buildings"][place])
+        for place, alpha0 in [(0, 0.0), *other_choices(settings)]
+    ]
+    gains = np.array(pairs)[..., 1] - np.array(pairs)[..., 0]
+    words = iter(f"{alone:.0f} → {advised:.0f}" for row in pairs for alone, advised in row)
+    draw_heat_grid(axes, gains, np.zeros(gains.shape, bool), sides, heads, words=lambda _: next(words), **look)
+
+
+def _in_brief(building: Mapping) -> str:
+    return f"{building['name']}\n{building['size']}², loops {building['loops']:g}"

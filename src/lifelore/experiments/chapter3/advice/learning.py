@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.compiled.random_state import next_uniform, random_state
 from lifelore.core.learning.curve import Curve
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import QLearner, uniform_rows
@@ -17,9 +18,16 @@ from lifelore.experiments.chapter3.advice.mazes import Errand, Maze, errands_of
 
 
 def errand_tables(maze: Maze, found: Errand, number: int, starts: str) -> Tables:
-    """The tables of errand `number`; episodes start in ``"one"`` cell, drawn for the task, or in ``"any"``."""
+    """The tables of errand `number`, by where its episodes start.
+
+    ``"one"``: a cell drawn for the task; ``"any"``: every cell; ``"walker's"``: where agents of fixed policy do.
+    """
     if starts == "any":
         return found.tables
+    if starts == "walker's":
+        random = random_state(stream(*maze.names, "walk", number))
+        first = int(next_uniform(random) * len(found.tables.starts))
+        return found.tables._replace(starts=found.tables.starts[first : first + 1])
     start = stream(*maze.names, "start", number).choice(found.tables.starts, 1)
     return found.tables._replace(starts=start.astype(np.int32))
 

@@ -37,13 +37,15 @@ class Errand(NamedTuple):
     """One task of the maze: its goal, tables, the best moves of every state, and the steps left from there.
 
     best : (n_states, 4) bool, none at the goal
-    steps : (n_states,) float64
+    steps : (n_states,) float64, -1 where closed goals bar the way
+    moves : (n_states, 4) int32, where each move leads, -1 where it is refused
     """
 
     goal: int
     tables: Tables
     best: NDArray[np.bool_]
     steps: NDArray[np.float64]
+    moves: NDArray[np.int32]
 
 
 class Maze(NamedTuple):
@@ -64,21 +66,23 @@ def grid_of(settings: Mapping) -> list[tuple[float, str]]:
     return list(product(settings["loops"], settings["experts"]))
 
 
-def maze_of(settings: Mapping, cell: Mapping, seed: int) -> Maze:
-    """The maze of a cell."""
+def maze_of(settings: Mapping, cell: Mapping, seed: int, others: str = "pass") -> Maze:
+    """The maze of a cell; goals that closed other goals wall in have no errand."""
     names = (seed, "advice", f"{cell['loops']:g}", cell["maze"])
     world = advice_maze(stream(*names, "maze"), settings["size"], cell["loops"])
-    return Maze(world, {int(goal): errand_to(world, int(goal)) for goal in maze_goals(world)}, names)
+    errands = [errand_to(world, int(goal), others) for goal in maze_goals(world)]
+    return Maze(world, {found.goal: found for found in errands if found.tables.starts.size}, names)
 
 
-def errand_to(world: GridWorld, goal: int) -> Errand:
-    """The errand to a goal; equally good moves are all best."""
+def errand_to(world: GridWorld, goal: int, others: str = "pass") -> Errand:
+    """The errand to a goal, from where it can be reached; equally good moves are all best."""
     place = np.zeros(world.n_states, np.int8)
     place[goal] = GOAL
-    moves = world.neighbour
+    tables = errand(world, goal, others).tables()
+    moves = errand(world, goal, others).params[0]
     steps = goal_distances(moves, place).astype(float)
-    best = (moves >= 0) & (steps[moves] == steps[:, None] - 1)
-    return Errand(goal, errand(world, goal).tables(), best, steps)
+    best = (moves >= 0) & (steps[moves] == steps[:, None] - 1) & (steps[:, None] > 0)
+    return Errand(goal, tables._replace(starts=tables.starts[steps[tables.starts] > 0]), best, steps, moves)
 
 
 def errands_of(maze: Maze, n: int) -> list[Errand]:
@@ -112,10 +116,13 @@ def expert_walk(world: GridWorld, found: Errand, start: int, random: np.random.G
     return Trajectory(np.array(states), np.array(actions))
 
 
-def thesis_advisor(settings: Mapping, purposes: Sequence[GoalModel], kappa: float | None = None) -> Advisor:
-    """M₁ pooled over all goals, M₂ uniform."""
+def thesis_advisor(
+    settings: Mapping, purposes: Sequence[GoalModel], kappa: float | None = None, alpha0: float = 0.0
+) -> Advisor:
+    """M₁ pooled over all goals, M₂ uniform; `alpha0` is that of the advice."""
     kappa = settings["kappa"] if kappa is None else kappa
-    return Advisor.of_thesis(purposes, AdviceSettings(kappa, settings["window"]))
+    pooled = replace(GoalModel.pooled(purposes), advised_alpha0=alpha0)
+    return Advisor([pooled], None, AdviceSettings(kappa, settings["window"]))
 
 
 def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64]:
@@ -123,6 +130,7 @@ def policy_of(world: GridWorld, agent: str, found: Errand) -> NDArray[np.float64
     if agent == "optimal":
         chosen = found.best | ~found.best.any(axis=1, keepdims=True)
         return chosen / chosen.sum(axis=1, keepdims=True)
+    world = replace(world, neighbour=found.moves)
     return explorer_probs(world, agent, found.goal if agent == "bug" else None)
 
 

@@ -19,21 +19,22 @@ LABELS = {
 @house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    figure = new_figure(10.4, 8.2)
-    upper, lower = two_rows(figure, (1.0, 0.92))
+    figure = new_figure(10.4, 9.4)
+    upper, lower = two_rows(figure, (1.0, 1.22))
     draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.26, ncols=4)
     _draw_grids(lower, result)
     lower.supxlabel(
         f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
         "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
-        "Bars and ratios: runs that never arrive count as the cap.",
+        "Bars and ratios: runs that never arrive count as all episodes. Last rows: the default's prior under "
+        f"other caps of an episode, and with α annealed ({result['settings']['crossed_runs']} runs).",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
 
 
 def _methods(result: Mapping, schedule: Sequence[float]) -> list[MethodCurve]:
-    cells = ResultsTable([row for row in result["rows"] if "to_80" in row], ("schedule", *KEYS))
+    cells = ResultsTable([row for row in result["rows"] if "to_50" in row], ("schedule", *KEYS))
     found = []
     for row in result["rows"]:
         if "curve_of" in row and row["schedule"] == schedule:
@@ -44,10 +45,17 @@ def _methods(result: Mapping, schedule: Sequence[float]) -> list[MethodCurve]:
 
 
 def _draw_grids(figure: SubFigure, result: Mapping) -> None:
-    settings, side = result["settings"], ("form", "alpha0")
-    cells = [row for row in result["rows"] if row.get("form") and "to_80" in row]
+    settings, side = result["settings"], ("form", "alpha0", "annealed", "max_steps")
+    usual = {"annealed": False, "max_steps": settings["max_steps"]}
+    settings = {**settings, "default": {**settings["default"], **usual}}
+    cells = [{**row, **usual} for row in result["rows"] if row.get("form") and "to_50" in row]
+    prior = {key: settings["default"][key] for key in ("form", "alpha0")}
+    crossed = [row for row in result["rows"] if "learning_rate" in row]
+    cells += [{**row, **prior, "annealed": row["learning_rate"][1] < 1} for row in crossed]
 
-    def name(form: str, alpha0: float | None) -> str:
+    def name(form: str, alpha0: float | None, annealed: bool, max_steps: int) -> str:
+        if annealed or max_steps != usual["max_steps"]:
+            return f"cap {max_steps:,}{', α annealed' * annealed}"
         return form if alpha0 is None else f"{form}, α⁰ {alpha0:g}"
 
     first, ratio = figure.subplots(1, 2, sharey=True)

@@ -6,7 +6,15 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from lifelore.experiments.chapter3.c3_02_lattice_prior.run import KEYS, PLAIN, configurations
+from lifelore.experiments.chapter3.c3_02_lattice_prior.run import (
+    CROSSED_KEYS,
+    KEYS,
+    PLAIN,
+    annealed,
+    configurations,
+    crossed_choices,
+    without_ties,
+)
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.estimates import is_above, is_below, share_of
 from lifelore.experiments.engine.results_table import BAND, ResultsTable
@@ -22,6 +30,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         "to_80_ratio": table.ratio("to_80", prior, plain),
         "optimal_return": mean_estimate(at_default),
         **_grid_shares(settings, table),
+        **_crossed_measures(settings, results),
         **_online_measures(settings, [r for r in results if r["kind"] == "online"]),
     }
 
@@ -44,6 +53,34 @@ def _grid_shares(settings: Mapping, table: ResultsTable) -> dict[str, Estimate]:
         "grid_positive_at_once": share_of(positive),
         "grid_faster_to_80": share_of(faster),
         "grid_both": share_of(np.logical_and(positive, faster)),
+    }
+
+
+def _crossed_table(results: Sequence[Mapping], runs: int) -> ResultsTable:
+    """Choices of learning in the first `runs`; from ``crossed_runs`` on only the default with α annealed."""
+    crossed = [result for result in results if result["kind"] == "crossed" and result["run"] < runs]
+    return ResultsTable.nested(crossed, "methods", keys=CROSSED_KEYS, outer=("run",))
+
+
+def _crossed_measures(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """The headline with α annealed, and the shares of all cells: the grid's and those of choices of learning."""
+    table, printed = _table(results), annealed(settings)
+    every, crossed = (_crossed_table(results, settings[runs]) for runs in ("runs", "crossed_runs"))
+    firsts, ratios = [], []
+    for schedule, how in product(settings["schedules"], configurations(settings)):
+        where = _where(schedule, how)
+        firsts.append(table.mean("first", **where))
+        ratios.append(table.ratio("to_80", where, _where(schedule, PLAIN)))
+    for choice in crossed_choices(settings):
+        firsts.append(crossed.mean("first", **choice))
+        ratios.append(crossed.ratio("to_80", choice, without_ties(choice)))
+    positive, faster = [is_above(x, 0.0) for x in firsts], [is_below(x, 1.0) for x in ratios]
+    return {
+        "annealed_first_eps_qsap": every.mean("first", **printed),
+        "annealed_to_80_ratio": every.ratio("to_80", printed, without_ties(printed)),
+        "crossed_positive_at_once": share_of(positive),
+        "crossed_faster_to_80": share_of(faster),
+        "crossed_both": share_of(np.logical_and(positive, faster)),
     }
 
 
@@ -77,4 +114,15 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             where = _where(schedule, how)
             about = {"curve_of": {key: how[key] for key in KEYS}, "schedule": schedule}
             curves.append(about | table.curve("curve", parts=BAND, **where))
+    grid += _crossed_rows(settings, results)
     return [*grid, {"curve_edges": block_edges(settings["episodes"]).tolist()}, *curves]
+
+
+def _crossed_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """The choices of learning, a row for each."""
+    table, found = _crossed_table(results, settings["crossed_runs"]), []
+    for choice in crossed_choices(settings):
+        numbers = {key: table.mean(key, **choice).to_dict() for key in ("first", "to_80", "final")}
+        ratio = table.ratio("to_80", choice, without_ties(choice)).to_dict()
+        found.append({**choice, **numbers, "to_80_ratio": ratio})
+    return found

@@ -1,9 +1,13 @@
 """Cells of C3.2: every configuration of a prior on the lattice, and the prior accumulated task by task.
 
+The thesis anneals the learning rate too, and does not print the cap of an episode: both are crossed with ε and
+ties, at the default's form and α⁰.
+
 Thesis: §3.4.1, Figure 3.3.
 """
 
 from collections.abc import Mapping, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -18,11 +22,13 @@ from lifelore.domains.grids.lattice import lattice
 from lifelore.experiments.chapter3.learning import grid_tasks
 from lifelore.experiments.chapter3.learning.grid_tasks import Problem, exact_prior, learn_task, rows_of
 from lifelore.experiments.chapter3.learning.grid_tasks import prior_choices as configurations
-from lifelore.experiments.chapter3.learning.schedules import schedule_of
+from lifelore.experiments.chapter3.learning.schedules import schedule_of, with_learning_rate
 from lifelore.experiments.engine.curve_blocks import block_means
 
 KEYS = ("ties", "alpha0", "form")
 """Keys of a configuration."""
+CROSSED_KEYS = ("schedule", "ties", "learning_rate", "max_steps")
+"""Keys of a choice of learning, crossed at the default's form and α⁰; ties are None without a prior."""
 PLAIN = dict.fromkeys(KEYS)
 """The configuration that is Q-learning."""
 
@@ -39,13 +45,17 @@ def cells(settings: Mapping) -> list[dict]:
     """A run under a schedule; and a run with its prior accumulated task by task."""
     runs = range(settings["runs"])
     grid = [{"kind": "grid", "schedule": s, "run": r} for r in runs for s in settings["schedules"]]
-    return grid + [{"kind": "online", "run": r} for r in runs]
+    return grid + [{"kind": kind, "run": r} for kind in ("online", "crossed") for r in runs]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """One run: every configuration under one schedule, or the online series."""
+    """One run: every configuration under one schedule, the online series, or the other choices of learning."""
     run = run_of(settings, seed, cell["run"])
-    found = _grid(settings, run, cell["schedule"]) if cell["kind"] == "grid" else _online(settings, run)
+    if cell["kind"] == "crossed":
+        choices = crossed_choices(settings) if cell["run"] < settings["crossed_runs"] else [annealed(settings)]
+        found = _crossed(settings, run, choices)
+    else:
+        found = _grid(settings, run, cell["schedule"]) if cell["kind"] == "grid" else _online(settings, run)
     optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in run.testing]))
     return {**cell, "optimal": optimal, **found}
 
@@ -82,6 +92,41 @@ def _grid(settings: Mapping, run: Tasks, epsilon: Sequence[float]) -> dict:
         found.append({**how, **grid_tasks.summary(settings, returns, best)})
         if prior is None or all(how[key] == settings["default"][key] for key in ("alpha0", "form")):
             found[-1]["curve"] = block_means(returns)
+    return {"methods": found}
+
+
+def annealed(settings: Mapping) -> dict:
+    """The default with α annealed as ε is: what the thesis prints of its learners."""
+    default = settings["default"]
+    kept = {"schedule": default["schedule"], "ties": default["ties"], "max_steps": settings["max_steps"]}
+    return {**kept, "learning_rate": settings["learning_rates"][-1]}
+
+
+def crossed_choices(settings: Mapping) -> list[dict]:
+    """ε × ties × α × cap, without those that the grid has: the cap ``max_steps`` with a constant α."""
+    values = (settings[key] for key in ("schedules", "ties", "learning_rates", "caps"))
+    choices = [dict(zip(CROSSED_KEYS, one, strict=True)) for one in product(*values)]
+    return [one for one in choices if one["max_steps"] != settings["max_steps"] or one["learning_rate"][1] != 1]
+
+
+def without_ties(choice: Mapping) -> dict:
+    """A choice of learning as Q-learning meets it."""
+    return {**choice, "ties": None}
+
+
+def _crossed(settings: Mapping, run: Tasks, choices: Sequence[Mapping]) -> dict:
+    """Q-learning and the default's prior under choices of learning, each once."""
+    default = settings["default"]
+    prior = exact_prior(run.training[: settings["training_tasks"]], default["alpha0"])
+    best = np.mean([grid_tasks.start_values(p, settings["episodes"]) for p in run.testing], axis=0)
+    met = {str(one): one for choice in choices for one in (without_ties(choice), choice)}
+    found = []
+    for choice in met.values():
+        schedule = schedule_of({**settings, "max_steps": choice["max_steps"]}, choice["schedule"])
+        schedule = with_learning_rate(schedule, choice["learning_rate"])
+        used = None if choice["ties"] is None else prior
+        returns = _mean_returns(run, used, {**default, "ties": choice["ties"]}, schedule)
+        found.append({**choice, **grid_tasks.summary(settings, returns, best)})
     return {"methods": found}
 
 
@@ -133,6 +178,12 @@ def check(settings: Mapping) -> None:
         raise InputError(
             f"online_tasks must contain 0 and training_tasks ({settings['training_tasks']}), "
             f"got {settings['online_tasks']}"
+        )
+    rates = settings["learning_rates"]
+    if rates[0][1] != 1 or settings["max_steps"] not in settings["caps"]:
+        raise InputError(
+            f"learning_rates must begin with a constant one and caps contain max_steps ({settings['max_steps']}), "
+            f"got {rates} and {settings['caps']}"
         )
     n_states = lattice(settings["size"], settings["discount"]).n_states
     for key in ("test_tasks", "online_tasks"):

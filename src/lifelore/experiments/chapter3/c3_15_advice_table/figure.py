@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.experiments.chapter3.advice import figures
+from lifelore.experiments.chapter3.advice.buildings import other_choices
 from lifelore.experiments.chapter3.advice.figures import ADVISORS, AGENTS, EXPLORERS
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
@@ -26,21 +27,23 @@ PRINTED = {
 def draw(result: Mapping) -> Figure:
     """Bars at the default above, the grid of loop densities and experts below."""
     settings = result["settings"]
-    table = ResultsTable(result["rows"], ("loops", "experts", "way", "agent"))
-    figure = new_figure(10.4, 8.4)
-    upper, lower = two_rows(figure, (1, 1.05))
+    table = ResultsTable((row for row in result["rows"] if "way" in row), ("loops", "experts", "way", "agent"))
+    figure = new_figure(10.4, 10.6)
+    upper, lower = two_rows(figure, (1, 1.65))
     axes = upper.subplots()
     _draw_bars(axes, table.select(**settings["default"]))
     upper.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=5)
-    above, below = lower.subplots(2, 1, sharex=True)
+    above, below, beside = lower.subplots(3, 1, height_ratios=(1, 1.6, 1))
     _draw_grid(above, result, table, {"thesis": AGENTS}, 0.0, "Gain by the thesis's advisor")
     above.set_xlabel("")
     better = {"better": [*EXPLORERS, "optimal"], "uniform only": EXPLORERS}
     title = "Reward with the better advisor (goal: 700), and where Uniform is its only other model (*)"
     _draw_grid(below, result, table, better, 700.0, title)
+    _draw_buildings(beside, result)
     lower.supxlabel(
         f"{settings['mazes']} mazes × {settings['tasks']} tasks a cell. Thin lines: 95 % interval over mazes; "
-        "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).",
+        "brackets: advised steps in 100. Bold: the gain's interval excludes 0 (above), at least 700 (below).\n"
+        "Last table: without → with the thesis's advice; all agents start a task in one cell.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -79,6 +82,21 @@ def _write_numbers(axes: Axes, groups: Mapping) -> None:
             height = printed if end - 25 < printed < end + 90 else end
             axes.text(place + 0.2 * g - 0.3, height + 16, number["words"], ha="center", va="bottom", fontsize=7,
                       linespacing=0.95)  # fmt: skip
+
+
+def _draw_buildings(axes: Axes, result: Mapping) -> None:
+    settings = result["settings"]
+    rewards = {
+        (row["building"]["name"], row["alpha0"], row["walker"]): row["reward"]
+        for row in result["rows"]
+        if "walker" in row
+    }
+    walkers = [agent for agent in AGENTS if agent != "optimal"]
+    choices = [(settings["buildings"][place]["name"], a) for place, a in [(0, 0.0), *other_choices(settings)]]
+    pairs = [[(rewards[name, None, agent], rewards[name, a, agent]) for name, a in choices] for agent in walkers]
+    sides = [AGENTS[agent] for agent in walkers]
+    figures.draw_buildings(axes, settings, pairs, sides, neutral=0.0, spread=500.0)
+    axes.set_title("Reward in other buildings, and with α⁰ in the advice")
 
 
 def _draw_grid(axes: Axes, result: Mapping, table: ResultsTable, lines: Mapping, neutral: float, title: str):

@@ -8,8 +8,16 @@ import numpy as np
 
 from lifelore.core.metrics import Estimate
 from lifelore.domains.advice.explorers import EXPLORERS
+from lifelore.experiments.chapter3.advice.buildings import name_of, other_choices
 from lifelore.experiments.chapter3.advice.mazes import AGENTS, grid_of, grid_share, maze_estimate
-from lifelore.experiments.chapter3.c3_15_advice_table.run import BETTER, GOAL_UNKNOWN, NONE, THESIS, UNIFORM_ONLY
+from lifelore.experiments.chapter3.c3_15_advice_table.run import (
+    BETTER,
+    GOAL_UNKNOWN,
+    LEARNER,
+    NONE,
+    THESIS,
+    UNIFORM_ONLY,
+)
 from lifelore.experiments.engine.estimates import exact_value, is_above
 from lifelore.experiments.engine.results_table import ResultsTable
 
@@ -58,7 +66,8 @@ class Rewards:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Rewards at the default by agent and advisor, Q-learning's, and the share of the grid."""
+    """Rewards at the default by agent and advisor, Q-learning's, the share of the grid, and of other buildings."""
+    results, beside = _read_first(results)
     at_default = Rewards(results, **settings["default"])
     found = {
         "explorers_raised": exact_value(at_default.raised(), len(EXPLORERS)),
@@ -73,11 +82,45 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     most = [at_default.advised(BETTER, agent) for agent in EXPLORERS]
     found["better_most_advised"] = exact_value(np.max(most), len(most[0]))
     all_raised = [Rewards(results, *cell).raised() == len(EXPLORERS) for cell in grid_of(settings)]
-    return found | {"grid_all_raised": grid_share(all_raised)}
+    of_buildings, others_raised = _of_buildings(settings, beside)
+    crossed = {"crossed_all_raised": grid_share([*all_raised, *others_raised])}
+    return found | {"grid_all_raised": grid_share(all_raised)} | of_buildings | crossed
+
+
+def _read_first(results: Sequence[Mapping]) -> tuple[list[Mapping], list[Mapping]]:
+    """Results of the grid that the first reading reads, and those of buildings beside it."""
+    return [r for r in results if "walks" in r], [r for r in results if "rewards" in r]
+
+
+def _of_buildings(settings: Mapping, results: Sequence[Mapping]) -> tuple[dict[str, Estimate], list[bool]]:
+    """Table 3.1 where all start alike, other buildings' numbers, and where else all four explorers are raised."""
+    table = ResultsTable.nested(results, "rewards", ("alpha0", "agent"), ("building", "maze"))
+
+    def rewards(building: int, alpha0: float | None, agent: str) -> np.ndarray:
+        return table.values("reward", building=building, alpha0=alpha0, agent=agent)
+
+    def gain(building: int, alpha0: float, agent: str) -> Estimate:
+        return maze_estimate(rewards(building, alpha0, agent) - rewards(building, None, agent))
+
+    def raised(building: int, alpha0: float) -> int:
+        return sum(is_above(gain(building, alpha0, agent), 0.0) for agent in EXPLORERS)
+
+    found = {"one_start_explorers_raised": exact_value(raised(0, 0.0), len(EXPLORERS))}
+    found["one_start_q-learning_gain"] = gain(0, 0.0, LEARNER)
+    for agent in (*AGENTS, LEARNER):
+        for way, alpha0 in ((NONE, None), (THESIS, 0.0)):
+            found[f"one_start_{agent}_{way}"] = maze_estimate(rewards(0, alpha0, agent))
+    for place, building in enumerate(settings["buildings"]):
+        walls = [result["walls"] for result in results if result["building"] == place]
+        found[f"{name_of(building)}_walls"] = maze_estimate(walls)
+        found[f"{name_of(building)}_random_none"] = maze_estimate(rewards(place, None, "random"))
+        found[f"{name_of(building)}_random_gain"] = gain(place, 0.0, "random")
+    return found, [raised(*choice) == len(EXPLORERS) for choice in other_choices(settings)]
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """The whole grid: a row for each cell, advisor and agent, Q-learning last."""
+    """The whole grid: a row for each cell, advisor and agent, Q-learning last; then the buildings beside it."""
+    results, beside = _read_first(results)
     found = []
     for loops, experts in grid_of(settings):
         rewards = Rewards(results, loops, experts)
@@ -92,6 +135,21 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
             gain = None if way == NONE else rewards.learning_gain()
             row = {"loops": loops, "experts": experts, "way": way, "agent": "q-learning"}
             found.append(row | _numbers(maze_estimate(rewards.learning(way)), gain))
+    return found + _building_rows(settings, beside)
+
+
+def _building_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """A row for each building, α⁰ of the advice (None: without advice) and agent."""
+    table = ResultsTable.nested(results, "rewards", ("alpha0", "agent"), ("building", "maze"))
+    found = []
+    for place, alpha0 in [(place, None) for place in range(len(settings["buildings"]))] + [
+        (0, 0.0),
+        *other_choices(settings),
+    ]:
+        for agent in (*AGENTS, LEARNER):
+            reward = maze_estimate(table.values("reward", building=place, alpha0=alpha0, agent=agent))
+            row = {"building": settings["buildings"][place], "alpha0": alpha0, "walker": agent}
+            found.append(row | _numbers(reward, None))
     return found
 
 

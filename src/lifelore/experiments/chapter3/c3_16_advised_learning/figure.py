@@ -5,7 +5,8 @@ from itertools import product
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice.figures import ADVISOR_COLOURS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.buildings import other_choices
+from lifelore.experiments.chapter3.advice.figures import ADVISOR_COLOURS, draw_buildings, draw_maze_grid
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.chapter3.figures.reward_curves import curve_edges
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief, schedule_in_words
@@ -23,18 +24,20 @@ STARTS = {"one": "Every episode of a task starts in one cell", "any": "Episodes 
 def draw(result: Mapping) -> Figure:
     """Learning curves by start above, the grid of open choices below."""
     settings = result["settings"]
-    figure = new_figure(10.4, 6.9)
-    upper, lower = two_rows(figure, (1, 0.95))
+    figure = new_figure(10.4, 8.0)
+    upper, lower = two_rows(figure, (1, 1.3))
     panels = upper.subplots(1, len(settings["starts"]), squeeze=False, sharey=True)[0]
     for axes, starts in zip(panels, settings["starts"], strict=True):
         _draw_starts(axes, result, starts)
     panels[0].set_ylabel("reward of an episode, of 1000")
     panels[-1].legend(loc="lower right")
-    _draw_grid(lower.subplots(), result)
+    grid, beside = lower.subplots(2, 1, height_ratios=(1, 0.25))
+    _draw_grid(grid, result)
+    _draw_buildings(beside, result)
     lower.supxlabel(
         f"Shaded: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} tasks; curves "
         f"at loops {settings['default']['loops']:g}, {schedule_in_words(settings['default']['schedule'])}. "
-        "Framed: the default.",
+        "Framed: the default.\nLast table: learners start where the explorers of C3.15 do.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -57,6 +60,16 @@ def _draw_starts(axes: Axes, result: Mapping, starts: str) -> None:
     axes.set(ylim=(0, 1040), xlabel="episode", xlim=(1, edges[-1]))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.grid(axis="y", color=LIGHT)
+
+
+def _draw_buildings(axes: Axes, result: Mapping) -> None:
+    settings = result["settings"]
+    rows = [row for row in result["rows"] if "building" in row]
+    in_ten = {(row["building"]["name"], row["alpha0"]): 100 * row["in_ten"] for row in rows}
+    choices = [(settings["buildings"][place]["name"], a) for place, a in [(0, 0.0), *other_choices(settings)]]
+    pairs = [[(in_ten[name, None], in_ten[name, a]) for name, a in choices]]
+    draw_buildings(axes, settings, pairs, ["without → with advice"], neutral=0.0, spread=100.0)
+    axes.set_title("Goals found within ten episodes in other buildings, and with α⁰ in the advice (% of tasks)")
 
 
 def _draw_grid(axes: Axes, result: Mapping) -> None:

@@ -6,12 +6,14 @@ from itertools import product
 import numpy as np
 
 from lifelore.core.metrics import Estimate
+from lifelore.experiments.chapter3.advice.buildings import name_of, other_choices
 from lifelore.experiments.chapter3.advice.mazes import grid_of, grid_share, maze_estimate
 from lifelore.experiments.engine.curve_blocks import block_edges
 from lifelore.experiments.engine.results_table import ResultsTable
 
 
 def _table(results: Sequence[Mapping]) -> ResultsTable:
+    results = [result for result in results if "learners" in result]
     return ResultsTable.nested(results, "learners", ("experts", "starts", "schedule"), ("loops",))
 
 
@@ -37,13 +39,46 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         plain, advised = (_by_maze(table, measure, default, with_advice) for with_advice in (False, True))
         found |= {f"{name}_plain": maze_estimate(plain), f"{name}_advised": maze_estimate(advised)}
         found[f"{name}_gain"] = maze_estimate(advised - plain)
-    return found | {"grid_handful": grid_share([_is_handful(table, cell) for cell in _cells(settings)])}
+    handful = [_is_handful(table, cell) for cell in _cells(settings)]
+    one_start, others = _of_buildings(settings, results)
+    return (
+        found | {"grid_handful": grid_share(handful), "crossed_handful": grid_share(handful + others)} | one_start
+    )
 
 
 def _is_handful(table: ResultsTable, cell: Mapping) -> bool:
     """Whether most tasks' goals are found within ten episodes with advice, and at most 1 of 20 without."""
     plain, advised = (_by_maze(table, "in_ten", cell, with_advice).mean() for with_advice in (False, True))
+    return _as_claimed(plain, advised)
+
+
+def _as_claimed(plain: float, advised: float) -> bool:
     return bool(advised > 0.5 and plain <= 0.05)
+
+
+def _beside(results: Sequence[Mapping]) -> ResultsTable:
+    results = [result for result in results if "beside" in result]
+    return ResultsTable.nested(results, "beside", ("alpha0",), ("building", "maze"))
+
+
+def _of_buildings(settings: Mapping, results: Sequence[Mapping]) -> tuple[dict[str, Estimate], list[bool]]:
+    """The default with the explorers' starts, goals found in ten in every building, and where else it holds."""
+    table, found, others = _beside(results), {}, []
+
+    def by_maze(measure: str, place: int, alpha0: float | None) -> np.ndarray:
+        return table.values(measure, building=place, alpha0=alpha0).mean(axis=1)
+
+    for measure, name in (("in_ten", "found_in_ten"), ("final", "final")):
+        plain, advised = by_maze(measure, 0, None), by_maze(measure, 0, 0.0)
+        found |= {f"one_start_{name}_plain": maze_estimate(plain)}
+        found |= {f"one_start_{name}_advised": maze_estimate(advised)}
+        found |= {f"one_start_{name}_gain": maze_estimate(advised - plain)}
+    for place, building in enumerate(settings["buildings"]):
+        for name, alpha0 in (("plain", None), ("advised", 0.0)):
+            found[f"{name_of(building)}_in_ten_{name}"] = maze_estimate(by_maze("in_ten", place, alpha0))
+    for place, alpha0 in other_choices(settings):
+        others.append(_as_claimed(by_maze("in_ten", place, None).mean(), by_maze("in_ten", place, alpha0).mean()))
+    return found, others
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -62,4 +97,10 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         for name, experts in (("plain", None), ("advised", default["experts"])):
             curve = table.curve("curve", 1, **{**default, "starts": starts, "experts": experts})
             found.append({"curve_of": name, "starts": starts} | {key: curve[key] for key in ("mean", "deviation")})
+    beside = _beside(results)
+    plain = [(place, None) for place in range(len(settings["buildings"]))]
+    for place, alpha0 in [*plain, (0, 0.0), *other_choices(settings)]:
+        numbers = {key: beside.values(key, building=place, alpha0=alpha0) for key in ("in_ten", "ever", "final")}
+        means = {key: round(float(values.mean()), 3) for key, values in numbers.items()}
+        found.append({"building": settings["buildings"][place], "alpha0": alpha0, **means})
     return found
