@@ -30,6 +30,10 @@ def reproduce(
     ] = None,
     out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the results.")] = "results",
     seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
+    seeds: Annotated[
+        int | None,
+        typer.Option(metavar="N", help="Run under N seeds and pool them: for verdicts near a bound."),
+    ] = None,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Run claims of the thesis and compare the results.
@@ -48,10 +52,10 @@ def reproduce(
     if quick and full:
         raise InputError("quick and full exclude each other: choose one")
     if verify:
-        if quick or full or settings or seed:
+        if quick or full or settings or seed or seeds:
             raise InputError(
-                "verify takes mode, settings and seed from the stored result; leave out --quick, --full, --set "
-                "and --seed"
+                "verify takes mode, settings and seed from the stored result; leave out --quick, --full, --set, "
+                "--seed and --seeds"
             )
         from lifelore.experiments.engine.verify import verify as run_again
 
@@ -61,14 +65,31 @@ def reproduce(
         if not all(one["equal"] for one in found):
             raise typer.Exit(1)
         return
+    if seeds is not None and engine != "local":
+        raise InputError(
+            f"seeds run on this machine, got engine '{engine}'; run each --seed on the cluster instead"
+        )
     with progress_bar("reproducing") as progress:
         mode, overrides = "full" if full else "quick", _pairs(settings or [])
+        if seeds is not None:
+            from lifelore.experiments.engine.more_seeds import run_seeds
+
+            pools = run_seeds(claims or [], seeds, mode, overrides, jobs, out, seed, progress)
+            print_json(pools) if as_json else _print_pools(pools)
+            return
         results = run(claims or [], mode, overrides, jobs, out, seed, progress, engine, scheduler)
     if as_json:
         print_json(results)
     else:
         for result in results:
             print(f"{result['claim']} ({result['mode']}): {result['verdict']}. {result['why']}")
+
+
+def _print_pools(pools: list[dict]) -> None:
+    for pool in pools:
+        own = ", ".join(f"{one['seed']}: {one['verdict']}" for one in pool["by_seed"])
+        print(f"{pool['claim']} ({pool['mode']}, {len(pool['seeds'])} seeds): {pool['verdict']}. {pool['why']}")
+        print(f"  by seed: {own}")
 
 
 def _print_verified(found: list[dict]) -> None:

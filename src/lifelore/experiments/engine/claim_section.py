@@ -9,7 +9,13 @@ import re
 from collections.abc import Mapping, Sequence
 
 from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.condition_table import COUNTED, Row, condition_table, counted_rows
+from lifelore.experiments.engine.condition_table import (
+    COUNTED,
+    Row,
+    condition_table,
+    counted_rows,
+    measured_now,
+)
 from lifelore.experiments.engine.folded_part import folded_part
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.second_reading import MISSING, NO, OPEN, YES
@@ -25,8 +31,8 @@ def anchor(claim_id: str) -> str:
 
 
 def verdict_now(result: Mapping) -> str:
-    """The verdict of the second reading where there is one, else of the first."""
-    return (result.get("second") or result)["verdict"]
+    """The verdict of the second reading where there is one, over all its seeds, else of the first."""
+    return (result.get("seeds") or result.get("second") or result)["verdict"]
 
 
 def visible_words(section: str) -> int:
@@ -46,7 +52,7 @@ def claim_section(result: Mapping, figures: str) -> str:
         return "\n".join(
             [
                 *_opening(claim, result),
-                *condition_table(rows, words, result["measured"]),
+                *condition_table(rows, words, measured_now(result)),
                 f"![{claim.title}]({figures}/{claim.id}/figure.png)",
                 "",
                 _why(result, rows),
@@ -82,6 +88,8 @@ def _opening(claim: Claim, result: Mapping) -> list[str]:
     first, second = result["verdict"], result.get("second")
     now = verdict_now(result).capitalize()
     reading = f"first reading: {first}" if second else "first reading; there is no second yet"
+    if result.get("seeds"):
+        reading = f"{len(result['seeds']['seeds'])} seeds pooled; {reading}"
     where = f" {claim.where}." if claim.where else ""
     return [
         f'<a id="{anchor(claim.id)}"></a>',
@@ -110,7 +118,13 @@ def _why(result: Mapping, rows: Sequence[Row]) -> str:
         names = [f"*{row.condition.name}*" for row in rows if row.answer == answer]
         if names:
             words.append(f"{kind}: {'; '.join(names[:4])}" + (f"; and {len(names) - 4} more" if names[4:] else ""))
-    return f"**{verdict_now(result).capitalize()}, because** {'. '.join(words)}."
+    return f"**{verdict_now(result).capitalize()}, because** {'. '.join(words)}.{_on_seeds(result)}"
+
+
+def _on_seeds(result: Mapping) -> str:
+    """Whether a single seed would have had another verdict."""
+    own = [one["verdict"] for one in (result.get("seeds") or {}).get("by_seed", ())]
+    return f" The verdict depends on the seed: {', '.join(own)}." if len(set(own)) > 1 else ""
 
 
 def _causes(claim: Claim, names: Sequence[str]) -> list[str]:

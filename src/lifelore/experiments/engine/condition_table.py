@@ -23,9 +23,14 @@ class Row(NamedTuple):
     answer: str
 
 
+def measured_now(result: Mapping) -> dict[str, Mapping]:
+    """The numbers of a result, those pooled over seeds in place of the first seed's."""
+    return {**result["measured"], **(result.get("seeds") or {}).get("pooled", {})}
+
+
 def counted_rows(claim: Claim, result: Mapping) -> list[Row]:
     """The conditions that decide: of the second reading where there is one, else those of the first."""
-    measured = result["measured"]
+    measured = measured_now(result)
     if claim.second and result.get("second"):
         return [
             Row(one.role, one.condition, bounds_in_words(one.condition), one.answer(measured))

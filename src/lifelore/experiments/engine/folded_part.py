@@ -12,7 +12,7 @@ from lifelore.experiments.engine.condition_table import (
     first_rows,
     measured_in_words,
 )  # fmt: skip
-from lifelore.experiments.engine.predicate import FAILS, short
+from lifelore.experiments.engine.predicate import FAILS, number_in_words, short
 
 
 def folded_part(claim: Claim, result: Mapping, causes: Sequence[str]) -> list[str]:
@@ -23,6 +23,7 @@ def folded_part(claim: Claim, result: Mapping, causes: Sequence[str]) -> list[st
         *causes,
         *([claim.more, ""] if claim.more else []),
         *_second_reading(claim, result),
+        *_seeds(result),
         *_first_reading(claim, result),
         f"**Settings.** Mode {result['mode']}, seed {result['seed']}, {short(result['seconds'])} s of computing. "
         f"{_settings_in_words(result['settings'])}.",
@@ -45,6 +46,24 @@ def _second_reading(claim: Claim, result: Mapping) -> list[str]:
     return [
         f"**Second reading: {result['second']['verdict']}.** {claim.second.why}", "",
         "| counts as | condition | asked | measured [95\u00a0%] | met |", "|---|---|---|---|---|", *rows, "",
+    ]  # fmt: skip
+
+
+def _seeds(result: Mapping) -> list[str]:
+    """The numbers of each seed, where several were pooled."""
+    pool = result.get("seeds")
+    if not pool:
+        return []
+    heads = [f"seed {one['seed']}: {one['verdict']}" for one in pool["by_seed"]]
+    rows = [
+        f"| {name} | {number_in_words(number)} | "
+        + " | ".join(number_in_words(one["measured"][name]) for one in pool["by_seed"])
+        + " |"
+        for name, number in pool["pooled"].items()
+    ]
+    return [
+        f"**{len(heads)} seeds: {pool['verdict']}.** The table above is of the first seed.", "",
+        f"| number | pooled | {' | '.join(heads)} |", "|---|---|" + "---|" * len(heads), *rows, "",
     ]  # fmt: skip
 
 

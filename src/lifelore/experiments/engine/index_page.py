@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from lifelore.experiments.engine.claim_section import anchor, verdict_now
 from lifelore.experiments.engine.condition_table import counted_rows
 from lifelore.experiments.engine.ledger import entries
+from lifelore.experiments.engine.more_seeds import deciding_conditions
 from lifelore.experiments.engine.predicate import FAILS, HOLDS, IN_PART, UNTESTED, VERDICTS
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.second_reading import NO, SECOND_VERDICTS, UNDECIDED
@@ -41,6 +42,10 @@ after the first reading's result was known.
   missed.
 - **undecided**: an interval spans its bound.
 - **does not hold**: otherwise. Our own extras are shown apart and never count.
+
+Where a verdict would turn if one number moved by its interval's width, three more seeds are run at full size and
+pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their values, with the interval of a mean of
+independent numbers. The pool decides, and the claim's section says where single seeds disagree.
 """
 
 
@@ -103,6 +108,7 @@ def _without_answer(found: Sequence[Mapping]) -> list[str]:
     absent += [f"- {_link(r['claim'])}: {claim_of(r['claim']).ran}" for r in found if verdict_now(r) == UNTESTED]
     lines = ["## Claims without an answer, and why", "", *(absent or ["Every claim has an answer."]), ""]
     once = [r["claim"] for r in found if not r.get("second")]
+    near = [r["claim"] for r in found if r.get("second") and not r.get("seeds") and _is_close(r)]
     filed = [claim_id for claim_id in once if claim_of(claim_id).second is not None]
     for ids, why in (
         (filed, "The second reading of these claims is filed; its full run has not been made yet"),
@@ -110,10 +116,19 @@ def _without_answer(found: Sequence[Mapping]) -> list[str]:
             [claim_id for claim_id in once if claim_id not in filed],
             "No second reading of these claims is filed yet",
         ),
+        (
+            near,
+            "These verdicts would turn if one number moved by its interval's width; three more seeds have"
+            " not run yet",
+        ),
     ):
         if ids:
             lines += [f"{why}: {', '.join(map(_link, ids))}.", ""]
     return lines
+
+
+def _is_close(result: Mapping) -> bool:
+    return bool(deciding_conditions(claim_of(result["claim"]), result["measured"]))
 
 
 def _why_absent(claim_id: str) -> str:
@@ -135,9 +150,10 @@ def _tables(found: Sequence[Mapping]) -> list[str]:
             "|---|---|---|---|---|",
         ]
         for result in results:
-            claim_id, second = result["claim"], result.get("second")
+            claim_id = result["claim"]
             verdict = result["verdict"] if result["mode"] == "full" else f"{result['verdict']} (quick run)"
-            again = f"**{second['verdict']}**" if second else "–"
+            again = f"**{verdict_now(result)}**" if result.get("second") else "–"
+            again += f" ({len(result['seeds']['seeds'])} seeds)" if result.get("seeds") else ""
             title = claim_of(claim_id).title
             lines.append(f"| {_link(claim_id)} | {where[claim_id]} | {title} | **{verdict}** | {again} |")
         lines.append("")
@@ -146,7 +162,7 @@ def _tables(found: Sequence[Mapping]) -> list[str]:
 
 def _counts(found: Sequence[Mapping]) -> list[str]:
     counts = [f"{sum(r['verdict'] == v for r in found)} {v}" for v in VERDICTS]
-    seconds = [result["second"]["verdict"] for result in found if result.get("second")]
+    seconds = [verdict_now(result) for result in found if result.get("second")]
     again = [f"{seconds.count(v)} {v}" for v in SECOND_VERDICTS if v in seconds]
     left = len(entries()) - len(found)
     lines = []

@@ -11,9 +11,10 @@ from pathlib import Path
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.experiments.engine.cell_store import write_atomically
-from lifelore.experiments.engine.claim_section import claim_section
+from lifelore.experiments.engine.claim_section import claim_section, verdict_now
 from lifelore.experiments.engine.index_page import CHAPTERS, chapter_of, index_page
 from lifelore.experiments.engine.ledger import entries
+from lifelore.experiments.engine.more_seeds import FILE
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import own_rows
 
@@ -32,7 +33,7 @@ def render_pages(results: str | Path = "results", figures: str = "../../results"
     figures : str
         The same folder as the pages' links see it.
     """
-    found = read_results(results)
+    found = pooled_results(results)
     pages = {"index.md": index_page(found, figures)}
     for number, title in CHAPTERS.items():
         sections = [claim_section(result, figures) for result in found if chapter_of(result["claim"]) == number]
@@ -70,13 +71,23 @@ def read_results(results: str | Path) -> list[dict]:
     return found
 
 
+def pooled_results(results: str | Path) -> list[dict]:
+    """`read_results`, each with the pool of its seeds under ``seeds`` where several have run."""
+    found = read_results(results)
+    for result in found:
+        path = Path(results) / result["claim"] / FILE
+        if path.exists():
+            result["seeds"] = json.loads(path.read_text(encoding="utf-8"))
+    return found
+
+
 def verdicts(results: str | Path) -> dict[str, list[tuple[str, str | None, str | None]]]:
     """By chapter: id, verdict of the first and of the second reading of every claim of the ledger."""
-    found = {result["claim"]: result for result in read_results(results)}
+    found = {result["claim"]: result for result in pooled_results(results)}
     rooms: dict[str, list[tuple[str, str | None, str | None]]] = {title: [] for title in CHAPTERS.values()}
     for entry in entries():
         result = found.get(entry.id, {})
-        second = (result.get("second") or {}).get("verdict")
+        second = verdict_now(result) if result.get("second") else None
         rooms[CHAPTERS[chapter_of(entry.id)]].append((entry.id, result.get("verdict"), second))
     return rooms
 

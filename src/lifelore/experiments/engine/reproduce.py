@@ -100,25 +100,32 @@ def reproduce(
     sizes = [len(claim.cells(settings)) for claim, settings in chosen]
     results, before = [], 0
     for (claim, settings), size in zip(chosen, sizes, strict=True):
-        shown = _part_of(progress, before, sum(sizes)) if progress else _silent
-        results.append(_run(claim, mode, settings, jobs, Path(out), seed, shown, scheduler))
+        shown = part_of(progress, before, sum(sizes)) if progress else None
+        results.append(run_claim(claim, mode, settings, jobs, Path(out), seed, shown, scheduler))
+        _write(claim, results[-1], result_folder(Path(out) / claim.id, mode))
         before += size
     return results
 
 
-def _part_of(progress: Progress, before: int, total: int) -> Progress:
+def part_of(progress: Progress, before: int, total: int) -> Progress:
     """Progress of one claim as a part of the cells of all claims."""
     return lambda done, _, label: progress(before + done, total, label)
 
 
-def _run(
-    claim: Claim, mode: str, settings: dict, jobs: int, out: Path, seed: int, progress, scheduler: str | None
+def run_claim(
+    claim: Claim,
+    mode: str,
+    settings: dict,
+    jobs: int,
+    out: Path,
+    seed: int,
+    progress: Progress | None = None,
+    scheduler: str | None = None,
 ) -> dict:
+    """The result of one claim under one seed; its cells are kept, the result is not written."""
     store = _store(claim, settings, seed, out)
-    kept = _run_cells(claim, settings, seed, store, jobs, progress, scheduler)
-    result = finish(claim, mode, settings, seed, kept)
-    _write(claim, result, _folder(out / claim.id, mode))
-    return result
+    kept = _run_cells(claim, settings, seed, store, jobs, progress or _silent, scheduler)
+    return finish(claim, mode, settings, seed, kept)
 
 
 def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
@@ -132,7 +139,7 @@ def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
     return CellStore(out / "shared" / "cells", {"run": run, "settings": read, **made})
 
 
-def _folder(folder: Path, mode: str) -> Path:
+def result_folder(folder: Path, mode: str) -> Path:
     """Where a result goes: evidence is never overwritten by a quick run."""
     kept = folder / "result.json"
     evidence = kept.is_file() and json.loads(kept.read_text())["mode"] == "full"

@@ -1,0 +1,151 @@
+"""A claim under several seeds, pooled: for verdicts that lie so near a bound that a seed may decide them.
+
+The seeds are independent. Of values v_i with intervals [v_i − l_i, v_i + h_i] under k seeds, the pool has
+
+    v = mean v_i,   [v − √(Σ l_i²) / k,  v + √(Σ h_i²) / k]
+
+Only the counted conditions of the second reading are pooled. Where the seeds' own verdicts differ, the page says
+that the verdict depends on the seed.
+"""
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from lifelore.core.errors import InputError
+from lifelore.core.protocols import Progress
+from lifelore.core.usable_cores import usable_cores
+from lifelore.experiments.engine.cell_store import write_atomically
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.condition_table import COUNTED
+from lifelore.experiments.engine.predicate import Measured
+from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.reproduce import part_of, result_folder, rounded, run_claim
+
+FILE = "seeds.json"
+
+
+def run_seeds(
+    ids: Sequence[str],
+    n_seeds: int,
+    mode: str = "quick",
+    overrides: Mapping[str, Any] | None = None,
+    jobs: int | None = None,
+    out: str | Path = "results",
+    seed: int = 0,
+    progress: Progress | None = None,
+) -> list[dict]:
+    """Run claims under `n_seeds` seeds from `seed` on, and write the pool to ``<out>/<ID>/seeds.json``.
+
+    The first seed's stored result is taken where it has the same settings.
+
+    Returns
+    -------
+    list of dict
+        ``claim``, ``mode``, ``seeds``, ``settings``, ``pooled`` (numbers of the counted conditions), ``verdict``,
+        ``why``, ``by_seed`` (``seed``, ``verdict``, ``measured``, ``seconds``, ``made`` of each).
+
+    Raises
+    ------
+    InputError
+        Fewer than two seeds; a claim without a second reading; else as `reproduce`.
+    """
+    if n_seeds < 2:
+        raise InputError(f"seeds must be at least 2, got {n_seeds}; leave it out to run one")
+    if not ids:
+        raise InputError("seeds runs the claims that are named, and none is; name some, such as C3.17")
+    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids)]
+    if once := [claim.id for claim in claims if claim.second is None]:
+        raise InputError(f"seeds are pooled for second readings alone; {', '.join(once)} has none")
+    jobs = usable_cores() if jobs is None else jobs
+    found = []
+    for place, claim in enumerate(claims):
+        settings = claim.settings(mode, overrides)
+        folder, n_cells = result_folder(Path(out) / claim.id, mode), len(claim.cells(settings))
+        results = []
+        for number in range(n_seeds):
+            before = (place * n_seeds + number) * n_cells
+            shown = part_of(progress, before, len(claims) * n_seeds * n_cells) if progress else None
+            kept = _stored(folder, mode, settings, seed) if number == 0 else None
+            results.append(kept or run_claim(claim, mode, settings, jobs, Path(out), seed + number, shown))
+        found.append(_pool(claim, results))
+        write_atomically(folder / FILE, json.dumps(found[-1], indent=1, ensure_ascii=False) + "\n")
+    return found
+
+
+def _stored(folder: Path, mode: str, settings: Mapping, seed: int) -> dict | None:
+    """The stored result of one seed, if it has these settings and a second reading."""
+    path = folder / "result.json"
+    if not path.is_file():
+        return None
+    kept = json.loads(path.read_text(encoding="utf-8"))
+    same = (kept["mode"], kept["settings"], kept["seed"]) == (mode, settings, seed)
+    return kept if same and kept.get("second") else None
+
+
+def _pool(claim: Claim, results: Sequence[Mapping]) -> dict:
+    assert claim.second is not None, "run_seeds has looked"
+    read = sorted({one.condition.measure for one in claim.second.conditions if one.role in COUNTED})
+    missing = {"value": None, "ci95": None, "n": 0}
+    measured = {name: [result["measured"].get(name, missing) for result in results] for name in read}
+    pool = {name: rounded(pooled(numbers)) for name, numbers in measured.items()}
+    return {
+        "claim": claim.id,
+        "mode": results[0]["mode"],
+        "seeds": [result["seed"] for result in results],
+        "settings": results[0]["settings"],
+        "pooled": pool,
+        "verdict": claim.second.verdict(pool),
+        "why": claim.second.said(pool),
+        "by_seed": [
+            {
+                "seed": result["seed"],
+                "verdict": result["second"]["verdict"],
+                "measured": {name: result["measured"].get(name) for name in read},
+                "seconds": result["seconds"],
+                "made": result["made"],
+            }
+            for result in results
+        ],
+    }
+
+
+def pooled(numbers: Sequence[Mapping]) -> dict[str, Any]:
+    """One number under several seeds, pooled; without a value where a seed has none.
+
+    >>> ones = [{"value": 1.0, "ci95": [0.0, 2.0], "n": 5}, {"value": 2.0, "ci95": [1.0, 3.0], "n": 5}]
+    >>> {key: value for key, value in pooled(ones).items() if key != "ci95"}
+    {'value': 1.5, 'n': 10}
+    >>> [round(end, 3) for end in pooled(ones)["ci95"]]
+    [0.793, 2.207]
+    """
+    n = sum(number["n"] for number in numbers)
+    if any(number["value"] is None for number in numbers):
+        return {"value": None, "ci95": None, "n": n}
+    value = float(np.mean([number["value"] for number in numbers]))
+    if not all(number["ci95"] and None not in number["ci95"] for number in numbers):
+        return {"value": value, "ci95": None, "n": n}
+    apart = np.array([[number["value"] - end for end in number["ci95"]] for number in numbers])
+    low, high = np.sqrt((apart**2).sum(axis=0)) / len(numbers)
+    return {"value": value, "ci95": [value - float(low), value + float(high)], "n": n}
+
+
+def deciding_conditions(claim: Claim, measured: Measured) -> list[str]:
+    """Names of the conditions whose number would turn the verdict if it moved by its interval's width."""
+    found = []
+    for one in claim.second.conditions if claim.second else ():
+        number = measured.get(one.condition.measure)
+        if one.role not in COUNTED or one.exact or not number or not number["ci95"] or None in number["ci95"]:
+            continue
+        width = number["ci95"][1] - number["ci95"][0]
+        moved = [
+            number | {"value": number["value"] + by, "ci95": [end + by for end in number["ci95"]]}
+            for by in (-width, width)
+        ]
+        verdicts = {claim.second.verdict({**measured, one.condition.measure: other}) for other in moved}
+        if verdicts != {claim.second.verdict(measured)}:
+            found.append(one.condition.name)
+    return found

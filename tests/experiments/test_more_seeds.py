@@ -1,0 +1,139 @@
+"""Several seeds of a claim, pooled. A small claim of our own counts what is run."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.metrics import mean_estimate
+from lifelore.experiments.engine import more_seeds, reproduce
+from lifelore.experiments.engine.claim import Claim
+from lifelore.experiments.engine.claim_section import claim_section, verdict_now, visible_words
+from lifelore.experiments.engine.folded_part import folded_part
+from lifelore.experiments.engine.more_seeds import deciding_conditions, pooled, run_seeds
+from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.second_reading import SecondReading
+from lifelore.figures.style import house_style, new_figure
+
+RAN = []
+FIRST = Predicate.from_data(
+    {
+        "conditions": [
+            {"name": "up", "measure": "x", "part": "value", "op": ">", "bound": 0, "words": "x is positive"}
+        ],
+        "rules": [{"verdict": "holds", "all": ["up"]}],
+    }
+)
+SECOND = SecondReading.from_data(
+    {
+        "why": "by the interval",
+        "conditions": [
+            {"role": "headline", "first": "up"},
+            {
+                "role": "detail", "name": "other", "measure": "y", "op": ">", "bound": 0,
+                "words": "y is positive",
+            },
+        ],
+    },
+    FIRST,
+)  # fmt: skip
+
+
+def run_cell(settings, cell, seed):
+    RAN.append((seed, cell["i"]))
+    return {"x": settings["shift"] + (cell["i"] % 2) + 0.1 * seed}
+
+
+def draw(result):
+    with house_style():
+        figure = new_figure(2, 2)
+        figure.subplots().plot([0, 1], [0, len(result["rows"])])
+    return figure
+
+
+@pytest.fixture
+def toy(monkeypatch):
+    settings = {"n": 6, "shift": -0.4}
+    claim = Claim(
+        id="C3.1", title="toy", thesis="says", ran="ran", sizes={"quick": settings, "full": settings},
+        predicate=FIRST, second=SECOND,
+        cells=lambda s: [{"i": i} for i in range(s["n"])],
+        run_cell=run_cell,
+        measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
+        rows=lambda s, results: list(results),
+        draw=draw,
+    )  # fmt: skip
+    for module in (reproduce, more_seeds):
+        monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
+    monkeypatch.setattr(reproduce, "source_key", lambda name: "code")
+    monkeypatch.setattr(reproduce, "provenance", lambda name, data: {"source": "code", "cores": 1})
+    monkeypatch.setattr(reproduce, "versions", lambda name: {})
+    RAN.clear()
+    return claim
+
+
+def test_the_pool_is_a_mean_of_independent_numbers():
+    ones = [{"value": 1.0, "ci95": [0.0, 3.0], "n": 5}, {"value": 3.0, "ci95": [1.0, 5.0], "n": 7}]
+    pool = pooled(ones)
+    assert (pool["value"], pool["n"]) == (2.0, 12)
+    assert pool["ci95"] == pytest.approx([2 - (1**2 + 2**2) ** 0.5 / 2, 2 + (2**2 + 2**2) ** 0.5 / 2])
+    assert pooled([ones[0]] * 4)["ci95"] == pytest.approx([1 - 1 / 2, 1 + 2 / 2])
+
+
+def test_a_number_that_a_seed_has_not_measured_is_missing():
+    one = {"value": 1.0, "ci95": [0.0, 3.0], "n": 5}
+    assert pooled([one, {"value": None, "ci95": None, "n": 0}]) == {"value": None, "ci95": None, "n": 5}
+    assert pooled([one, {"value": 2.0, "ci95": None, "n": 1}])["ci95"] is None
+
+
+def test_seeds_decide_what_one_leaves_open(toy, tmp_path):
+    reproduce.reproduce(["C3.1"], "full", out=tmp_path)
+    alone = json.loads((tmp_path / "C3.1" / "result.json").read_text())
+    assert alone["second"]["verdict"] == "undecided"
+    assert deciding_conditions(toy, alone["measured"]) == ["up"]
+    calls = []
+    (pool,) = run_seeds(["C3.1"], 4, "full", out=tmp_path, progress=lambda *call: calls.append(call))
+    assert pool["verdict"] == "holds"
+    assert [one["seed"] for one in pool["by_seed"]] == pool["seeds"] == [0, 1, 2, 3]
+    assert sorted(RAN) == [(seed, i) for seed in range(4) for i in range(6)]  # seed 0 once
+    assert calls[-1][:2] == (24, 24)
+    assert json.loads((tmp_path / "C3.1" / "seeds.json").read_text()) == pool
+    assert set(pool["pooled"]) == {"x"}, "only what the verdict counts"
+    # Finished cells are taken up.
+    assert run_seeds(["C3.1"], 4, "full", out=tmp_path) == [pool]
+    assert len(RAN) == 24
+
+
+def test_a_verdict_that_no_number_can_turn_by_its_width_needs_no_more_seeds(toy, tmp_path):
+    (far,) = reproduce.reproduce(["C3.1"], "full", {"shift": 5.0}, out=tmp_path)
+    assert far["second"]["verdict"] == "holds"
+    assert deciding_conditions(toy, far["measured"]) == []
+
+
+def test_the_page_shows_the_pool_and_that_it_depends_on_the_seed(toy, tmp_path, monkeypatch):
+    from lifelore.experiments.engine import claim_section as page
+
+    monkeypatch.setattr(page, "claim_of", lambda claim_id: toy)
+    reproduce.reproduce(["C3.1"], "full", out=tmp_path)
+    (pool,) = run_seeds(["C3.1"], 4, "full", out=tmp_path)
+    result = json.loads((tmp_path / "C3.1" / "result.json").read_text()) | {"seeds": pool, "made": None}
+    assert verdict_now(result) == "holds"
+    section = claim_section(result, "results")
+    own = [one["verdict"] for one in pool["by_seed"]]
+    assert len(set(own)) > 1
+    assert "**Holds** (4 seeds pooled; first reading: holds)." in section
+    assert f"The verdict depends on the seed: {', '.join(own)}." in section
+    assert visible_words(section) < 120
+    assert "**4 seeds: holds.**" in "\n".join(folded_part(toy, result, ()))
+
+
+def test_what_cannot_be_pooled_is_refused(toy, tmp_path, monkeypatch):
+    with pytest.raises(InputError, match="at least 2"):
+        run_seeds(["C3.1"], 1, out=tmp_path)
+    with pytest.raises(InputError, match="named"):
+        run_seeds([], 4, out=tmp_path)
+    monkeypatch.setattr(more_seeds, "claim_of", lambda claim_id: replace(toy, second=None))
+    with pytest.raises(InputError, match=r"C3\.1 has none"):
+        run_seeds(["C3.1"], 4, out=tmp_path)
+    assert RAN == []
