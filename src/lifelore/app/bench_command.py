@@ -12,8 +12,8 @@ def bench(
             help="Speed: kernels, start, buildings, capacity, large_memory, merge, priors, factory, separator, "
             "perceive, reuse, long_user, serve, soak, log. Benefit: fleet, customer_fleet, courier, recognition, "
             "lidar, destinations, tabletop_lives, worlds, contexts, raw_frames, segmentation, relations, plans, "
-            "puzzles, views, registration, pictures, deep, deep_layouts, novelty, changing_types, bands, "
-            "perfect_information, advice_classes, long_lived_worlds, changing_customers. "
+            "puzzles, views, registration, pictures, lived_relations, deep, deep_layouts, novelty, "
+            "changing_types, bands, perfect_information, advice_classes, long_lived_worlds, changing_customers. "
             "Statistics: evaluation."
         ),
     ],

@@ -22,6 +22,7 @@ BENCHES = {
     "plans": "perception",
     "puzzles": "perception",
     "pictures": "perception",
+    "lived_relations": "perception",
     "views": "perception",
     "registration": "perception",
     "segmentation": "perception",
@@ -75,8 +76,8 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
         for ``puzzles``: lots of 20 puzzles; for ``perfect_information``: groups of ten tasks in each world;
         for ``deep``: runs of learning; for ``serve``: at most 5; for ``soak``: minutes; for ``tabletop_lives``:
         five lives each; for ``long_lived_worlds``: lives, half as many outside the factory; for
-        ``changing_customers``: lives; for ``customer_fleet``: worlds; for ``evaluation``: 60 simulated studies
-        each; for ``novelty``: libraries of each case.
+        ``changing_customers`` and ``lived_relations``: lives; for ``customer_fleet``: worlds; for ``evaluation``:
+        60 simulated studies each; for ``novelty``: libraries of each case.
     map : str, optional
         For those of `WITH_MAP`: a ROS map to live in; default generated offices.
     progress : callable, optional

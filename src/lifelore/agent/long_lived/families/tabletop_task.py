@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.families.outcome_planning import OutcomeModel, OutcomePlanner
-from lifelore.agent.long_lived.families.pick_lessons import LIVED
+from lifelore.agent.long_lived.families.pick_lessons import LIVED, Lesson, TrayPairs
 from lifelore.agent.long_lived.families.tray_features import (
     PerceivedTray,
     look_with_labels,
@@ -45,7 +45,6 @@ from lifelore.domains.tabletop_job.events import Events
 from lifelore.domains.tabletop_job.job import LONGEST, TabletopJob
 from lifelore.domains.tabletop_job.job_replay import JobReplay
 from lifelore.domains.tabletop_job.job_types import BRING
-from lifelore.perception.pairs.scene_pairs import ScenePairs
 
 Array = NDArray[np.float64]
 
@@ -90,7 +89,7 @@ class TabletopTask:
     ) -> None:
         self.job, self._look = job, look
         self._graph = TrayGraph()
-        self._shown: dict[Done, tuple[ScenePairs, dict[frozenset[int], PairLabel]]] = {}
+        self._shown: dict[Done, tuple[TrayPairs, dict[frozenset[int], PairLabel]]] = {}
         self.begin()
 
     # ---- the scene ----------------------------------------------------------------------------------
@@ -157,16 +156,18 @@ class TabletopTask:
     def _note_relations(self, lifted: int, events: Events) -> None:
         if self._seen is not None and self._seen.pairs is not None:
             found = self._seen.pairs.shown_by(lifted, events.spilled, events.knocked)
-            _, labels = self._shown.setdefault(self._done, (self._seen.pairs.pairs, {}))
+            _, labels = self._shown.setdefault(self._done, (self._seen.pairs, {}))
             labels |= {frozenset((label.a, label.b)): label for label in found}
+
+    def lessons(self) -> dict[Done, Lesson]:
+        """What picks have shown so far, by the actions that led to each tray."""
+        return {
+            done: Lesson(tray, tuple(labels.values())) for done, (tray, labels) in self._shown.items() if labels
+        }
 
     def relation_examples(self) -> list[Record]:
         """See `ShowsRelations`."""
-        return [
-            scene_record(LIVED, LabelledScene(pairs, tuple(labels.values())))
-            for pairs, labels in self._shown.values()
-            if labels
-        ]
+        return [scene_record(LIVED, LabelledScene(tray.pairs, labels)) for tray, labels in self.lessons().values()]
 
     # ---- plans --------------------------------------------------------------------------------------
 
