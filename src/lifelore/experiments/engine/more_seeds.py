@@ -135,14 +135,16 @@ def pooled(numbers: Sequence[Mapping]) -> dict[str, Any]:
 
 def deciding_conditions(claim: Claim, measured: Measured) -> list[str]:
     """Names of the conditions whose number would turn the verdict if it moved by its interval's width."""
-    found = []
-    for one in claim.second.conditions if claim.second else ():
+    found: list[str] = []
+    if claim.second is None:
+        return found
+    for one in claim.second.conditions:
         number = measured.get(one.condition.measure)
         if one.role not in COUNTED or one.exact or not number or not number["ci95"] or None in number["ci95"]:
             continue
         width = number["ci95"][1] - number["ci95"][0]
         moved = [
-            number | {"value": number["value"] + by, "ci95": [end + by for end in number["ci95"]]}
+            {**number, "value": number["value"] + by, "ci95": [end + by for end in number["ci95"]]}
             for by in (-width, width)
         ]
         verdicts = {claim.second.verdict({**measured, one.condition.measure: other}) for other in moved}

@@ -48,12 +48,12 @@ class TrayPairs:
         number = {label: k for k, label in self.label.items()}
         found = []
         for belief in self.beliefs:
-            sides = number.get(belief.a), number.get(belief.b)
-            if belief.b == TABLE or lifted not in sides or None in sides:
+            first, second = number.get(belief.a), number.get(belief.b)
+            if belief.b == TABLE or lifted not in (first, second):
                 continue
-            other_first = sides[1] == lifted
-            other = sides[0] if other_first else sides[1]
-            if other not in knocked:
+            other_first = second == lifted
+            other = first if other_first else second
+            if other is not None and other not in knocked:
                 found.append(_label(belief, "" if other_first else REVERSED, other in fallen))
         return found
 

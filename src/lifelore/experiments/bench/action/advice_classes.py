@@ -112,7 +112,7 @@ def places_of(world: GridWorld, kind: str, round_: int) -> dict[str, list[Place]
     for number, (goal, steps) in enumerate(zip(spots.tolist(), distance, strict=True)):
         moves = world.neighbour
         best = (moves >= 0) & (steps[moves] == steps[:, None] - 1)
-        errand = Errand(goal, world.task(goal).tables(), best, steps.astype(float))
+        errand = Errand(goal, world.task(goal).tables(), best, steps.astype(float), moves)
         random = stream(0, "bench", "advice classes", kind, round_, "experts", number)
         starts = random.choice(np.flatnonzero(steps > 0), EXPERT_WALKS)
         walks = [expert_walk(world, errand, int(start), random) for start in starts]
