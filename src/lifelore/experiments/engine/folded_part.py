@@ -23,7 +23,7 @@ def folded_part(claim: Claim, result: Mapping, causes: Sequence[str]) -> list[st
         *causes,
         *([claim.more, ""] if claim.more else []),
         *_second_reading(claim, result),
-        *_seeds(result),
+        *_seeds(claim, result),
         *_first_reading(claim, result),
         f"**Settings.** Mode {result['mode']}, seed {result['seed']}, {short(result['seconds'])} s of computing. "
         f"{_settings_in_words(result['settings'])}.",
@@ -49,21 +49,22 @@ def _second_reading(claim: Claim, result: Mapping) -> list[str]:
     ]  # fmt: skip
 
 
-def _seeds(result: Mapping) -> list[str]:
+def _seeds(claim: Claim, result: Mapping) -> list[str]:
     """The numbers of each seed, where several were pooled."""
     pool = result.get("seeds")
-    if not pool:
+    if not pool or claim.second is None:
         return []
+    asked_by = {one.condition.measure: one.condition.name for one in claim.second.conditions}
     heads = [f"seed {one['seed']}: {one['verdict']}" for one in pool["by_seed"]]
     rows = [
-        f"| {name} | {number_in_words(number)} | "
+        f"| {asked_by[name]} | {number_in_words(number)} | "
         + " | ".join(number_in_words(one["measured"][name]) for one in pool["by_seed"])
         + " |"
         for name, number in pool["pooled"].items()
     ]
     return [
         f"**{len(heads)} seeds: {pool['verdict']}.** The table above is of the first seed.", "",
-        f"| number | pooled | {' | '.join(heads)} |", "|---|---|" + "---|" * len(heads), *rows, "",
+        f"| condition | pooled | {' | '.join(heads)} |", "|---|---|" + "---|" * len(heads), *rows, "",
     ]  # fmt: skip
 
 
