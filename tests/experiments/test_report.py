@@ -7,10 +7,19 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError
+from lifelore.experiments.engine.claim_section import verdict_now
+from lifelore.experiments.engine.more_seeds import pooled
 from lifelore.experiments.engine.predicate import VERDICTS, number_in_words
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.report import draw_summary, read_results, render_pages, verdicts, write_pages
-from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce
+from lifelore.experiments.engine.report import (
+    draw_summary,
+    pooled_results,
+    read_results,
+    render_pages,
+    verdicts,
+    write_pages,
+)
+from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce, rounded
 from lifelore.experiments.engine.second_reading import SECOND_VERDICTS
 
 ROOT = Path(__file__).parents[2]
@@ -60,15 +69,32 @@ def test_a_second_reading_was_filed_before_the_run_that_it_judges(result):
     assert git("merge-base", "--is-ancestor", last_change, made["commit"]).returncode == 0
 
 
+@pytest.mark.parametrize(
+    "result", [one for one in pooled_results(RESULTS) if one.get("seeds")], ids=lambda r: r["claim"]
+)
+def test_a_pool_of_seeds_follows_from_its_numbers(result):
+    pool, second = result["seeds"], claim_of(result["claim"]).second
+    first = pool["by_seed"][0]
+    assert (pool["mode"], pool["settings"]) == ("full", result["settings"])
+    assert pool["seeds"] == [one["seed"] for one in pool["by_seed"]] == list(range(len(pool["seeds"])))
+    assert first["measured"] == {name: result["measured"][name] for name in pool["pooled"]}
+    for name, number in pool["pooled"].items():
+        assert number == rounded(pooled([one["measured"][name] for one in pool["by_seed"]]))
+    assert pool["verdict"] == second.verdict(pool["pooled"])
+    for one in pool["by_seed"]:
+        assert one["verdict"] == second.verdict(one["measured"])
+        assert one["made"]["changed"] is False
+
+
 def test_the_index_says_of_every_claim_what_holds_and_why_some_cannot_be_told():
     index = render_pages(RESULTS)["index.md"]
     sentences, _, rest = index.partition("## Claims without an answer, and why")
-    for result in read_results(RESULTS):
+    for result in pooled_results(RESULTS):
         claim = claim_of(result["claim"])
         assert sentences.count(claim.sentence) == 1
         chapter = sentences.partition(f"(chapter{claim.id[1]}.md)\n")[2]
         verdict = chapter.partition(claim.sentence)[0].rpartition("\n**")[2].partition("**\n")[0]
-        assert verdict.lower() == (result.get("second") or result)["verdict"]
+        assert verdict.lower() == verdict_now(result)
         if result["verdict"] == "cannot be tested":
             assert f"#{claim.id.lower().replace('.', '-')}): {claim.ran}" in rest
 

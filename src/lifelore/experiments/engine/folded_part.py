@@ -14,6 +14,8 @@ from lifelore.experiments.engine.condition_table import (
 )  # fmt: skip
 from lifelore.experiments.engine.predicate import FAILS, number_in_words, short
 
+SAME = " Real scenes are the same under every seed: where they count, pooled intervals are too narrow."
+
 
 def folded_part(claim: Claim, result: Mapping, causes: Sequence[str]) -> list[str]:
     """Its lines; `causes` are those that found no room in the visible part."""
@@ -62,8 +64,9 @@ def _seeds(claim: Claim, result: Mapping) -> list[str]:
         + " |"
         for name, number in pool["pooled"].items()
     ]
+    same = SAME if claim.data else ""
     return [
-        f"**{len(heads)} seeds: {pool['verdict']}.** The table above is of the first seed.", "",
+        f"**{len(heads)} seeds: {pool['verdict']}.** The table above is of the first seed.{same}", "",
         f"| condition | pooled | {' | '.join(heads)} |", "|---|---|" + "---|" * len(heads), *rows, "",
     ]  # fmt: skip
 
