@@ -4,7 +4,7 @@ The seeds are independent. Of values v_i with intervals [v_i − l_i, v_i + h_i]
 
     v = mean v_i,   [v − √(Σ l_i²) / k,  v + √(Σ h_i²) / k]
 
-Outside data is the same under every seed; the pooled intervals of its numbers are too narrow, and the page says so.
+Outside data is the same under every seed: the pooled intervals of its numbers are too narrow. The page says so.
 Only the counted conditions of the second reading are pooled. Where the seeds' own verdicts differ, the page says
 that the verdict depends on the seed.
 """
