@@ -4,17 +4,15 @@ import json
 from dataclasses import replace
 
 import pytest
+from tests.experiments.toy_claim import toy_claim
 
 from lifelore.core.errors import InputError
-from lifelore.core.metrics import mean_estimate
 from lifelore.experiments.engine import more_seeds, reproduce
-from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.claim_section import claim_section, verdict_now, visible_words
 from lifelore.experiments.engine.folded_part import folded_part
 from lifelore.experiments.engine.more_seeds import deciding_conditions, pooled, run_seeds
 from lifelore.experiments.engine.predicate import Predicate
 from lifelore.experiments.engine.second_reading import SecondReading
-from lifelore.figures.style import house_style, new_figure
 
 RAN = []
 FIRST = Predicate.from_data(
@@ -45,25 +43,10 @@ def run_cell(settings, cell, seed):
     return {"x": settings["shift"] + (cell["i"] % 2) + 0.1 * seed}
 
 
-def draw(result):
-    with house_style():
-        figure = new_figure(2, 2)
-        figure.subplots().plot([0, 1], [0, len(result["rows"])])
-    return figure
-
-
 @pytest.fixture
 def toy(monkeypatch):
     settings = {"n": 6, "shift": -0.4}
-    claim = Claim(
-        id="C3.1", title="toy", thesis="says", ran="ran", sizes={"quick": settings, "full": settings},
-        predicate=FIRST, second=SECOND,
-        cells=lambda s: [{"i": i} for i in range(s["n"])],
-        run_cell=run_cell,
-        measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
-        rows=lambda s, results: list(results),
-        draw=draw,
-    )  # fmt: skip
+    claim = toy_claim(settings, run_cell, FIRST, second=SECOND, ran="ran")
     for module in (reproduce, more_seeds):
         monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
     monkeypatch.setattr(reproduce, "source_key", lambda name: "code")
@@ -133,6 +116,12 @@ def test_what_cannot_be_pooled_is_refused(toy, tmp_path, monkeypatch):
         run_seeds(["C3.1"], 1, out=tmp_path)
     with pytest.raises(InputError, match="named"):
         run_seeds([], 4, out=tmp_path)
+    with pytest.raises(InputError, match="jobs must be at least 1"):
+        run_seeds(["C3.1"], 4, jobs=0, out=tmp_path)
+    (tmp_path / "C3.1").mkdir()
+    (tmp_path / "C3.1" / "result.json").write_text("{")
+    with pytest.raises(InputError, match="is not JSON"):
+        run_seeds(["C3.1"], 4, "full", out=tmp_path)
     monkeypatch.setattr(more_seeds, "claim_of", lambda claim_id: replace(toy, second=None))
     with pytest.raises(InputError, match=r"C3\.1 has none"):
         run_seeds(["C3.1"], 4, out=tmp_path)

@@ -5,15 +5,13 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from tests.experiments.toy_claim import toy_claim
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
-from lifelore.core.metrics import mean_estimate
 from lifelore.experiments.engine import reproduce as module
-from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.predicate import Predicate
 from lifelore.experiments.engine.provenance import versions
 from lifelore.experiments.engine.reproduce import reproduce, rounded
-from lifelore.figures.style import house_style, new_figure
 
 RAN = []
 PREDICATE = {
@@ -31,28 +29,10 @@ def run_cell(settings, cell, seed):
     return {"x": cell["i"] + seed + 1 / 3}
 
 
-def draw(result):
-    with house_style():
-        figure = new_figure(2, 2)
-        figure.subplots().plot([0, 1], [0, len(result["rows"])])
-    return figure
-
-
 @pytest.fixture
 def toy(monkeypatch):
     settings = {"n": 6, "fail_at": -1}
-    claim = Claim(
-        id="C3.1",
-        title="toy",
-        thesis="says",
-        sizes={"quick": settings, "full": settings},
-        predicate=Predicate.from_data(PREDICATE),
-        cells=lambda s: [{"i": i} for i in range(s["n"])],
-        run_cell=run_cell,
-        measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
-        rows=lambda s, results: list(results),
-        draw=draw,
-    )
+    claim = toy_claim(settings, run_cell, Predicate.from_data(PREDICATE))
     monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
     monkeypatch.setattr(module, "source_key", lambda name: "code")
     monkeypatch.setattr(module, "provenance", lambda name, data: {"source": "code", "cores": 1})

@@ -11,6 +11,7 @@ that the verdict depends on the seed.
 
 import json
 from collections.abc import Mapping, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -18,13 +19,12 @@ import numpy as np
 
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Progress
-from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.condition_table import COUNTED
 from lifelore.experiments.engine.predicate import Measured
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.reproduce import part_of, result_folder, rounded, run_claim
+from lifelore.experiments.engine.reproduce import result_folder, rounded, run_plan, stored_result
 
 FILE = "seeds.json"
 
@@ -61,30 +61,31 @@ def run_seeds(
     claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids)]
     if once := [claim.id for claim in claims if claim.second is None]:
         raise InputError(f"seeds are pooled for second readings alone; {', '.join(once)} has none")
-    jobs = usable_cores() if jobs is None else jobs
-    found = []
-    for place, claim in enumerate(claims):
-        settings = claim.settings(mode, overrides)
-        folder, n_cells = result_folder(Path(out) / claim.id, mode), len(claim.cells(settings))
-        results = []
-        for number in range(n_seeds):
-            before = (place * n_seeds + number) * n_cells
-            shown = part_of(progress, before, len(claims) * n_seeds * n_cells) if progress else None
-            kept = _stored(folder, mode, settings, seed) if number == 0 else None
-            results.append(kept or run_claim(claim, mode, settings, jobs, Path(out), seed + number, shown))
-        found.append(_pool(claim, results))
-        write_atomically(folder / FILE, json.dumps(found[-1], indent=1, ensure_ascii=False) + "\n")
+    chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
+    stored = [_stored(claim, Path(out), mode, settings, seed) for claim, settings in chosen]
+    seeds = [range(seed + len(kept), seed + n_seeds) for kept in stored]
+    plan = [(*one, each) for one, own in zip(chosen, seeds, strict=True) for each in own]
+    ready = sum(len(claim.cells(settings)) for (claim, settings), kept in zip(chosen, stored, strict=True) if kept)
+    shown = _after(ready, progress) if progress else None
+    runs, found = run_plan(plan, mode, jobs, Path(out), shown), []
+    for claim, kept, own in zip(claims, stored, seeds, strict=True):
+        found.append(_pool(claim, [*kept, *islice(runs, len(own))]))
+        text = json.dumps(found[-1], indent=1, ensure_ascii=False) + "\n"
+        write_atomically(result_folder(Path(out) / claim.id, mode) / FILE, text)
     return found
 
 
-def _stored(folder: Path, mode: str, settings: Mapping, seed: int) -> dict | None:
-    """The stored result of one seed, if it has these settings and a second reading."""
-    path = folder / "result.json"
-    if not path.is_file():
-        return None
-    kept = json.loads(path.read_text(encoding="utf-8"))
-    same = (kept["mode"], kept["settings"], kept["seed"]) == (mode, settings, seed)
-    return kept if same and kept.get("second") else None
+def _after(ready: int, progress: Progress) -> Progress:
+    """Progress that also counts cells that were ready before."""
+    return lambda done, total, label: progress(ready + done, ready + total, label)
+
+
+def _stored(claim: Claim, out: Path, mode: str, settings: Mapping, seed: int) -> list[dict]:
+    """The stored result of a seed, if it has these settings and a second reading; else nothing."""
+    kept = stored_result(result_folder(out / claim.id, mode), claim.id)
+    if kept is None or not kept.get("second"):
+        return []
+    return [kept] if (kept["mode"], kept["settings"], kept["seed"]) == (mode, settings, seed) else []
 
 
 def _pool(claim: Claim, results: Sequence[Mapping]) -> dict:

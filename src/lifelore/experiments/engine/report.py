@@ -9,14 +9,13 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from lifelore.core.errors import InputError, StoreError
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.experiments.engine.claim_section import claim_section, verdict_now
 from lifelore.experiments.engine.index_page import CHAPTERS, chapter_of, index_page
 from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.more_seeds import FILE
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.reproduce import own_rows
+from lifelore.experiments.engine.reproduce import own_rows, stored_result
 
 HOW_TO_READ = """A condition in italics is shown by its name. The folded part of each claim has all conditions in
 words, likely causes, the choices that the thesis leaves open, and the settings.
@@ -60,14 +59,8 @@ def read_results(results: str | Path) -> list[dict]:
     """
     found = []
     for entry in entries():
-        path = Path(results) / entry.id / "result.json"
-        if path.exists():
-            try:
-                found.append(json.loads(path.read_text(encoding="utf-8")))
-            except OSError as error:
-                raise StoreError(f"cannot read {path}: {error.strerror}") from None
-            except ValueError:
-                raise InputError(f"{path} is not JSON; run `lifelore reproduce {entry.id} --full` again") from None
+        result = stored_result(Path(results) / entry.id, entry.id)
+        found += [] if result is None else [result]
     return found
 
 

@@ -4,14 +4,14 @@ Results do not depend on the number of threads or workers, nor on whether a run 
 """
 
 import json
-from collections.abc import Generator, Mapping, Sequence
+from collections.abc import Generator, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import closing
 from pathlib import Path
 from time import thread_time
 from typing import Any
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import Progress
 from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.engine.cell_store import CellStore, write_atomically
@@ -85,9 +85,6 @@ def reproduce(
     KeyboardInterrupt
         Ctrl-C; cells under way are finished and kept first.
     """
-    jobs = usable_cores() if jobs is None else jobs
-    if jobs < 1:
-        raise InputError(f"jobs must be at least 1, got {jobs}")
     if engine not in ENGINES:
         raise InputError(f"engine must be one of {', '.join(ENGINES)}, got '{engine}'")
     if (engine == "dask") != (scheduler is not None):
@@ -96,36 +93,40 @@ def reproduce(
             "give --engine dask --scheduler tcp://HOST:8786, or neither"
         )
     claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
-    chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
-    sizes = [len(claim.cells(settings)) for claim, settings in chosen]
-    results, before = [], 0
-    for (claim, settings), size in zip(chosen, sizes, strict=True):
-        shown = part_of(progress, before, sum(sizes)) if progress else None
-        results.append(run_claim(claim, mode, settings, jobs, Path(out), seed, shown, scheduler))
-        _write(claim, results[-1], result_folder(Path(out) / claim.id, mode))
-        before += size
+    plan = [(claim, claim.settings(mode, overrides), seed) for claim in claims]
+    results = []
+    for claim, result in zip(claims, run_plan(plan, mode, jobs, Path(out), progress, scheduler), strict=True):
+        _write(claim, result, result_folder(Path(out) / claim.id, mode))
+        results.append(result)
     return results
 
 
-def part_of(progress: Progress, before: int, total: int) -> Progress:
+def run_plan(
+    plan: Sequence[tuple[Claim, dict, int]],
+    mode: str,
+    jobs: int | None,
+    out: Path,
+    progress: Progress | None,
+    scheduler: str | None = None,
+) -> Iterator[dict]:
+    """The results of claims with settings and seeds, one after the other; cells are kept, results not written.
+
+    `progress` counts the cells of all.
+    """
+    jobs = usable_cores() if jobs is None else jobs
+    if jobs < 1:
+        raise InputError(f"jobs must be at least 1, got {jobs}")
+    sizes, before = [len(claim.cells(settings)) for claim, settings, _ in plan], 0
+    for (claim, settings, seed), size in zip(plan, sizes, strict=True):
+        shown = _part_of(progress, before, sum(sizes)) if progress else _silent
+        store = _store(claim, settings, seed, out)
+        yield finish(claim, mode, settings, seed, _run_cells(claim, settings, seed, store, jobs, shown, scheduler))
+        before += size
+
+
+def _part_of(progress: Progress, before: int, total: int) -> Progress:
     """Progress of one claim as a part of the cells of all claims."""
     return lambda done, _, label: progress(before + done, total, label)
-
-
-def run_claim(
-    claim: Claim,
-    mode: str,
-    settings: dict,
-    jobs: int,
-    out: Path,
-    seed: int,
-    progress: Progress | None = None,
-    scheduler: str | None = None,
-) -> dict:
-    """The result of one claim under one seed; its cells are kept, the result is not written."""
-    store = _store(claim, settings, seed, out)
-    kept = _run_cells(claim, settings, seed, store, jobs, progress or _silent, scheduler)
-    return finish(claim, mode, settings, seed, kept)
 
 
 def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
@@ -139,11 +140,29 @@ def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
     return CellStore(out / "shared" / "cells", {"run": run, "settings": read, **made})
 
 
+def stored_result(folder: Path, claim_id: str) -> dict | None:
+    """The result in a folder; None where there is none.
+
+    Raises
+    ------
+    StoreError, InputError
+        It cannot be read, or is not JSON.
+    """
+    path = folder / "result.json"
+    try:
+        return json.loads(path.read_text(encoding="utf-8"))
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise StoreError(f"cannot read {path}: {error.strerror}") from None
+    except ValueError:
+        raise InputError(f"{path} is not JSON; run `lifelore reproduce {claim_id} --full` again") from None
+
+
 def result_folder(folder: Path, mode: str) -> Path:
     """Where a result goes: evidence is never overwritten by a quick run."""
-    kept = folder / "result.json"
-    evidence = kept.is_file() and json.loads(kept.read_text())["mode"] == "full"
-    return folder / "quick" if mode == "quick" and evidence else folder
+    kept = stored_result(folder, folder.name) if mode == "quick" else None
+    return folder / "quick" if kept is not None and kept["mode"] == "full" else folder
 
 
 def _silent(done: int, total: int, label: str) -> None:

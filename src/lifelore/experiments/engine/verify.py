@@ -1,16 +1,15 @@
 """Run stored results again and compare them to the last digit (`lifelore reproduce --verify`)."""
 
-import json
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import zip_longest
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
-from lifelore.core.errors import InputError, NotFoundError
+from lifelore.core.errors import NotFoundError
 from lifelore.core.protocols import Progress
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.reproduce import own_rows, reproduce
+from lifelore.experiments.engine.reproduce import own_rows, reproduce, stored_result
 
 MOST_SHOWN = 20
 """Differences that are listed for a claim."""
@@ -88,15 +87,10 @@ def _with_results(out: Path) -> list[str]:
 
 def _stored(out: Path, claim_id: str) -> dict[str, Any]:
     claim_of(claim_id)
-    path = out / claim_id / "result.json"
-    try:
-        return json.loads(path.read_text(encoding="utf-8"))
-    except OSError:
-        raise NotFoundError(
-            f"no result of {claim_id} in {out}; run `lifelore reproduce {claim_id}` first"
-        ) from None
-    except ValueError:
-        raise InputError(f"{path} is not JSON; run `lifelore reproduce {claim_id}` again") from None
+    found = stored_result(out / claim_id, claim_id)
+    if found is None:
+        raise NotFoundError(f"no result of {claim_id} in {out}; run `lifelore reproduce {claim_id}` first")
+    return found
 
 
 def _numbers(result: Mapping[str, Any]) -> dict[str, Any]:

@@ -44,7 +44,7 @@ class TrayPairs:
     label: dict[int, int]
 
     def shown_by(self, lifted: int, fallen: Container[int], knocked: Container[int]) -> list[PairLabel]:
-        """Labels of the pairs of a lifted object, from which others fell; of knocked ones nothing is said."""
+        """Labels of the near pairs of a lifted object. A pair with a knocked object gets none."""
         number = {label: k for k, label in self.label.items()}
         found = []
         for belief in self.beliefs:
