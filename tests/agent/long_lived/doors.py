@@ -23,6 +23,7 @@ class Doors:
     n_causes = N
     n_effects = 2
     judges = np.ones(N, np.bool_)
+    kinds = np.zeros(N, np.int64)
     constancy = np.full(N, SAME_SCENE)
 
     @property

@@ -136,14 +136,15 @@ def test_the_agent_follows_and_types_learn_from_their_own_spans(knowledge):
     assert (lived.learnt, lived.changes) == (one, [(4, other)])
     # As far as it was believed at the end of its span, and nothing of the span after.
     assert 0.5 < taught[0] <= 1
-    assert taught[1] == 0
+    assert taught[1] < 0.05
     assert not lived.alarm
 
 
 def test_the_static_agent_mixes_types(knowledge):
     lived, _, taught = taught_by_a_change(knowledge, STATIC)
     assert lived.changes == []
-    assert lived.alarm or taught[1] > 0.1
+    # A type that there is not, or an old one with effects of both.
+    assert lived.learnt == "r.100" or taught[1] > 0.1
 
 
 def test_a_change_to_an_unknown_type_is_noticed_and_learnt(knowledge):

@@ -10,6 +10,7 @@ from lifelore.agent.long_lived.families.tray_graph import Answer, TrayGraph
 from lifelore.agent.long_lived.families.tray_states import (
     ASIDE,
     BRISKLY,
+    CLEAR,
     DONE,
     GENTLY,
     GIVE_UP,
@@ -82,6 +83,20 @@ def test_a_spill_takes_what_lay_on_the_object(loaded):
     assert (after[SPILLED_IN_VAIN].held, after[SPILLED_IN_VAIN].here) == (None, {0, 2})
 
 
+def test_what_may_still_lie_on_a_picked_object_counts_when_it_is_handed_over(loaded):
+    """The target has a cube on it, the cube has nothing on it."""
+
+    def way_to_hand_over(number, act, result):
+        return cause_name(loaded.after(act, number)[result].cause(GENTLY, number))
+
+    assert way_to_hand_over(0, PICK_TARGET, DONE) == "hand over gently, something still on it"
+    assert way_to_hand_over(0, PICK_TARGET, SPILLED) == "hand over gently, after a spill"
+    assert way_to_hand_over(1, PICK_TOP, DONE) == "hand over gently"
+    assert way_to_hand_over(1, PICK_TOP, KNOCKED) == "hand over gently, something still on it"
+    aside = loaded.after(PICK_TARGET, 0)[DONE].after(ASIDE, 0)[DONE]
+    assert aside.burden == CLEAR
+
+
 def test_the_episode_ends_when_the_target_is_handed_over(loaded):
     held = loaded.after(PICK_TARGET, 0)[DONE]
     assert held.after(GENTLY, 0) == [None] * len(RESULTS)
@@ -98,7 +113,8 @@ def test_the_user_pays_for_what_happened_and_not_for_the_act(loaded):
     for state, act in ((loaded, PICK_TARGET), (loaded, PUSH_TARGET), (held, ASIDE)):
         assert state.payments(act)[SPILLED] == SPILL
     assert loaded.payments(PICK_TARGET)[MISSED] == loaded.payments(PUSH_TARGET)[DONE] == QUIET
-    assert held.payments(BRISKLY)[SPILLED] == held.payments(BRISKLY)[DONE] == HANDED + 1
+    assert held.payments(BRISKLY)[DONE] == HANDED + 1
+    assert PAYMENTS[held.payments(BRISKLY)[SPILLED]] == "the target was handed over briskly with a spill"
     assert held.payments(BRISKLY)[SPILLED_IN_VAIN] == SPILL
 
 

@@ -2,10 +2,10 @@
 
 The law of a cause under type i, after the counts c of the present task:
 
-    group(e)  ∝ Σ_j n_j(e), over all causes of the group, + α₀ p₀(e)
-    pooled(e) ∝ Σ_j n_j(e) + α₀ group(e)
+    group(e)  ∝ Σ_j n_j(e), over the other causes of the group, + α p₀(e)
+    pooled(e) ∝ Σ_j n_j(e) + α group(e)
     type_i(e) ∝ n_i(e) + κ pooled(e)
-    P_i(e)    ∝ s type_i(e) + c(e), s from the family (`TaskFamily.constancy`)
+    P_i(e)    ∝ s type_i(e) + c(e), s from the family (`TaskFamily.constancy`), κ and α from `concentrations`
 
 An unknown type has n = 0 and, instead of pooled, (1 − η) pooled + η p₀: it mostly behaves as types usually do,
 until its own task shows otherwise.
@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.agent.long_lived.concentrations import Concentrations, group_laws, learnt_concentrations
 from lifelore.agent.long_lived.task_family import TaskFamily
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.gaussian_outcomes import GaussianOutcomes
@@ -28,10 +29,6 @@ from lifelore.interaction.signals.category_signal import CategorySignal
 Array = NDArray[np.float64]
 Effects = Sequence[tuple[int, int]]
 
-FIRST = 0.5
-"""Weight α₀ of the effects that a family calls possible, in observations."""
-POOLED = 1.0
-"""Weight κ of what all types have in common, in observations; more lets a type learn more slowly."""
 TELLING = 2.5
 """Evidence in nats by which a single cause tells two types apart; more joins types that differ."""
 NEW = 0.3
@@ -98,21 +95,31 @@ class KnownTypes:
 
     @cached_property
     def counts(self) -> Array:
-        """(n_types, n_causes, n_effects) counts."""
+        """(n_types, n_causes, n_effects) counts, after `TaskFamily.smoothed`."""
+        return self.family.smoothed(self._counted)
+
+    @cached_property
+    def _counted(self) -> Array:
         causes = np.arange(self.family.n_causes)
         rows = [known.effects.counts(causes) for known in self.types]
-        found = np.array(rows).reshape(len(rows), self.family.n_causes, self.family.n_effects)
-        return self.family.smoothed(found)
+        return np.array(rows).reshape(len(rows), self.family.n_causes, self.family.n_effects)
+
+    @cached_property
+    def concentrations(self) -> Concentrations:
+        """How much the types differ."""
+        return learnt_concentrations(self.family, self._counted, self.counts)
 
     @cached_property
     def pooled(self) -> Array:
         """(n_causes, n_effects) the law that all types have in common."""
-        counts, family = self.counts.sum(axis=0), self.family
-        groups = np.zeros((family.groups.max() + 1, family.n_effects))
-        np.add.at(groups, family.groups, counts)
-        group = groups[family.groups] + FIRST * family.possible
-        total = counts + FIRST * group / group.sum(axis=1, keepdims=True)
+        counts, alpha = self.counts.sum(axis=0), self.concentrations.alpha
+        total = counts + alpha[:, None] * group_laws(self.family, counts, alpha)
         return total / total.sum(axis=1, keepdims=True)
+
+    @cached_property
+    def _base(self) -> Array:
+        """What each cause's law adds to counts, in observations, (n_causes, n_effects)."""
+        return self.concentrations.kappa[:, None] * self.pooled
 
     def tried(self, own: Array) -> NDArray[np.bool_]:
         """(n_causes,) whether anything is known of each cause or its group, after the task's own counts."""
@@ -126,9 +133,9 @@ class KnownTypes:
         The last row is of an unknown type. With a generator, laws are drawn from what the counts leave possible.
         Own counts are (n_causes, n_effects), or have a row for each type where types change within the task.
         """
-        unknown = POOLED * NEW * (self.family.possible - self.pooled)
+        unknown = NEW * self.concentrations.kappa[:, None] * (self.family.possible - self.pooled)
         rows = np.concatenate([self.counts, unknown[None]])
-        rows += POOLED * self.pooled
+        rows += self._base
         if generator is not None:
             rows = _drawn(rows, generator)
         rows *= self.family.constancy[:, None] / rows.sum(axis=2, keepdims=True)
@@ -142,7 +149,7 @@ class KnownTypes:
         judges = self.family.judges
         own = effect_counts(self.family, effects).counts(np.arange(self.family.n_causes))
         own = self.family.smoothed(own[None])[0, judges]
-        return evidence_for_two(self.counts[number, judges], own, self.pooled[judges]) > 0
+        return evidence_for_two(self.counts[number, judges], own, self._base[judges]) > 0
 
     @cached_property
     def judged(self) -> NDArray[np.int64]:
@@ -151,7 +158,7 @@ class KnownTypes:
 
     def library(self, prior: Array) -> PolicyLibrary:
         """A library whose policies are the judged causes, and whose signals are their effects."""
-        rows = self.counts[:, self.judged] + POOLED * self.pooled[self.judged]
+        rows = self.counts[:, self.judged] + self._base[self.judged]
         count = rows.sum(axis=2)
         performance = GaussianOutcomes(np.zeros(count.shape), 1.0)
         signal = CategorySignal(rows / count[:, :, None], count=count)
@@ -159,7 +166,7 @@ class KnownTypes:
 
     def forget_laws(self) -> None:
         """Compute the laws again: counts have changed."""
-        for name in ("counts", "pooled", "judged"):
+        for name in ("_counted", "counts", "concentrations", "pooled", "_base", "judged"):
             self.__dict__.pop(name, None)
 
 
@@ -168,13 +175,12 @@ def _drawn(counts: Array, generator: np.random.Generator) -> Array:
     return generator.standard_gamma(counts) + 1e-12 * counts
 
 
-def evidence_for_two(first: Array, second: Array, pooled: Array) -> float:
-    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one.
+def evidence_for_two(first: Array, second: Array, prior: Array) -> float:
+    """Evidence in nats that counts (n_causes, n_effects) have two laws and not one; `prior` in observations.
 
     It is that of all causes together, and infinite where a single cause gives more than `TELLING`: types may agree
     in nearly all they do.
     """
-    prior = FIRST * pooled
     alone = _log_evidence(first, prior) + _log_evidence(second, prior)
     for_two = alone - _log_evidence(first + second, prior)
     return np.inf if for_two.max(initial=0.0) > TELLING else float(for_two.sum())
@@ -184,10 +190,10 @@ def merged_types(known: KnownTypes) -> KnownTypes:
     """Join types that nothing tells apart; merging is for reading, memory keeps each type's own counts."""
     groups: list[list[int]] = [[number] for number in range(len(known))]
     judges = known.family.judges
-    pooled, sums = known.pooled[judges], list(known.counts[:, judges])
+    prior, sums = known._base[judges], list(known.counts[:, judges])
 
     def apart(i: int, j: int) -> float:
-        return evidence_for_two(sums[i], sums[j], pooled)
+        return evidence_for_two(sums[i], sums[j], prior)
 
     pairs = {(i, j): apart(i, j) for i in range(len(groups)) for j in range(i + 1, len(groups))}
     while pairs:

@@ -192,6 +192,11 @@ class TaskFamily(Protocol):
         ...
 
     @property
+    def kinds(self) -> NDArray[np.int64]:
+        """(n_causes,) types differ about as much in all causes of a kind; how much is learnt."""
+        ...
+
+    @property
     def judges(self) -> NDArray[np.bool_]:
         """(n_causes,) whether a cause tells types apart; the others serve plans alone."""
         ...

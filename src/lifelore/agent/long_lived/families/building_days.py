@@ -69,6 +69,7 @@ class BuildingFamily:
         # The cells of a region are alike, and regions are alike.
         self.groups = np.concatenate([self.region_of, np.full(n_regions, n_regions)])
         self.judges = np.arange(self.n_causes) >= self.n_cells
+        self.kinds = self.judges.astype(np.int64)
         self.constancy = np.full(self.n_causes, SAME_SCENE)
         start, move = np.nonzero(world.neighbour >= 0)
         end, shape = world.neighbour[start, move], (self.n_cells, self.n_cells)

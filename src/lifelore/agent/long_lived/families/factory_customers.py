@@ -62,6 +62,7 @@ class FactoryFamily:
     n_effects = len(EFFECTS)
     possible = np.full((len(ACTS), len(EFFECTS)), 1 / len(EFFECTS))
     groups = np.arange(len(ACTS)) // N_COMPONENTS
+    kinds = np.zeros(len(ACTS), np.int64)
     judges = np.ones(len(ACTS), np.bool_)
     constancy = np.full(len(ACTS), SAME_SCENE)
 

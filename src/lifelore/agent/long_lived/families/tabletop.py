@@ -20,6 +20,7 @@ from lifelore.agent.long_lived.families.tray_states import (
     PAYMENTS,
     RESULTS,
     ROOM_NAMES,
+    WITH_SPILL,
 )
 from lifelore.agent.long_lived.families.tray_states import cause_name as situated_cause_name
 from lifelore.agent.long_lived.task_family import Abilities
@@ -39,6 +40,8 @@ FEATURES_TELL, POINTS_TELL = 8.0, 0.5
 
 Features do not tell all of an object: one result says little of the next object. What a user pays stays the same.
 """
+UNLIKELY = 0.02
+"""Weight of a reward of the wrong sign before any was seen: a spill can cost more than the target pays."""
 
 
 @dataclass(frozen=True)
@@ -65,7 +68,7 @@ class TabletopFamily:
     trees: dict[tuple[int, str], OutcomeTree] = field(default_factory=dict)
     tray_numbers: tuple[int, ...] | None = None
 
-    name = "tabletop trays"
+    name = "tabletop jobs"
     acts = ACTS
     n_causes = N_SITUATED + len(PAYMENTS)
     n_effects = N_BINS
@@ -80,12 +83,18 @@ class TabletopFamily:
         return found
 
     @property
+    def kinds(self) -> NDArray[np.int64]:
+        """What picks and pushes result in; putting aside and handing over; rewards."""
+        return np.repeat([0, 1, 2], [N_PICKS + N_PUSHES, N_SITUATED - N_PICKS - N_PUSHES, len(PAYMENTS)])
+
+    @property
     def possible(self) -> Array:
         """At first all results are equally likely; handing over the target pays, all else costs."""
         found = np.zeros((self.n_causes, self.n_effects))
         found[:N_SITUATED, :N_RESULTS] = 1 / N_RESULTS
-        pays = np.isin(np.arange(len(PAYMENTS)), (HANDED, HANDED + 1))
-        likely = (BIN_MIDDLES > 0) == pays[:, None]
+        handed = np.array([HANDED, HANDED + 1])
+        pays = np.isin(np.arange(len(PAYMENTS)), [*handed, *(handed + WITH_SPILL)])
+        likely = np.where((BIN_MIDDLES > 0) == pays[:, None], 1.0, UNLIKELY)
         found[N_SITUATED:] = likely / likely.sum(axis=1, keepdims=True)
         return found
 

@@ -42,10 +42,14 @@ IN_VAIN = (MISSED, SLIPPED, KNOCKED_IN_VAIN, SPILLED_IN_VAIN)
 LOAD_NAMES = ("nothing", "hardly anything", "perhaps something", "something")
 ROOM_NAMES = ("room for any finger", "room for thin fingers", "no room for fingers")
 STANDING = ("low", "tall", "low, on another object", "tall, on another object")
+BURDENS = ("", ", after a spill", ", something still on it")
+CLEAR, AFTER_SPILL, BURDENED = range(3)
+"""What the pick of the held object tells: nothing lies on it, what lay there fell, or it may lie there still."""
 N_PICKS = len(LOAD_NAMES) * len(ROOM_NAMES)
 N_PUSHES = 2 * len(STANDING)
-N_SITUATED = N_PICKS + N_PUSHES + 3
-"""Causes of results: picks and pushes by the features of their object, putting aside, two ways to hand over."""
+N_SITUATED = N_PICKS + N_PUSHES + 3 * len(BURDENS)
+"""Causes of results: picks and pushes by the features of their object; putting aside and two ways to hand over, by
+what the pick tells of what is still on the held object."""
 PAYMENTS = (
     "nothing happened to other objects",
     "another object was knocked",
@@ -55,9 +59,15 @@ PAYMENTS = (
     "the target was handed over briskly",
     "another object was handed over gently",
     "another object was handed over briskly",
+    "the target was handed over gently with a spill",
+    "the target was handed over briskly with a spill",
+    "another object was handed over gently with a spill",
+    "another object was handed over briskly with a spill",
 )
 """What the user pays for, or takes points for: causes of rewards, whichever act has led to them."""
 QUIET, KNOCK, SPILL, PUT, HANDED = range(5)
+WITH_SPILL = 4
+"""From a way to hand over to the same with a spill, in `PAYMENTS`."""
 NOTHING = -1
 """Stands for an object that was pushed and made no room."""
 MOST_FAILED, MOST_PUSHED = 2, 1
@@ -79,6 +89,8 @@ class TrayState:
         Objects that could not be picked, and nothing near them has changed since.
     pushed : frozenset of int
         Objects that were pushed away from their neighbours since the tray was seen.
+    burden : int
+        Of the held object: `CLEAR`, `AFTER_SPILL` or `BURDENED`.
     """
 
     tray: PerceivedTray | None
@@ -86,6 +98,7 @@ class TrayState:
     held: int | None = None
     failed: frozenset[int] = field(default_factory=frozenset)
     pushed: frozenset[int] = field(default_factory=frozenset)
+    burden: int = CLEAR
 
     @classmethod
     def seen(cls, tray: PerceivedTray | None, failed: frozenset[int] = frozenset()) -> "TrayState":
@@ -123,7 +136,7 @@ class TrayState:
     def cause(self, act: int, number: int) -> int:
         """What the result of an act depends on."""
         if act >= ASIDE:
-            return N_PICKS + N_PUSHES + act - ASIDE
+            return N_PICKS + N_PUSHES + len(BURDENS) * (act - ASIDE) + self.burden
         load = self.load(number)
         if act < PUSH_TARGET:
             return load * len(ROOM_NAMES) + self.room(number)
@@ -137,13 +150,13 @@ class TrayState:
         if act >= ASIDE:
             other = self.tray is None or self.held != self.tray.target
             done = PUT if act == ASIDE else HANDED + act - GENTLY + 2 * other
-        knock, spill = (done, done) if done >= HANDED else (KNOCK, SPILL)
+        knock, spill = (done, done + WITH_SPILL) if done >= HANDED else (KNOCK, SPILL)
         return [done, QUIET, QUIET, knock, spill, KNOCK, SPILL]
 
     def after(self, act: int, number: int) -> "list[TrayState | None]":
         """The state that an act leads to, by result; None is the end of the episode."""
         if act >= ASIDE:
-            freed = replace(self, held=None)
+            freed = replace(self, held=None, burden=CLEAR)
             brought = act > ASIDE and self.tray is not None and number == self.tray.target
             return [None if brought else freed] * len(RESULTS)
         pile = frozenset() if self.tray is None else self.tray.pile(number, self.here)
@@ -158,8 +171,17 @@ class TrayState:
             elif result in IN_VAIN:
                 found.append(replace(self, here=here, failed=self.failed | {number}))
             else:
-                found.append(replace(self, here=here - {number}, held=number, failed=self._still_failed(number)))
+                left, failed = here - {number}, self._still_failed(number)
+                burden = self._burden(number, result)
+                found.append(replace(self, here=left, held=number, failed=failed, burden=burden))
         return found
+
+    def _burden(self, picked: int, result: int) -> int:
+        """What a pick that succeeded tells of what is still on the object."""
+        if result == SPILLED:
+            return AFTER_SPILL
+        loaded = self.load(picked) == len(LOADS)
+        return BURDENED if loaded or result == KNOCKED else CLEAR
 
     def _still_failed(self, gone: int) -> frozenset[int]:
         """Objects that cannot be picked although another is gone."""
@@ -189,4 +211,5 @@ def cause_name(cause: int) -> str:
     if cause < N_PICKS + N_PUSHES:
         standing, loaded = divmod(cause - N_PICKS, 2)
         return f"push apart ({STANDING[standing]}{', something on it' if loaded else ''})"
-    return ACTS[ASIDE + cause - N_PICKS - N_PUSHES]
+    act, burden = divmod(cause - N_PICKS - N_PUSHES, len(BURDENS))
+    return ACTS[ASIDE + act] + BURDENS[burden]
