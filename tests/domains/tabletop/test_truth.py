@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import PairLabel
+from lifelore.domains.tabletop.physics import Contacts
 from lifelore.domains.tabletop.truth import Gap, bearing, contact_regions, true_relations
 
 UP, SIDE = (0.0, 0.0, 1.0), (1.0, 0.0, 0.0)
@@ -16,7 +17,9 @@ def told(contacts, gaps, bottoms, **limits):
     A contact is (first, second, normal, force, height).
     """
     first, second, normals, forces, places = (np.array(column) for column in zip(*contacts, strict=True))
-    borne = bearing(first, second, normals, forces, places, np.full(len(bottoms), 10.0))
+    positions = np.stack([np.zeros(len(places)), np.zeros(len(places)), places], axis=1)
+    found = Contacts(first, second, normals, forces, np.zeros(len(places)), positions)
+    borne = bearing(found, np.full(len(bottoms), 10.0))
     near = {(gap.a, gap.b): gap for gap in gaps}
     heights = np.array([(bottom, bottom + 0.1) for bottom in bottoms])
     return true_relations(borne, near, heights, range(2, 2 + len(bottoms)), **limits)

@@ -166,10 +166,7 @@ class PickAndPlace:
         here = self._here
         self._table = Tabletop([self.shapes[thing] for thing in here], [self.poses[thing] for thing in here])
         calm = not here or self._table.settle()
-        found = self._table.contacts()
-        self._borne: Bearing = bearing(
-            found.first, found.second, found.normals, found.forces, found.positions[:, 2], self._table.weights
-        )
+        self._borne: Bearing = bearing(self._table.contacts(), self._table.weights)
         before = [self.poses[thing].position for thing in here]
         for thing, pose in zip(here, self._table.poses, strict=True):
             self.poses[thing] = pose

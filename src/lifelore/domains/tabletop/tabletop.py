@@ -135,9 +135,7 @@ def settle_scene(
         return None
     shapes, poses = table.shapes, table.poses
     outlines = [pose.apply(shape.outline()) for shape, pose in zip(shapes, poses, strict=True)]
-    borne = bearing(
-        contacts.first, contacts.second, contacts.normals, contacts.forces, contacts.positions[:, 2], table.weights
-    )
+    borne = bearing(contacts, table.weights)
     if (np.abs(borne.lift[:-1].sum(axis=1) - 1) > BALANCE).any():
         return None
     if arrangement is not None and not _shows(arrangement, borne.share, contacts, poses[0].rotation):

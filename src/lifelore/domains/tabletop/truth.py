@@ -16,6 +16,7 @@ from scipy.sparse.csgraph import connected_components
 
 from lifelore.core.labelled_cloud import TABLE
 from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, NONE, ON, PairLabel
+from lifelore.domains.tabletop.physics import Contacts
 
 SHARE = 0.05
 """Part of its weight that an object must get from what it rests on."""
@@ -59,26 +60,10 @@ class Bearing:
     touching: NDArray[np.bool_]
 
 
-def bearing(
-    first: NDArray[np.int64],
-    second: NDArray[np.int64],
-    normals: NDArray[np.float64],
-    forces: NDArray[np.float64],
-    heights: NDArray[np.float64],
-    weights: NDArray[np.float64],
-) -> Bearing:
-    """Sum contacts over pairs.
-
-    Parameters
-    ----------
-    first, second : (k,) int64
-        Bodies of each contact, −1 the table.
-    normals, forces : (k, 3) float64
-        From the first to the second; the force acts on the second, newtons.
-    heights : (k,) float64
-    weights : (n,) float64
-        Newtons.
-    """
+def bearing(contacts: Contacts, weights: NDArray[np.float64]) -> Bearing:
+    """Sum contacts over pairs; `weights` (n,) in newtons."""
+    first, second, normals, forces = contacts.first, contacts.second, contacts.normals, contacts.forces
+    heights = contacts.positions[:, 2]
     n = len(weights)
     a = np.concatenate([second, first])
     b = np.concatenate([first, second])

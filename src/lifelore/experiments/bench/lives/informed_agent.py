@@ -41,9 +41,7 @@ class ToldType:
 
 def carried_shares(job: TabletopJob) -> Array:
     """Share of each object's weight (row) that each other object (column) carries now, (n, n)."""
-    found, weights = job.contacts()
-    borne = bearing(found.first, found.second, found.normals, found.forces, found.positions[:, 2], weights)
-    return np.maximum(borne.lift[:-1, :-1], 0)
+    return np.maximum(bearing(*job.contacts()).lift[:-1, :-1], 0)
 
 
 def look_at_true_relations(job: TabletopJob) -> PerceivedTray | None:

@@ -141,8 +141,7 @@ def _seed(purpose: str, number: int) -> int:
 
 def carried_shares(job: TabletopJob) -> NDArray[np.float64]:
     """Share of each object's weight (row) that each other object (column) carries now, as truth counts it."""
-    found, weights = job.contacts()
-    borne = bearing(found.first, found.second, found.normals, found.forces, found.positions[:, 2], weights)
+    borne = bearing(*job.contacts())
     return np.maximum(borne.share, borne.lift)[:-1, :-1]
 
 
