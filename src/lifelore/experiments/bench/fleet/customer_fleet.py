@@ -39,7 +39,7 @@ from lifelore.memory import Memory, open_memory
 
 Array = NDArray[np.float64]
 
-ROUNDS = {1: 16, 2: 10, 4: 6, 8: 4}
+ROUNDS = {1: 32, 2: 16, 4: 9, 8: 6}
 """Number of robots, and rounds that they live; a fleet that is not competent by then counts with all of them."""
 COMPETENT, WINDOW = 0.5, 2
 TESTS = 8
