@@ -1,9 +1,8 @@
 """`bench long_lived_worlds`: the long-lived agent, its ablations and other methods in the factory and buildings.
 
-Each round is one life of each agent in the factory, and every second round one in each other world, on the same
-tasks. A row is the return that the first episodes of a half of the life miss, on the average, of the best
-possible. Relative returns would mean nothing in the factory, where the best possible may be about 0. With the
-figure ``results/bench_long_lived_worlds.png``.
+Each round is one life of each agent in each world, on the same tasks. A row is the return that the first episodes
+of a half of the life miss, on the average, of the best possible. Relative returns would mean nothing in the
+factory, where the best possible may be about 0. With the figure ``results/bench_long_lived_worlds.png``.
 """
 
 from collections.abc import Sequence
@@ -33,14 +32,12 @@ FULL = "full"
 UNIT = "points below the best possible"
 BLOCKS = 4
 """Parts of a life in the figure."""
-OTHER_SHARE = 2
-"""Every how many rounds there is a life in worlds other than the factory."""
 
 
 def bench_long_lived_worlds(repeats: int, progress: Progress, map: str | None = None, out: Path = OUT) -> dict:
     """Rows and goals; see `lifelore.experiments.bench.bench`. `map`: a ROS map of one more building."""
     every = cases(map)
-    work = [(case, life) for case in every for life in range(repeats) if _lives(case, life)]
+    work = [(case, life) for case in every for life in range(repeats)]
     found: dict[str, dict[str, list[Life]]] = {case.name: {name: [] for name in case.agents} for case in every}
     best: dict[str, list[Array]] = {case.name: [] for case in every}
     for done, (case, life) in enumerate(work):
@@ -59,10 +56,6 @@ def bench_long_lived_worlds(repeats: int, progress: Progress, map: str | None = 
             goals += _goals(case, lives)
     _draw(every, found, out)
     return {"rows": rows, "goals": goals}
-
-
-def _lives(case: Case, life: int) -> bool:
-    return case.name == "factory" or life % OTHER_SHARE == 0
 
 
 def _missed(lives: Sequence[Life], first: int, last: int) -> Array:

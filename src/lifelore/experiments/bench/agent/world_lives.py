@@ -66,7 +66,7 @@ class Life:
     alarms: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, np.bool_))
 
 
-def cases(map: str | None = None, n_orders: int = 24, n_ways: int = 30) -> list[Case]:
+def cases(map: str | None = None, n_orders: int = 24, n_ways: int = 90) -> list[Case]:
     """The worlds; the factory also with a late type and a change of the usual types."""
     found = [
         Case("factory", _factory(), n_orders, 2, (*AGENT_NAMES, *PEERS)),
