@@ -92,8 +92,8 @@ class TabletopFamily:
         """At first all results are equally likely; handing over the target pays, all else costs."""
         found = np.zeros((self.n_causes, self.n_effects))
         found[:N_SITUATED, :N_RESULTS] = 1 / N_RESULTS
-        handed = np.array([HANDED, HANDED + 1])
-        pays = np.isin(np.arange(len(PAYMENTS)), [*handed, *(handed + WITH_SPILL)])
+        target = (HANDED, HANDED + 1, HANDED + WITH_SPILL, HANDED + 1 + WITH_SPILL)
+        pays = np.isin(np.arange(len(PAYMENTS)), target)
         likely = np.where((BIN_MIDDLES > 0) == pays[:, None], 1.0, UNLIKELY)
         found[N_SITUATED:] = likely / likely.sum(axis=1, keepdims=True)
         return found
