@@ -12,10 +12,7 @@ import pytest
 
 from lifelore.core.errors import InputError, MissingExtraError
 from lifelore.experiments.engine import cluster
-from lifelore.experiments.engine.cluster import run_on_worker
-from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import reproduce
-from lifelore.experiments.engine.source_key import source_key
 
 CLAIM = "C3.2"
 
@@ -81,18 +78,6 @@ def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, 
     ours, theirs = ({path.name: json.loads(path.read_text())["result"] for path in own} for own in cells)
     assert ours == theirs
     assert len(ours) == total
-
-
-def test_a_worker_with_other_code_refuses():
-    claim = claim_of(CLAIM)
-    settings = claim.settings("quick", None)
-    cell = claim.cells(settings)[0]
-    code = source_key(claim.run_cell.__module__)
-    place, result, seconds = run_on_worker(3, CLAIM, settings, cell, 0, code)
-    assert (place, result) == (3, claim.run_cell(settings, cell, 0))
-    assert seconds > 0
-    with pytest.raises(InputError, match=f"has other code of {CLAIM}"):
-        run_on_worker(3, CLAIM, settings, cell, 0, "other")
 
 
 def test_a_scheduler_that_is_not_there(monkeypatch, tmp_path):

@@ -71,12 +71,12 @@ def test_a_number_that_a_seed_has_not_measured_is_missing():
 
 
 def test_seeds_decide_what_one_leaves_open(toy, tmp_path):
-    reproduce.reproduce(["C3.1"], "full", out=tmp_path)
+    reproduce.reproduce(["C3.1"], "full", jobs=1, out=tmp_path)
     alone = json.loads((tmp_path / "C3.1" / "result.json").read_text())
     assert alone["second"]["verdict"] == "undecided"
     assert deciding_conditions(toy, alone["measured"]) == ["up"]
     calls = []
-    (pool,) = run_seeds(["C3.1"], 4, "full", out=tmp_path, progress=lambda *call: calls.append(call))
+    (pool,) = run_seeds(["C3.1"], 4, "full", jobs=1, out=tmp_path, progress=lambda *call: calls.append(call))
     assert pool["verdict"] == "holds"
     assert [one["seed"] for one in pool["by_seed"]] == pool["seeds"] == [0, 1, 2, 3]
     assert sorted(RAN) == [(seed, i) for seed in range(4) for i in range(6)]  # seed 0 once
@@ -84,12 +84,12 @@ def test_seeds_decide_what_one_leaves_open(toy, tmp_path):
     assert json.loads((tmp_path / "C3.1" / "seeds.json").read_text()) == pool
     assert set(pool["pooled"]) == {"x"}, "only what the verdict counts"
     # Finished cells are taken up.
-    assert run_seeds(["C3.1"], 4, "full", out=tmp_path) == [pool]
+    assert run_seeds(["C3.1"], 4, "full", jobs=1, out=tmp_path) == [pool]
     assert len(RAN) == 24
 
 
 def test_a_verdict_that_no_number_can_turn_by_its_width_needs_no_more_seeds(toy, tmp_path):
-    (far,) = reproduce.reproduce(["C3.1"], "full", {"shift": 5.0}, out=tmp_path)
+    (far,) = reproduce.reproduce(["C3.1"], "full", {"shift": 5.0}, jobs=1, out=tmp_path)
     assert far["second"]["verdict"] == "holds"
     assert deciding_conditions(toy, far["measured"]) == []
 
@@ -98,8 +98,8 @@ def test_the_page_shows_the_pool_and_that_it_depends_on_the_seed(toy, tmp_path, 
     from lifelore.experiments.engine import claim_section as page
 
     monkeypatch.setattr(page, "claim_of", lambda claim_id: toy)
-    reproduce.reproduce(["C3.1"], "full", out=tmp_path)
-    (pool,) = run_seeds(["C3.1"], 4, "full", out=tmp_path)
+    reproduce.reproduce(["C3.1"], "full", jobs=1, out=tmp_path)
+    (pool,) = run_seeds(["C3.1"], 4, "full", jobs=1, out=tmp_path)
     result = json.loads((tmp_path / "C3.1" / "result.json").read_text()) | {"seeds": pool, "made": None}
     assert verdict_now(result) == "holds"
     section = claim_section(result, "results")
@@ -121,7 +121,7 @@ def test_what_cannot_be_pooled_is_refused(toy, tmp_path, monkeypatch):
     (tmp_path / "C3.1").mkdir()
     (tmp_path / "C3.1" / "result.json").write_text("{")
     with pytest.raises(InputError, match="is not JSON"):
-        run_seeds(["C3.1"], 4, "full", out=tmp_path)
+        run_seeds(["C3.1"], 4, "full", jobs=1, out=tmp_path)
     monkeypatch.setattr(more_seeds, "claim_of", lambda claim_id: replace(toy, second=None))
     with pytest.raises(InputError, match=r"C3\.1 has none"):
         run_seeds(["C3.1"], 4, out=tmp_path)

@@ -137,7 +137,7 @@ def test_rounded():
 
 
 def test_a_quick_run_never_takes_the_place_of_evidence(toy, tmp_path):
-    reproduce(["C3.1"], "full", out=tmp_path)
+    reproduce(["C3.1"], "full", out=tmp_path, jobs=1)
     evidence = (tmp_path / "C3.1" / "result.json").read_bytes()
     reproduce(["C3.1"], "quick", out=tmp_path)
     assert (tmp_path / "C3.1" / "result.json").read_bytes() == evidence

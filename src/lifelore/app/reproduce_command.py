@@ -20,10 +20,10 @@ def reproduce(
     settings: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="Change a setting of the claims.")
     ] = None,
-    jobs: Annotated[int | None, typer.Option(help="Threads; results do not depend on their number.")] = None,
+    jobs: Annotated[int | None, typer.Option(help="Parts that run at once; results do not depend on it.")] = None,
     engine: Annotated[
         str,
-        typer.Option(help="Where parts run: local (threads) or dask (a cluster; extra cluster); same results."),
+        typer.Option(help="Where parts run: local (here) or dask (a cluster; extra cluster); same results."),
     ] = "local",
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="dask: the cluster's scheduler, such as tcp://host:8786.")

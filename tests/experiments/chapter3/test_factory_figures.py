@@ -7,7 +7,7 @@ from matplotlib.collections import PathCollection
 from lifelore.domains.factory.layout import factory
 from lifelore.experiments.chapter3.c3_04_factory_priors.factory_floor import draw_factory_prior
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.reproduce import finish
+from lifelore.experiments.engine.reproduce import ClaimRun, finish
 from lifelore.figures.style import colour_of, house_style, new_figure
 
 FEW = {"runs": 3, "episodes": 10, "max_steps": 150, "ties": ["uniform"], "alpha0": [0.1]}
@@ -27,7 +27,7 @@ def results():
             overrides = {**overrides, "grid_tasks": [1, 4]}
         settings = claim.settings("quick", overrides)
         kept = [{"result": claim.run_cell(settings, cell, 1), "seconds": 0.0} for cell in claim.cells(settings)]
-        found[claim_id] = finish(claim, "quick", settings, 1, kept)
+        found[claim_id] = finish(ClaimRun(claim, "quick", settings, 1), kept)
     return found
 
 

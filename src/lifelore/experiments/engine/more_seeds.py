@@ -24,7 +24,7 @@ from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.condition_table import COUNTED
 from lifelore.experiments.engine.predicate import Measured
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.reproduce import result_folder, rounded, run_plan, stored_result
+from lifelore.experiments.engine.reproduce import ClaimRun, result_folder, rounded, run_plan, stored_result
 
 FILE = "seeds.json"
 
@@ -64,10 +64,14 @@ def run_seeds(
     chosen = [(claim, claim.settings(mode, overrides)) for claim in claims]
     stored = [_stored(claim, Path(out), mode, settings, seed) for claim, settings in chosen]
     seeds = [range(seed + len(kept), seed + n_seeds) for kept in stored]
-    plan = [(*one, each) for one, own in zip(chosen, seeds, strict=True) for each in own]
+    plan = [
+        ClaimRun(claim, mode, settings, each)
+        for (claim, settings), own in zip(chosen, seeds, strict=True)
+        for each in own
+    ]
     ready = sum(len(claim.cells(settings)) for (claim, settings), kept in zip(chosen, stored, strict=True) if kept)
     shown = _after(ready, progress) if progress else None
-    runs, found = run_plan(plan, mode, jobs, Path(out), shown), []
+    runs, found = run_plan(plan, jobs, out, shown), []
     for claim, kept, own in zip(claims, stored, seeds, strict=True):
         found.append(_pool(claim, [*kept, *islice(runs, len(own))]))
         text = json.dumps(found[-1], indent=1, ensure_ascii=False) + "\n"

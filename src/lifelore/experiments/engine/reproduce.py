@@ -1,15 +1,15 @@
-"""Run claims: cells on threads or a cluster, finished ones kept, then numbers, verdict, result file and figure.
+"""Run claims: cells, finished ones kept, then numbers, verdict, result file and figure.
 
-Results do not depend on the number of threads or workers, nor on whether a run was stopped and taken up again.
+Results do not depend on where cells run, nor on whether a run was stopped and taken up again.
 """
 
 import json
-from collections.abc import Generator, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import closing
+from itertools import chain
 from pathlib import Path
-from time import thread_time
-from typing import Any
+from typing import Any, NamedTuple
 
 from lifelore.core.errors import InputError, StoreError
 from lifelore.core.protocols import Progress
@@ -18,6 +18,7 @@ from lifelore.experiments.engine.cell_store import CellStore, write_atomically
 from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.provenance import provenance, versions
 from lifelore.experiments.engine.registry import built_ids, claim_of
+from lifelore.experiments.engine.run_cells import CellRun, run_on_threads, run_on_workers
 from lifelore.experiments.engine.source_key import source_key
 
 RESULT_KEYS = (
@@ -51,7 +52,7 @@ def reproduce(
     overrides : mapping, optional
         Settings to change, values or texts (``--set KEY=VALUE``); each must belong to every claim named.
     jobs : int, optional
-        Threads, at least 1; default: one a core.
+        Cells that run at once, at least 1; default: one a core.
     out : path
         Folder of the results. A quick run never takes the place of a full one: where that is there already it
         writes into ``<out>/<ID>/quick``. Finished cells are kept in ``<out>/<ID>/cells`` (those that claims share
@@ -61,7 +62,8 @@ def reproduce(
         ``progress(done, total, label)``, called from this thread as cells finish; both count the cells of all
         claims.
     engine : {"local", "dask"}
-        Where cells run: on threads here, or on the workers of a dask cluster (extra ``cluster``).
+        Where cells run: here (full runs with more than one job in processes, others on threads), or on the workers
+        of a dask cluster (extra ``cluster``).
     scheduler : str, optional
         Address of the cluster, such as ``tcp://host:8786``.
 
@@ -83,7 +85,38 @@ def reproduce(
     StoreError
         The disk refuses.
     KeyboardInterrupt
-        Ctrl-C; cells under way are finished and kept first.
+        Ctrl-C; cells under way are finished and kept first on threads, and dropped elsewhere.
+    """
+    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
+    plan = [ClaimRun(claim, mode, claim.settings(mode, overrides), seed) for claim in claims]
+    results = []
+    for claim, result in zip(claims, run_plan(plan, jobs, out, progress, engine, scheduler), strict=True):
+        _write(claim, result, result_folder(Path(out) / claim.id, mode))
+        results.append(result)
+    return results
+
+
+class ClaimRun(NamedTuple):
+    """A claim to run."""
+
+    claim: Claim
+    mode: str
+    settings: dict
+    seed: int
+
+
+def run_plan(
+    plan: Sequence[ClaimRun],
+    jobs: int | None,
+    out: str | Path,
+    progress: Progress | None,
+    engine: str = "local",
+    scheduler: str | None = None,
+) -> Iterator[dict]:
+    """The results of claims, one after the other; cells are kept in `out`, results not written.
+
+    Cells of all claims share the workers, so that none waits for the last cell of a claim. `progress` counts the
+    cells of all.
     """
     if engine not in ENGINES:
         raise InputError(f"engine must be one of {', '.join(ENGINES)}, got '{engine}'")
@@ -92,52 +125,53 @@ def reproduce(
             f"engine dask and scheduler belong together, got engine '{engine}' and scheduler {scheduler}; "
             "give --engine dask --scheduler tcp://HOST:8786, or neither"
         )
-    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
-    plan = [(claim, claim.settings(mode, overrides), seed) for claim in claims]
-    results = []
-    for claim, result in zip(claims, run_plan(plan, mode, jobs, Path(out), progress, scheduler), strict=True):
-        _write(claim, result, result_folder(Path(out) / claim.id, mode))
-        results.append(result)
-    return results
-
-
-def run_plan(
-    plan: Sequence[tuple[Claim, dict, int]],
-    mode: str,
-    jobs: int | None,
-    out: Path,
-    progress: Progress | None,
-    scheduler: str | None = None,
-) -> Iterator[dict]:
-    """The results of claims with settings and seeds, one after the other; cells are kept, results not written.
-
-    `progress` counts the cells of all.
-    """
     jobs = usable_cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
-    sizes, before = [len(claim.cells(settings)) for claim, settings, _ in plan], 0
-    for (claim, settings, seed), size in zip(plan, sizes, strict=True):
-        shown = _part_of(progress, before, sum(sizes)) if progress else _silent
-        store = _store(claim, settings, seed, out)
-        yield finish(claim, mode, settings, seed, _run_cells(claim, settings, seed, store, jobs, shown, scheduler))
-        before += size
+
+    asked = [_cell_runs(run, Path(out)) for run in plan]
+    places = [[one.store.path(one.cell) for one in own] for own in asked]
+    once = dict(zip(chain(*places), chain(*asked), strict=True))  # claims that share a cell have one place for it
+    kept = {place: found for place, one in once.items() if (found := one.store.get(one.cell)) is not None}
+    missing = [place for place in once if place not in kept]
+    cells = [once[place] for place in missing]
+
+    shown, uses = progress or _silent, Counter(chain(*places))
+    done, total = sum(uses[place] for place in kept), uses.total()
+    shown(done, total, plan[0].claim.id)
+    quick = all(run.mode == "quick" for run in plan)
+    if scheduler is None and (quick or min(jobs, len(cells)) < 2):
+        finished = run_on_threads(cells, jobs)
+    else:
+        finished = run_on_workers(cells, jobs, scheduler)
+    with closing(finished):
+        for run, own in zip(plan, places, strict=True):
+            while not kept.keys() >= set(own):
+                number, cell = next(finished)
+                kept[missing[number]] = cell
+                done += uses[missing[number]]
+                shown(done, total, run.claim.id)
+            yield finish(run, [kept[place] for place in own])
 
 
-def _part_of(progress: Progress, before: int, total: int) -> Progress:
-    """Progress of one claim as a part of the cells of all claims."""
-    return lambda done, _, label: progress(before + done, total, label)
+def _silent(done: int, total: int, label: str) -> None:
+    pass
 
 
-def _store(claim: Claim, settings: dict, seed: int, out: Path) -> CellStore:
+def _cell_runs(run: ClaimRun, out: Path) -> list[CellRun]:
+    store = _store(run, out)
+    return [CellRun(run.claim, run.settings, run.seed, cell, store) for cell in run.claim.cells(run.settings)]
+
+
+def _store(run: ClaimRun, out: Path) -> CellStore:
     """Where the finished cells of a run are; claims that share cells use one place."""
-    module = claim.run_cell.__module__
-    made = {"seed": seed, "code": source_key(module)}
+    claim, module = run.claim, run.claim.run_cell.__module__
+    made = {"seed": run.seed, "code": source_key(module)}
     if claim.shared is None:
-        return CellStore(out / claim.id / "cells", {"claim": claim.id, "settings": settings, **made})
-    read = {name: settings[name] for name in claim.shared}
-    run = f"{module}.{claim.run_cell.__qualname__}"
-    return CellStore(out / "shared" / "cells", {"run": run, "settings": read, **made})
+        return CellStore(out / claim.id / "cells", {"claim": claim.id, "settings": run.settings, **made})
+    read = {name: run.settings[name] for name in claim.shared}
+    name = f"{module}.{claim.run_cell.__qualname__}"
+    return CellStore(out / "shared" / "cells", {"run": name, "settings": read, **made})
 
 
 def stored_result(folder: Path, claim_id: str) -> dict | None:
@@ -165,74 +199,13 @@ def result_folder(folder: Path, mode: str) -> Path:
     return folder / "quick" if kept is not None and kept["mode"] == "full" else folder
 
 
-def _silent(done: int, total: int, label: str) -> None:
-    pass
-
-
-def _run_cells(
-    claim: Claim, settings: dict, seed: int, store: CellStore, jobs: int, progress, scheduler: str | None
-) -> list[dict]:
-    """All cells in order, stored ones read, the others run."""
-    cells = claim.cells(settings)
-    kept = [store.get(cell) for cell in cells]
-    missing = [i for i, found in enumerate(kept) if found is None]
-    done = len(cells) - len(missing)
-    progress(done, len(cells), claim.id)
-
-    wanted = [cells[i] for i in missing]
-    if scheduler is None:
-        finished = _on_threads(claim, settings, wanted, seed, store, jobs)
-    else:
-        finished = _on_cluster(claim, settings, wanted, seed, store, scheduler)
-    with closing(finished):
-        for place, cell in finished:
-            kept[missing[place]] = cell
-            done += 1
-            progress(done, len(cells), claim.id)
-    return kept  # type: ignore[return-value]
-
-
-Finished = Generator[tuple[int, dict], None, None]
-"""Place and content of each finished cell, which is stored already."""
-
-
-def _on_threads(claim: Claim, settings: dict, cells: list, seed: int, store: CellStore, jobs: int) -> Finished:
-    """Run cells on threads; where it is stopped, cells under way are finished and stored first."""
-    from threadpoolctl import threadpool_limits
-
-    def run(i: int) -> dict:
-        began = thread_time()
-        result = claim.run_cell(settings, cells[i], seed)
-        return store.put(cells[i], result, thread_time() - began)
-
-    # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
-    with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
-        place: dict[Future, int] = {pool.submit(run, i): i for i in range(len(cells))}
-        try:
-            for future in as_completed(place):
-                yield place[future], future.result()
-        except BaseException:
-            pool.shutdown(wait=True, cancel_futures=True)
-            raise
-
-
-def _on_cluster(
-    claim: Claim, settings: dict, cells: list, seed: int, store: CellStore, scheduler: str
-) -> Finished:
-    """Run cells on a cluster; where it is stopped, cells under way are dropped."""
-    from lifelore.experiments.engine.cluster import cells_on_cluster
-
-    if cells:
-        for place, result, seconds in cells_on_cluster(scheduler, claim.id, settings, cells, seed):
-            yield place, store.put(cells[place], result, seconds)
-
-
-def finish(claim: Claim, mode: str, settings: dict, seed: int, kept: Sequence[Mapping]) -> dict:
+def finish(run: ClaimRun, kept: Sequence[Mapping]) -> dict:
     """The result of a run from its finished cells, plain data.
 
     Measures that a condition, a figure or a page reads stand under ``measured``; the others are the last row,
     ``{"other_measures": …}``.
     """
+    claim, mode, settings, seed = run
     results = [found["result"] for found in kept]
     estimates = {name: rounded(estimate.to_dict()) for name, estimate in claim.measure(settings, results).items()}
     measured, others = split_measures(claim, estimates)

@@ -9,7 +9,7 @@ from typing import Any
 from lifelore.core.errors import NotFoundError
 from lifelore.core.protocols import Progress
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.reproduce import own_rows, reproduce, stored_result
+from lifelore.experiments.engine.reproduce import ClaimRun, own_rows, run_plan, stored_result
 
 MOST_SHOWN = 20
 """Differences that are listed for a claim."""
@@ -33,7 +33,7 @@ def verify(
     ids : sequence of str
         Empty: every claim that has a result in `out`.
     jobs, progress, engine, scheduler
-        As for `reproduce`; progress counts the cells of one claim after the other.
+        As for `reproduce`.
     out : path
         Folder of ``<ID>/result.json``.
 
@@ -52,16 +52,11 @@ def verify(
     InputError
         A result is no JSON, or was made with settings that the claim has no more.
     """
-    results = {claim_id: _stored(Path(out), claim_id) for claim_id in ids or _with_results(Path(out))}
-    found = []
-    with TemporaryDirectory() as folder:  # one for all: claims that share cells compute them once
-        for claim_id, stored in results.items():
-            again = reproduce(
-                [claim_id], stored["mode"], stored["settings"], jobs, folder, stored["seed"], progress, engine,
-                scheduler,
-            )[0]  # fmt: skip
-            found.append(compared(stored, again))
-    return found
+    results = [_stored(Path(out), claim_id) for claim_id in ids or _with_results(Path(out))]
+    plan = [_as_stored(result) for result in results]
+    with TemporaryDirectory() as folder:
+        again = run_plan(plan, jobs, folder, progress, engine, scheduler)
+        return [compared(stored, new) for stored, new in zip(results, again, strict=True)]
 
 
 def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, Any]:
@@ -91,6 +86,11 @@ def _stored(out: Path, claim_id: str) -> dict[str, Any]:
     if found is None:
         raise NotFoundError(f"no result of {claim_id} in {out}; run `lifelore reproduce {claim_id}` first")
     return found
+
+
+def _as_stored(result: Mapping[str, Any]) -> ClaimRun:
+    claim = claim_of(result["claim"])
+    return ClaimRun(claim, result["mode"], claim.settings(result["mode"], result["settings"]), result["seed"])
 
 
 def _numbers(result: Mapping[str, Any]) -> dict[str, Any]:
