@@ -20,6 +20,7 @@ from lifelore.experiments.engine.report import (
     write_pages,
 )
 from lifelore.experiments.engine.reproduce import MAX_BYTES, RESULT_KEYS, reproduce, rounded
+from lifelore.experiments.engine.run_again import minutes, run_again
 from lifelore.experiments.engine.second_reading import SECOND_VERDICTS
 
 ROOT = Path(__file__).parents[2]
@@ -97,6 +98,23 @@ def test_the_index_says_of_every_claim_what_holds_and_why_some_cannot_be_told():
         assert verdict.lower() == verdict_now(result)
         if result["verdict"] == "cannot be tested":
             assert f"#{claim.id.lower().replace('.', '-')}): {claim.ran}" in rest
+
+
+def test_the_index_says_what_running_again_costs_and_what_came_of_it():
+    shared = [result for result in read_results(RESULTS) if result["claim"] in ("C2.1", "C2.2", "C3.2")]
+    assert minutes(shared) == pytest.approx((shared[0]["seconds"] + shared[2]["seconds"]) / 60), (
+        "shared cells once"
+    )
+    lines = "\n".join(run_again(shared, [], "results"))
+    assert f"{minutes(shared):.0f} minutes of processor time" in lines
+    assert "simulate physics (C2.1, C2.2)" in lines
+    assert "Last run" not in lines
+    made = {"date": "2030-01-02", "commit": "0123456789", "processor": "P"}
+    one = {"claim": "C3.1", "equal": True, "made": made, "n_differences": 0, "verdict": "holds"}
+    other = {**one, "claim": "C3.2", "equal": False, "n_differences": 3, "verdict": "undecided"}
+    lines = "\n".join(run_again(shared, [one, other], "results"))
+    assert "(2030-01-02, commit 0123456, P): 1 of 2 results were equal" in lines
+    assert "Others differ: C3.2 (3 numbers, verdict undecided)." in lines
 
 
 def test_every_claim_that_is_built_has_a_committed_result():

@@ -51,6 +51,7 @@ def test_where_and_what_differs():
     other = {
         "claim": "C3.1", "verdict": "holds in part", "versions": {"numpy": "2"}, "rows": [{"x": 1}],
         "measured": {"a": {"value": 1.0}, "b": {"value": 3}, "seconds": {"value": 6.0}}, "made": {"source": "k"},
+        "seconds": 7.0,
     }  # fmt: skip
     found = compared(one, other)
     assert [difference["where"] for difference in found["differences"]] == ["verdict", "measured.b", "rows[1]"]

@@ -8,6 +8,7 @@ from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.more_seeds import deciding_conditions
 from lifelore.experiments.engine.predicate import FAILS, HOLDS, IN_PART, UNTESTED, VERDICTS
 from lifelore.experiments.engine.registry import built_ids, claim_of
+from lifelore.experiments.engine.run_again import run_again
 from lifelore.experiments.engine.second_reading import NO, SECOND_VERDICTS, UNDECIDED
 
 CHAPTERS = {
@@ -54,8 +55,8 @@ def chapter_of(claim_id: str) -> str:
     return claim_id[1:].partition(".")[0]
 
 
-def index_page(found: Sequence[Mapping], figures: str) -> str:
-    """The page as Markdown; `figures` is the folder of the results as its links see it."""
+def index_page(found: Sequence[Mapping], verified: Sequence[Mapping], figures: str) -> str:
+    """The page as Markdown; `verified` as in `run_again`, `figures`: the folder of the results as links see it."""
     lines = [OPENING, _total(found), "", f"![Verdicts of all claims]({figures}/verdicts.png)", ""]
     lines += ["A tile is a claim: its upper half the second reading, the rest the first.", ""]
     lines += ["## What holds", ""]
@@ -66,7 +67,8 @@ def index_page(found: Sequence[Mapping], figures: str) -> str:
             lines += [f"### [{title}](chapter{number}.md)", ""]
             lines += [NOTES[number], ""] if number in NOTES else []
             lines += _sentences(results)
-    lines += [*_without_answer(found), READINGS, *_tables(found), *_counts(found)]
+    lines += [*_without_answer(found), READINGS, *run_again(found, verified, figures)]
+    lines += [*_tables(found), *_counts(found)]
     return "\n".join(lines)
 
 

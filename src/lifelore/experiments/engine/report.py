@@ -9,6 +9,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
+from lifelore.experiments.engine import verify
 from lifelore.experiments.engine.cell_store import write_atomically
 from lifelore.experiments.engine.claim_section import claim_section, verdict_now
 from lifelore.experiments.engine.index_page import CHAPTERS, chapter_of, index_page
@@ -33,7 +34,7 @@ def render_pages(results: str | Path = "results", figures: str = "../../results"
         The same folder as the pages' links see it.
     """
     found = pooled_results(results)
-    pages = {"index.md": index_page(found, figures)}
+    pages = {"index.md": index_page(found, verified(results), figures)}
     for number, title in CHAPTERS.items():
         sections = [claim_section(result, figures) for result in found if chapter_of(result["claim"]) == number]
         if sections:
@@ -72,6 +73,12 @@ def pooled_results(results: str | Path) -> list[dict]:
         if path.exists():
             result["seeds"] = json.loads(path.read_text(encoding="utf-8"))
     return found
+
+
+def verified(results: str | Path) -> list[dict]:
+    """What came of it when the results were last run again; empty where nobody has."""
+    path = Path(results) / verify.FILE
+    return json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
 
 
 def verdicts(results: str | Path) -> dict[str, list[tuple[str, str | None, str | None]]]:

@@ -11,6 +11,8 @@ from lifelore.core.protocols import Progress
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.reproduce import ClaimRun, own_rows, run_plan, stored_result
 
+FILE = "verify.json"
+"""Among the results: what `verify` gave for all of them, ``--json``."""
 MOST_SHOWN = 20
 """Differences that are listed for a claim."""
 ABSENT = "nothing"
@@ -42,8 +44,9 @@ def verify(
     list of dict
         For each claim: ``claim``; ``equal``: whether verdict, measures and rows are the same to the last digit;
         ``n_differences`` and the first of them in ``differences``, ``{"where", "stored", "now"}``; ``changed``,
-        the same for versions, code, processor and data, which may explain them; ``verdict`` now. Measures of
-        time, whose names begin with ``seconds``, are not compared, nor the rows of a claim that measures time.
+        the same for versions, code, processor and data, which may explain them; ``verdict``, ``seconds`` and
+        ``made`` now. Measures of time, whose names begin with ``seconds``, are not compared, nor the rows of a
+        claim that measures time.
 
     Raises
     ------
@@ -67,6 +70,8 @@ def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, A
         "claim": stored["claim"],
         "equal": not differences,
         "verdict": again["verdict"],
+        "seconds": again["seconds"],
+        "made": again["made"],
         "n_differences": len(differences),
         "differences": differences[:MOST_SHOWN],
         "changed": changed,

@@ -1,0 +1,63 @@
+"""A part of the reproduction's first page: how to run it again, what that costs, and what came of it last."""
+
+from collections.abc import Mapping, Sequence
+
+from lifelore.experiments.engine.registry import claim_of
+from lifelore.experiments.engine.source_key import foreign_modules
+
+SIMULATOR = "mujoco"
+
+
+def run_again(found: Sequence[Mapping], verified: Sequence[Mapping], figures: str) -> list[str]:
+    """Lines of Markdown.
+
+    Parameters
+    ----------
+    found : sequence of results
+        Each as `reproduce` gives it.
+    verified : sequence of mappings
+        What `verify` gave last, ``<results>/verify.json``; may be empty.
+    figures : str
+        The folder of the results as the page's links see it.
+    """
+    physics = [result for result in found if simulates_physics(result["claim"])]
+    whose = ", ".join(result["claim"] for result in physics) or "none"
+    lines = [
+        "## Run it again",
+        "",
+        "`lifelore reproduce --verify` runs every stored result again, with its settings and seed, and compares",
+        "the numbers to the last digit; `lifelore reproduce --verify C3.2` does so for one claim. All claims take",
+        f"{minutes(found):.0f} minutes of processor time, which the cores share; {minutes(physics):.0f} of them",
+        f"go to claims that simulate physics ({whose}). What claims share is run once.",
+        "",
+    ]
+    if verified:
+        equal = sum(one["equal"] for one in verified)
+        made = {(one["made"]["date"], one["made"]["commit"][:7], one["made"]["processor"]) for one in verified}
+        where = "; ".join(f"{date}, commit {commit}, {processor}" for date, commit, processor in sorted(made))
+        others = [
+            f"{one['claim']} ({one['n_differences']} numbers, verdict {one['verdict']})"
+            for one in verified if not one["equal"]
+        ]  # fmt: skip
+        differ = f" Others differ: {', '.join(others)}." if others else ""
+        lines += [
+            f"[Last run]({figures}/verify.json) ({where}): {equal} of {len(verified)} results were equal to the",
+            f"last digit.{differ}",
+            "",
+        ]
+    return lines
+
+
+def minutes(results: Sequence[Mapping]) -> float:
+    """Processor minutes of results, cells that claims share counted once."""
+    once = {}
+    for result in results:
+        claim = claim_of(result["claim"])
+        where = claim.id if claim.shared is None else claim.run_cell.__module__
+        once[where] = max(result["seconds"], once.get(where, 0.0))
+    return sum(once.values()) / 60
+
+
+def simulates_physics(claim_id: str) -> bool:
+    """Whether a claim's run rests on the physics simulator."""
+    return SIMULATOR in foreign_modules(claim_of(claim_id).run_cell.__module__)
