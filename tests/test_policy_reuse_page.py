@@ -11,7 +11,7 @@ import pytest
 from lifelore.app.command_line import run as run_command
 from lifelore.experiments.bench.interaction.reuse import EI
 from lifelore.experiments.engine.claim_section import verdict_now
-from lifelore.experiments.engine.report import pooled_results
+from lifelore.experiments.engine.report import read_results
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
@@ -92,7 +92,7 @@ def test_verdicts_are_those_of_the_results():
         r"^\| \[(C4\.\d+)\]\(.*?\) \|[^|]*\| (holds in part|holds|does not hold|undecided): ", PAGE, flags=re.M
     )
     assert [claim for claim, _ in told] == [f"C4.{number}" for number in (*range(1, 14), 15, 16, 17)]
-    now = {result["claim"]: verdict_now(result) for result in pooled_results(RESULTS)}
+    now = {result["claim"]: verdict_now(result) for result in read_results(RESULTS)}
     assert dict(told) == {claim: now[claim] for claim, _ in told}
 
 

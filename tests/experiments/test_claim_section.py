@@ -9,10 +9,10 @@ from lifelore.experiments.engine.claim_section import MOST_WORDS, claim_section,
 from lifelore.experiments.engine.condition_table import counted_rows
 from lifelore.experiments.engine.predicate import FAILS, HOLDS
 from lifelore.experiments.engine.registry import built_ids, claim_of
-from lifelore.experiments.engine.report import pooled_results
+from lifelore.experiments.engine.report import read_results
 from lifelore.experiments.engine.second_reading import MISSING, NO, YES
 
-RESULTS = pooled_results(Path(__file__).parents[2] / "results")
+RESULTS = read_results(Path(__file__).parents[2] / "results")
 
 
 def in_view(section: str) -> str:

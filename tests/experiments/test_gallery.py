@@ -7,6 +7,7 @@ import pytest
 
 from lifelore.core.errors import NotFoundError
 from lifelore.experiments.engine.gallery import render_gallery, write_gallery
+from lifelore.experiments.engine.report import read_results
 
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "gallery.md"
@@ -32,6 +33,17 @@ def test_its_links_lead_to_sections():
         name, _, anchor = link.partition("#")
         assert not anchor or f'<a id="{anchor}"></a>' in (PAGE.parent / name).read_text(encoding="utf-8")
         assert (PAGE.parent / name).is_file()
+
+
+def test_verdicts_are_those_of_the_seeds_together():
+    together = {
+        result["claim"]: result["seeds"]["verdict"]
+        for result in read_results(ROOT / "results")
+        if "seeds" in result
+    }
+    assert together
+    for claim, verdict in together.items():
+        assert re.search(rf"\| \[{re.escape(claim)}\]\([^|]*: {verdict} \|", TEXT), claim
 
 
 def made(root: Path, figures: dict[str, str], page: str) -> Path:

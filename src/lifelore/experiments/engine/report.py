@@ -33,7 +33,7 @@ def render_pages(results: str | Path = "results", figures: str = "../../results"
     figures : str
         The same folder as the pages' links see it.
     """
-    found = pooled_results(results)
+    found = read_results(results)
     pages = {"index.md": index_page(found, verified(results), figures)}
     for number, title in CHAPTERS.items():
         sections = [claim_section(result, figures) for result in found if chapter_of(result["claim"]) == number]
@@ -53,6 +53,8 @@ def write_pages(results: str | Path = "results", folder: str | Path = "docs/repr
 def read_results(results: str | Path) -> list[dict]:
     """All results of a folder, in the ledger's order.
 
+    Each has the pool of its seeds under ``seeds`` where several have run.
+
     Raises
     ------
     StoreError, InputError
@@ -61,17 +63,10 @@ def read_results(results: str | Path) -> list[dict]:
     found = []
     for entry in entries():
         result = stored_result(Path(results) / entry.id, entry.id)
-        found += [] if result is None else [result]
-    return found
-
-
-def pooled_results(results: str | Path) -> list[dict]:
-    """`read_results`, each with the pool of its seeds under ``seeds`` where several have run."""
-    found = read_results(results)
-    for result in found:
-        path = Path(results) / result["claim"] / FILE
-        if path.exists():
-            result["seeds"] = json.loads(path.read_text(encoding="utf-8"))
+        if result is None:
+            continue
+        pool = Path(results) / entry.id / FILE
+        found.append(result | ({"seeds": json.loads(pool.read_text(encoding="utf-8"))} if pool.exists() else {}))
     return found
 
 
@@ -83,7 +78,7 @@ def verified(results: str | Path) -> list[dict]:
 
 def verdicts(results: str | Path) -> dict[str, list[tuple[str, str | None, str | None]]]:
     """By chapter: id, verdict of the first and of the second reading of every claim of the ledger."""
-    found = {result["claim"]: result for result in pooled_results(results)}
+    found = {result["claim"]: result for result in read_results(results)}
     rooms: dict[str, list[tuple[str, str | None, str | None]]] = {title: [] for title in CHAPTERS.values()}
     for entry in entries():
         result = found.get(entry.id, {})

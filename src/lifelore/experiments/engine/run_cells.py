@@ -11,7 +11,7 @@ from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor, as_co
 from contextlib import nullcontext
 from time import thread_time
 from typing import Any, NamedTuple
-from warnings import catch_warnings
+from warnings import catch_warnings, filterwarnings
 
 from lifelore.core.errors import InputError
 from lifelore.experiments.engine.cell_store import CellStore
@@ -75,6 +75,8 @@ def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = 
 
     from lifelore.experiments.engine.cluster import cluster_backend
 
+    # joblib replaces a worker that has grown by 300 MB, loses nothing, and warns from a thread of its own.
+    filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
     one: Any = 1  # joblib's annotations forget whole numbers
     with cluster_backend(scheduler) if scheduler else nullcontext():
         # A batch is a cell: cells take seconds, and the cells of a dead worker's batch all run again.
