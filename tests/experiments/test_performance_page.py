@@ -6,6 +6,8 @@ from pathlib import Path
 
 import pytest
 
+from lifelore.experiments.engine.run_again import minutes, simulates_physics
+
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs" / "performance.md").read_text()
 MARKS = re.findall(r"^<!-- goals (\w+) -->$", PAGE, flags=re.M)
@@ -50,3 +52,11 @@ def test_the_cost_of_a_million_learners_is_the_results():
         f"fall from {rows['Q-learners, 1: one core']:.0f} to {rows['Q-learners, 10,000: one core']:.0f} million",
     ):
         assert said in PAGE
+
+
+def test_running_all_claims_again_took_what_the_page_says():
+    found = json.loads((ROOT / "results" / "verify.json").read_text())
+    own = [one for one in found if not simulates_physics(one["claim"]) and one["claim"] != "C4.14"]
+    assert f"with the {len(own)} claims that neither" in PAGE
+    assert f"{minutes(own):.0f} minutes of processor time" in PAGE
+    assert f"The other {len(found) - len(own)} claims" in PAGE
