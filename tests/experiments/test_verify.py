@@ -28,6 +28,7 @@ def spoiled(stored, tmp_path, change):
 def test_a_result_is_equal_to_its_repetition_and_stays_as_it_is(stored):
     before = sorted((path, path.stat().st_mtime_ns) for path in stored.rglob("*"))
     (found,) = verify([], out=stored, jobs=2)
+    assert [one["claim"] for one in verify(["C3.1", "C3.1"], out=stored)] == ["C3.1"], "named twice, run once"
     assert (found["claim"], found["equal"], found["differences"], found["changed"]) == ("C3.1", True, [], [])
     assert sorted((path, path.stat().st_mtime_ns) for path in stored.rglob("*")) == before
 

@@ -55,7 +55,7 @@ def verify(
     InputError
         A result is no JSON, or was made with settings that the claim has no more.
     """
-    results = [_stored(Path(out), claim_id) for claim_id in ids or _with_results(Path(out))]
+    results = [_stored(Path(out), claim_id) for claim_id in dict.fromkeys(ids or _with_results(Path(out)))]
     plan = [_as_stored(result) for result in results]
     with TemporaryDirectory() as folder:
         again = run_plan(plan, jobs, folder, progress, engine, scheduler)
