@@ -353,7 +353,7 @@ MAKERS: list[Maker] = [
     (lambda: agent("greedy").explain(), lambda own: [own.to_dict()]),
     (lambda: agent("greedy").select_top(1)[0], nothing),
     (lambda: type_calibration(np.eye(3), np.arange(3)), lambda own: [own.to_dict()]),
-    (lambda: library().for_task().evidence.predicted(1, 2.0), nothing),
+    (lambda: library().for_task().evidence.evidence(1, 2.0, np.log(np.full(3, 1 / 3)), None), nothing),
     (lambda: users("f8").outcomes.tried(np.arange(3)), nothing),
     (lambda: UserNames(["ada", "ben"]), lambda own: [own.add(["carl"]), *own]),
     (lambda: SignalRows(np.full((3, 8), 0.5, np.float32), 4, 2), nothing),

@@ -10,7 +10,8 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.library.task_library import TaskLibrary
-from lifelore.interaction.outcomes import task_normals
+from lifelore.interaction.outcomes import task_normals, task_outcomes
+from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.spread import Spread
 from lifelore.interaction.reuse import reuse_algorithm
@@ -271,7 +272,7 @@ def test_kernels_and_numpy_give_the_same_bits(monkeypatch, static):
     signals = [(int(random.integers(5)), float(value)) for value in [*random.normal(scale=30, size=40), 1e6]]
     found = {}
     for compiled in (False, True):
-        for module in (task_normals, reuse_algorithm):
+        for module in (task_normals, task_outcomes, reuse_algorithm):
             monkeypatch.setattr(module, "kernel_pays", lambda numbers, pays=compiled: pays)
         agent = BayesianPolicyReuse(library, Greedy(), dynamics=TypeDynamics.static() if static else None)
         states = []
@@ -281,6 +282,35 @@ def test_kernels_and_numpy_give_the_same_bits(monkeypatch, static):
             excess = model.expected_mean_excess(float(model.mean.max()) - 5.0)
             states += [agent.log_belief, model.mean.copy(), model.noise.copy(), model.mean_variance, excess]
         found[compiled] = states
+    assert all(np.array_equal(a, b) for a, b in zip(found[True], found[False], strict=True))
+
+
+@pytest.mark.parametrize("static", [False, True])
+def test_kernels_and_numpy_give_the_same_bits_of_categories(monkeypatch, static):
+    """With several spreads, categories that some or all types never showed, and outcomes beside the signal."""
+    random = np.random.default_rng(5)
+    probs = random.dirichlet(np.full(5, 0.4), size=(6, 4))
+    probs[random.random(probs.shape) < 0.3] = 0.0
+    probs[:, 2, 3] = 0.0
+    probs /= probs.sum(axis=2, keepdims=True)
+    signal = CategorySignal(probs, count=random.integers(1, 20, (6, 4)))
+    signal._spread = Spread.up_to(0.8)
+    paid = CategoricalOutcomes.from_samples(random.integers(0, 3, (6, 4, 8)).astype(float), [0.0, 1.0, 2.0])
+    paid.spread = Spread.up_to(0.5)
+    library = PolicyLibrary(paid, signal)
+    shown = [(*random.integers((4, 5)).tolist(), float(random.integers(3))) for _ in range(40)]
+    found = {}
+    for compiled in (False, True):
+        for module in (task_outcomes, reuse_algorithm):
+            monkeypatch.setattr(module, "kernel_pays", lambda numbers, pays=compiled: pays)
+        agent = BayesianPolicyReuse(library, Greedy(), dynamics=TypeDynamics.static() if static else None)
+        states = []
+        for policy, category, outcome in [*shown[:20], (2, 3, 1.0), *shown[20:]]:
+            agent.update(policy, category, outcome)
+            assert agent.task is not None
+            states += [agent.log_belief, agent.task.evidence.log_weights, agent.expected_utility()]
+        found[compiled] = [*states, [agent.surprise, agent.unexplained]]
+    assert found[True][-1][1] >= 1  # the category that no type ever showed
     assert all(np.array_equal(a, b) for a, b in zip(found[True], found[False], strict=True))
 
 

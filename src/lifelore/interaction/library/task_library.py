@@ -64,7 +64,7 @@ class TaskLibrary(PolicyLibrary):
         if self.evidence is not None:
             self.evidence.learn(policy, signal, log_weights)
         if belief is not None and not self.signal_is_outcome and outcome is not None and self.outcomes_of_task:
-            predicted = self.outcomes_of_task.predicted(policy, outcome).by_spread
+            predicted = self.outcomes_of_task.predicted(policy, outcome)
             self.outcomes_of_task.learn(policy, outcome, self.outcomes_of_task.weights_after(predicted, belief))
         self._outdate()
 

@@ -106,6 +106,14 @@ class CategoricalOutcomes(CountedOutcomes):
     def _extent(self) -> str:
         return f"values {', '.join(f'{value:g}' for value in self.values[:10])}"
 
+    def cell_of(self, value: float) -> int | None:
+        """The cell of an outcome; None where it has none. As `cells_of`, faster for a single outcome."""
+        above = min(int(np.searchsorted(self.values, value)), self.values.size - 1)
+        below = max(above - 1, 0)
+        to_below, to_above = abs(value - float(self.values[below])), abs(value - float(self.values[above]))
+        nearest, apart = (below, to_below) if to_below < to_above else (above, to_above)
+        return nearest if apart <= SAME * max(1.0, abs(value)) else None
+
     def _cells(self, values: Array) -> NDArray[np.int64]:
         above = np.minimum(np.searchsorted(self.values, values), self.values.size - 1)
         below = np.maximum(above - 1, 0)

@@ -48,6 +48,14 @@ class DirichletRow:
         return mean, np.maximum(within, 0.0) / (self.weight + self.shown.sum() + 1)
 
 
+def first_log_probability(counts: Array, spread: Spread, category: int) -> Array:
+    """`DirichletRow.log_probability` of a row that has shown nothing, for one category alone; the same bits."""
+    total = counts.sum(axis=1)
+    all_weight = 1 / (1 / total + spread.values[:, None])
+    weight = all_weight * (counts[:, category] / total)
+    return np.log(weight / all_weight, out=np.full(weight.shape, -np.inf), where=weight > 0)
+
+
 def spread_of_counts(counts: Array, pseudo_count: float) -> Spread:
     """The spreads that the types of counts (n_policies, n_types, n_categories) leave possible.
 

@@ -12,10 +12,10 @@ from numpy.typing import ArrayLike, NDArray
 from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import joined_ends_of, joined_to
 from lifelore.interaction.finite_signals.signal_table import SignalTable
-from lifelore.interaction.outcomes.dirichlet import DirichletRow
+from lifelore.interaction.outcomes.dirichlet import DirichletRow, first_log_probability
 from lifelore.interaction.outcomes.outcome_model import is_outcome, over_pairs, refuse_outcome
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskOutcomes, normal_excess
+from lifelore.interaction.outcomes.task_outcomes import TaskOutcomes, normal_excess
 
 if TYPE_CHECKING:
     from lifelore.interaction.outcomes.counted_outcomes import CountedOutcomes
@@ -48,16 +48,13 @@ class TaskCounts(TaskOutcomes):
 
     # ---- what the task has shown ---------------------------------------------------------------------------
 
-    def predicted(self, policy: int, value: float) -> Predicted:
-        """The log density of `value` by spread and type, and its density in a task that has shown nothing."""
-        cell = self._cell(policy, value)
-        if cell is None:
-            nothing = np.full((len(self.log_weights), self.n_types), -np.inf)
-            return Predicted(nothing, nothing)
-        size = np.log(self.outcomes.cell_sizes[cell])
-        fresh = self._law(policy, fresh=True).log_probability(cell) - size
-        row = self._rows.get(policy)
-        return Predicted(fresh if row is None else row.log_probability(cell) - size, fresh)
+    def predicted(self, policy: int, value: float) -> Array:
+        """The log density of `value` given what the task has shown, (n_spreads, n_types)."""
+        return self._log_density(policy, value, self._rows.get(policy))
+
+    def predicted_anew(self, policy: int, value: float) -> Array:
+        """`predicted` of a task that has shown nothing."""
+        return self._log_density(policy, value, None)
 
     def learn(self, policy: int, value: float, log_weights: Array | None = None) -> None:
         """Take in an outcome of this task, and the spreads' log probabilities after it."""
@@ -188,8 +185,19 @@ class TaskCounts(TaskOutcomes):
             refuse_outcome(policy, value, self.n_policies)
         return self.outcomes.cell_of(value)
 
-    def _law(self, policy: int, fresh: bool = False) -> DirichletRow:
-        found = None if fresh else self._rows.get(policy)
+    def _log_density(self, policy: int, value: float, row: DirichletRow | None) -> Array:
+        """The log density of `value`, (n_spreads, n_types), by a row; None where nothing was shown."""
+        cell = self._cell(policy, value)
+        if cell is None:
+            return np.full((len(self.log_weights), self.n_types), -np.inf)
+        if row is None:
+            found = first_log_probability(self.outcomes.counts[policy], self.spread, cell)
+        else:
+            found = row.log_probability(cell)
+        return found - np.log(self.outcomes.cell_sizes[cell])
+
+    def _law(self, policy: int) -> DirichletRow:
+        found = self._rows.get(policy)
         return DirichletRow(self.outcomes.counts[policy], self.spread) if found is None else found
 
     def _outdate(self) -> None:

@@ -68,11 +68,23 @@ def task_evidence(
     count = shown[0]
     by = np.empty((n_spreads, n))
     _densities(value, count, shown[1], shown[2], location, variance, rarity, doubt, spreads, heights, by)
-    changing = log_anew.shape[0] > 0
     fresh = by
-    if changing and (count != 0.0 or shown[2] != 0.0):
+    if log_anew.shape[0] > 0 and (count != 0.0 or shown[2] != 0.0):
         fresh = np.empty((n_spreads, n))
         _densities(value, 0.0, 0.0, 0.0, location, variance, rarity, doubt, spreads, new_heights, fresh)
+    _evidence(by, fresh, log_weights, log_first, log_belief, log_anew, log_likelihood, changed, gain)
+
+
+@kernel
+def evidence_of(by, fresh, log_weights, log_first, log_belief, log_anew, log_likelihood, changed, gain):
+    """`task_evidence` of an outcome whose log densities, `by` and `fresh` (n_spreads, n_types), are known."""
+    _evidence(by, fresh, log_weights, log_first, log_belief, log_anew, log_likelihood, changed, gain)
+
+
+@inlined
+def _evidence(by, fresh, log_weights, log_first, log_belief, log_anew, log_likelihood, changed, gain):
+    n_spreads, n = by.shape
+    changing = log_anew.shape[0] > 0
     stays, share = np.zeros(n), np.empty(n)
     top, total = np.full(n, -np.inf), np.zeros(n)
     if changing:
@@ -88,6 +100,8 @@ def task_evidence(
         for s in range(n_spreads):
             for i in range(n):
                 top[i] = max(top[i], fresh[s, i] + log_first[s] + share[i])
+    for i in range(n):
+        top[i] = top[i] if top[i] > -np.inf else 0.0
     for s in range(n_spreads):
         for i in range(n):
             total[i] += plain_exp(by[s, i] + log_weights[s] + stays[i] - top[i])
@@ -98,29 +112,38 @@ def task_evidence(
                 changed[i] += plain_exp(fresh[s, i] + log_first[s] + share[i] - top[i])
     for i in range(n):
         total[i] += changed[i]
-        log_likelihood[i] = plain_log(total[i]) + top[i]
-        changed[i] = np.divide(changed[i], total[i])
+        possible = total[i] > 0.0
+        whole = total[i] if possible else 1.0
+        log_likelihood[i] = plain_log(whole) + top[i] if possible else -np.inf
+        changed[i] = np.divide(changed[i], whole)
     if n_spreads > 1:
-        _weigh(by, log_belief, top, gain)
+        for i in range(n):
+            top[i] = plain_exp(log_belief[i])
+        _gain(by, top, gain)
+
+
+@kernel
+def gain_of(by, belief, gain):
+    """Write the log likelihoods (n_spreads,) of the spreads; `by` and `belief` as in `task_outcomes.gain_of`."""
+    _gain(by, belief, gain)
 
 
 @inlined
-def _weigh(by, log_belief, before, gain):
-    """Write the log likelihoods of the spreads; `by` and `before` are overwritten."""
+def _gain(by, belief, gain):
     n_spreads, n = by.shape
-    highest = -np.inf
-    for i in range(n):
-        before[i] = plain_exp(log_belief[i])
+    highest, term = -np.inf, np.empty(n)
     for s in range(n_spreads):
         for i in range(n):
             highest = max(highest, by[s, i])
-    for s in range(n_spreads):
-        for i in range(n):
-            by[s, i] = plain_exp(by[s, i] - highest) * before[i]
-        found = 0.0
-        for i in range(n):
-            found += by[s, i]
-        gain[s] = plain_log(found) if found > 1e-307 else -np.inf
+    gain[:] = 0.0
+    if highest > -np.inf:
+        for s in range(n_spreads):
+            for i in range(n):
+                term[i] = plain_exp(by[s, i] - highest) * belief[i]
+            found = 0.0
+            for i in range(n):
+                found += term[i]
+            gain[s] = plain_log(found) if found > 1e-307 else -np.inf
 
 
 @kernel

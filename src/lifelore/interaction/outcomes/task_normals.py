@@ -30,7 +30,7 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, ove
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
-from lifelore.interaction.outcomes.task_outcomes import Predicted, TaskEvidence, TaskOutcomes, normal_excess
+from lifelore.interaction.outcomes.task_outcomes import TaskEvidence, TaskOutcomes, normal_excess
 
 Array = NDArray[np.float64]
 
@@ -85,20 +85,22 @@ class TaskNormals(TaskOutcomes):
 
     # ---- what the task has shown ---------------------------------------------------------------------------
 
-    def predicted(self, policy: int, value: float) -> Predicted:
-        """The log density of `value` by spread and type, and its density in a task that has shown nothing."""
-        if not is_outcome(policy, value, len(self._location)):
-            refuse_outcome(policy, value, self.n_policies)
-        fresh = self._log_density(policy, value, (0.0, 0.0, 0.0))
+    def predicted(self, policy: int, value: float) -> Array:
+        """The log density of `value` given what the task has shown, (n_spreads, n_types)."""
+        self._check(policy, value)
         shown = self._numbers[policy].tolist()
-        return Predicted(fresh if shown[0] == 0 else self._log_density(policy, value, shown), fresh)
+        return self._log_density(policy, value, shown) if shown[0] else self.predicted_anew(policy, value)
+
+    def predicted_anew(self, policy: int, value: float) -> Array:
+        """`predicted` of a task that has shown nothing."""
+        self._check(policy, value)
+        return self._log_density(policy, value, (0.0, 0.0, 0.0))
 
     def evidence(self, policy: int, signal: float, log_belief: Array, log_anew: Array | None) -> TaskEvidence:
         """The evidence of an outcome, before it is taken in; see `evidence_of`."""
         if not kernel_pays(8 * log_belief.size * len(self.log_weights)):
             return super().evidence(policy, signal, log_belief, log_anew)
-        if not is_outcome(policy, signal, len(self._location)):
-            refuse_outcome(policy, signal, self.n_policies)
+        self._check(policy, signal)
         rows = self._policy_rows.get(policy)
         if rows is None:
             laws = (self._location, self._variance, self._rarity, self._doubt)
@@ -301,6 +303,10 @@ class TaskNormals(TaskOutcomes):
         return self.mean[type_, policy] + self.scale[type_, policy] * drawn
 
     # ---- the law of a policy's pairs -----------------------------------------------------------------------
+
+    def _check(self, policy: int, value: float) -> None:
+        if not is_outcome(policy, value, len(self._location)):
+            refuse_outcome(policy, value, self.n_policies)
 
     def _law(self, policies: Any, shown: Any) -> tuple[Array, Array, Array, Array]:
         """Location, 1/κ and variance by spread and type, (..., n_spreads, n_types), and degrees of freedom.

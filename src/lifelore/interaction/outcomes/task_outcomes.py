@@ -6,13 +6,16 @@ far, for each type. `TaskNormals` does so for Gaussian and Student's t outcomes,
 categories. Rules score it like any outcome model.
 """
 
+from functools import cache
 from math import exp, inf, log, pi, sqrt
+from types import ModuleType
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.compiled.array_log import exps, logs, ndtrs
+from lifelore.core.compiled.compiler_start import kernel_pays
 from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, CalledLikelihood, finite_signals
 from lifelore.interaction.outcomes.spread import Spread
@@ -22,17 +25,7 @@ Array = NDArray[np.float64]
 ROOT_2_PI = sqrt(2 * pi)
 SLACK = 1e-5
 """Rounding error of probabilities that sum to 1."""
-
-
-class Predicted(NamedTuple):
-    """Log densities of an outcome before it is taken in.
-
-    by_spread : (n_spreads, n_types) float64, given what the task has shown
-    fresh : (n_spreads, n_types) float64, in a task that has shown nothing
-    """
-
-    by_spread: Array
-    fresh: Array
+_NOTHING = np.empty(0)
 
 
 class TaskEvidence(NamedTuple):
@@ -67,13 +60,22 @@ class SpreadWeights:
         self.spread = spread
         self.log_weights: Array = np.log(spread.weights)
 
-    def predicted(self, policy: int, signal: Any, /) -> Predicted:
-        """The log density of a signal by spread and type; InputError or NotFoundError as `log_density`."""
+    def predicted(self, policy: int, signal: Any, /) -> Array:
+        """The log density of a signal given what the task has shown, (n_spreads, n_types).
+
+        Errors are those of `log_density`.
+        """
+        raise NotImplementedError
+
+    def predicted_anew(self, policy: int, signal: Any, /) -> Array:
+        """`predicted` of a task that has shown nothing."""
         raise NotImplementedError
 
     def evidence(self, policy: int, signal: Any, log_belief: Array, log_anew: Array | None) -> TaskEvidence:
         """The evidence of a signal, before it is taken in; see `evidence_of`."""
-        return evidence_of(self.predicted(policy, signal), self.log_weights, self.spread, log_belief, log_anew)
+        found = self.predicted(policy, signal)
+        fresh = found if log_anew is None else self.predicted_anew(policy, signal)
+        return evidence_of(found, fresh, self.log_weights, self.spread, log_belief, log_anew)
 
     def table_rows(self, policy: int, cuts: Any, n_bins: int) -> Array:
         """P(bin | type) of a policy's next signal, (n_types, n_bins)."""
@@ -136,7 +138,7 @@ class TaskOutcomes(SpreadWeights):
 
     def log_density(self, policy: int, value: float) -> Array:
         """Log density of `value` per type, given what the task has shown, (n_types,)."""
-        return mixed(self.predicted(policy, value).by_spread, self.log_weights)
+        return mixed(self.predicted(policy, value), self.log_weights)
 
     def log_densities(self, policies: NDArray[np.int64], values: ArrayLike) -> Array:
         """`log_density` of many possible next outcomes, (n,) and (n,) to (n, n_types)."""
@@ -172,13 +174,16 @@ def normal_excess(above: Array, variance: Array) -> Array:
 
 
 def evidence_of(
-    predicted: Predicted, log_weights: Array, spread: Spread, log_belief: Array, log_anew: Array | None
+    by_spread: Array, fresh: Array, log_weights: Array, spread: Spread, log_belief: Array, log_anew: Array | None
 ) -> TaskEvidence:
-    """The evidence of an outcome whose densities are known; the bits are those of `task_kernels.task_evidence`.
+    """The evidence of an outcome whose densities are known; compiled where that pays, with the same bits.
 
     Parameters
     ----------
-    predicted : Predicted
+    by_spread : (n_spreads, n_types) float64
+        Log densities of the outcome, given what the task has shown.
+    fresh : (n_spreads, n_types) float64
+        The same in a task that has shown nothing; not read where types are static.
     log_weights : (n_spreads,) float64
         Log probabilities of the spreads before the outcome.
     spread : Spread
@@ -187,7 +192,13 @@ def evidence_of(
     log_anew : (n_types,) float64, optional
         Log probability that the type has just changed to each type; None where types are static.
     """
-    terms = predicted.by_spread + log_weights[:, None]
+    if kernel_pays(8 * by_spread.size):
+        n_spreads, n_types = by_spread.shape
+        found = TaskEvidence(np.empty(n_types), np.empty(n_types), np.zeros(n_spreads))
+        log_first, anew = np.log(spread.weights), _NOTHING if log_anew is None else log_anew
+        _kernels().evidence_of(by_spread, fresh, log_weights, log_first, log_belief, anew, *found)
+        return found
+    terms = by_spread + log_weights[:, None]
     if log_anew is None:
         changed = np.zeros(terms.shape[1])
         top = terms.max(axis=0)
@@ -199,7 +210,7 @@ def evidence_of(
         share = np.minimum(share, 0.0)
         rest = 1.0 - exps(share)
         terms = terms + np.where(rest > 0, logs(np.maximum(rest, 1e-300)), -np.inf)
-        anew = predicted.fresh + np.log(spread.weights)[:, None] + share
+        anew = fresh + np.log(spread.weights)[:, None] + share
         top = np.maximum(terms.max(axis=0), anew.max(axis=0))
         top = np.where(top > -np.inf, top, 0.0)
         changed = _sum_of_rows(exps(anew - top))
@@ -207,16 +218,30 @@ def evidence_of(
     possible = total > 0
     log_likelihood = np.where(possible, logs(np.where(possible, total, 1.0)) + top, -np.inf)
     changed = changed / np.where(possible, total, 1.0)
-    return TaskEvidence(log_likelihood, changed, gain_of(predicted.by_spread, exps(log_belief)))
+    return TaskEvidence(log_likelihood, changed, gain_of(by_spread, exps(log_belief)))
 
 
 def gain_of(by_spread: Array, belief: Array) -> Array:
     """Log likelihoods of the spreads up to a constant, given the belief (n_types,) before the outcome."""
-    if len(by_spread) == 1 or (top := by_spread.max()) == -np.inf:
+    if len(by_spread) == 1:
+        return np.zeros(1)
+    if kernel_pays(8 * by_spread.size):
+        gain = np.empty(len(by_spread))
+        _kernels().gain_of(by_spread, belief, gain)
+        return gain
+    if (top := by_spread.max()) == -np.inf:
         return np.zeros(len(by_spread))
     # Sums in the order of the kernel's.
     sums = np.add.accumulate(exps(by_spread - top) * belief, axis=1)[:, -1]
     return np.where(sums > 1e-307, logs(np.maximum(sums, 1e-307)), -np.inf)
+
+
+@cache
+def _kernels() -> ModuleType:
+    # Imported at the first use: the import starts Numba.
+    from lifelore.interaction.outcomes import task_kernels
+
+    return task_kernels
 
 
 def _sum_of_rows(values: Array) -> Array:

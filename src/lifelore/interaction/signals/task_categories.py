@@ -9,9 +9,9 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.finite_signals.signal_bins import joined_ends_of, joined_to
 from lifelore.interaction.finite_signals.signal_table import SignalTable
 from lifelore.interaction.outcomes.batch_likelihood import BatchLikelihood, LoopedLikelihood
-from lifelore.interaction.outcomes.dirichlet import DirichletRow
+from lifelore.interaction.outcomes.dirichlet import DirichletRow, first_log_probability
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.outcomes.task_outcomes import Predicted, SpreadWeights, mixed
+from lifelore.interaction.outcomes.task_outcomes import SpreadWeights, mixed
 
 if TYPE_CHECKING:
     from lifelore.interaction.signals.category_signal import CategorySignal
@@ -36,15 +36,21 @@ class TaskCategories(SpreadWeights):
         self._counts = np.ascontiguousarray((signal.probs * signal.totals[:, :, None]).transpose(1, 0, 2))
         self._rows: dict[int, DirichletRow] = {}
 
-    def predicted(self, policy: int, signal: Any) -> Predicted:
-        """The log probability of a signal by spread and type, and in a task that has shown nothing."""
-        place, row = self.signal.place_of(policy, signal), self._rows.get(policy)
-        fresh = self._fresh(policy).log_probability(place)
-        return Predicted(fresh if row is None else row.log_probability(place), fresh)
+    def predicted(self, policy: int, signal: Any) -> Array:
+        """The log probability of a signal given what the task has shown, (n_spreads, n_types)."""
+        row = self._rows.get(policy)
+        if row is None:
+            return self.predicted_anew(policy, signal)
+        return row.log_probability(self.signal.place_of(policy, signal))
+
+    def predicted_anew(self, policy: int, signal: Any) -> Array:
+        """`predicted` of a task that has shown nothing."""
+        place = self.signal.place_of(policy, signal)
+        return first_log_probability(self._counts[policy], self.spread, place)
 
     def log_likelihood(self, policy: int, signal: Any) -> Array:
         """Log probability of the signal per type, given what the task has shown, (n_types,)."""
-        return mixed(self.predicted(policy, signal).by_spread, self.log_weights)
+        return mixed(self.predicted(policy, signal), self.log_weights)
 
     def batch_likelihood(self) -> BatchLikelihood:
         """Log probabilities of possible next signals; none of them is taken in."""

@@ -5,6 +5,7 @@ of an episode is the product of the predictive probabilities of its steps in ord
 Thesis: §4.4.2.1–2.
 """
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from lifelore.core.errors import InputError
 from lifelore.interaction.outcomes.outcome_model import check_policy
 from lifelore.interaction.outcomes.special_functions import gammaln
 from lifelore.interaction.outcomes.spread import Spread
-from lifelore.interaction.outcomes.task_outcomes import Predicted, SpreadWeights
+from lifelore.interaction.outcomes.task_outcomes import SpreadWeights
 from lifelore.interaction.signals.step_checks import check_steps
 
 if TYPE_CHECKING:
@@ -39,20 +40,17 @@ class TaskSteps(SpreadWeights):
         self.signal, self.n_types, self.n_policies = signal, signal.n_types, signal.n_policies
         self._shown: dict[Place, Array] = {}
 
-    def predicted(self, policy: int, signal: Any) -> Predicted:
-        """The log likelihood of an episode by type, (1, n_types), and in a task that has shown nothing."""
-        counts = self._counted(policy, signal)
-        found, fresh = np.zeros(self.n_types), np.zeros(self.n_types)
-        for place, new in counts.items():
-            prior, shown = self._prior(place), self._shown.get(place)
-            alone = _sequence(prior, new)
-            fresh += alone
-            found += alone if shown is None else _sequence(prior + shown[:, None], new)
-        return Predicted(found[None], fresh[None])
+    def predicted(self, policy: int, signal: Any) -> Array:
+        """The log likelihood of an episode given what the task has shown, (1, n_types)."""
+        return self._log_likelihood(policy, signal, self._shown)[None]
+
+    def predicted_anew(self, policy: int, signal: Any) -> Array:
+        """`predicted` of a task that has shown nothing."""
+        return self._log_likelihood(policy, signal, {})[None]
 
     def log_likelihood(self, policy: int, signal: Any) -> Array:
         """Log likelihood of an episode per type, given what the task has shown, (n_types,)."""
-        return self.predicted(policy, signal).by_spread[0]
+        return self._log_likelihood(policy, signal, self._shown)
 
     def learn(self, policy: int, signal: Any, log_weights: Array | None = None) -> None:
         """Take in an episode of this task."""
@@ -78,6 +76,13 @@ class TaskSteps(SpreadWeights):
         if places.shape != (len(shown), 3) or shown.shape != (len(places), self.signal.shape[2]):
             raise InputError(f"a task's state must have {self.signal.shape[2]} counts of each state and action")
         self._shown = dict(zip(map(tuple, places.tolist()), shown, strict=True))  # type: ignore[arg-type]
+
+    def _log_likelihood(self, policy: int, signal: Any, shown: Mapping[Place, Array]) -> Array:
+        found = np.zeros(self.n_types)
+        for place, new in self._counted(policy, signal).items():
+            prior, more = self._prior(place), shown.get(place)
+            found += _sequence(prior if more is None else prior + more[:, None], new)
+        return found
 
     def _counted(self, policy: int, signal: Any) -> dict[Place, Array]:
         """How often each outcome came, by table, state and action."""
