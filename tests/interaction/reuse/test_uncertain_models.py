@@ -256,6 +256,24 @@ def test_no_update_makes_numbers_that_are_none():
         assert not np.isnan(agent.expected_utility()).any()
 
 
+@pytest.mark.parametrize("shape", [(4, 3, 6), (4, 1, 6), (1, 3, 6)])
+@pytest.mark.parametrize("model", ["gaussian", "student-t", "histogram", "categorical"])
+def test_an_agent_at_work_does_not_see_what_its_library_learns_later(model, shape):
+    samples = np.random.default_rng(0).integers(0, 3, shape).astype(float)
+    options: dict[str, Any] = {"edges": np.linspace(-0.5, 2.5, 4)} if model == "histogram" else {}
+    states = []
+    for runs_later in (0, 30):
+        library = PolicyLibrary.from_samples(samples, model=model, **options)
+        agent = BayesianPolicyReuse(library, Greedy())
+        for _ in range(runs_later):
+            library.observe(0, 0, 2.0)
+        for policy, value in ((0, 2.0), (0, 1.0), (shape[1] - 1, 2.0)):
+            agent.update(policy, value)
+        assert agent.task is not None
+        states.append([agent.log_belief, agent.expected_utility(), agent.task.performance.deviation])
+    assert all(np.array_equal(a, b) for a, b in zip(*states, strict=True))
+
+
 def test_models_has_two_names():
     with pytest.raises(InputError, match="'uncertain' or 'plug-in'"):
         BayesianPolicyReuse(learnt(), models="exact")  # type: ignore[arg-type]

@@ -29,13 +29,15 @@ class TaskCounts(TaskOutcomes):
     Parameters
     ----------
     outcomes : CountedOutcomes
-        The library's; not copied and not changed.
+        The library's; read once and not changed.
     spread : Spread
     """
 
     def __init__(self, outcomes: "CountedOutcomes", spread: Spread) -> None:
         super().__init__(spread)
         self.outcomes, self._expected = outcomes, outcomes.take()
+        # Copies: what the library learns later, the task does not see.
+        self._counts, self._totals = outcomes.counts.copy(), outcomes.totals.copy()
         self._rows: dict[int, DirichletRow] = {}
         self._values = outcomes.cell_means
         within = np.maximum(outcomes.deviation**2, 0.0)
@@ -191,14 +193,14 @@ class TaskCounts(TaskOutcomes):
         if cell is None:
             return np.full((len(self.log_weights), self.n_types), -np.inf)
         if row is None:
-            found = first_log_probability(self.outcomes.counts[policy], self.spread, cell)
+            found = first_log_probability(self._counts[policy], self.spread, cell)
         else:
             found = row.log_probability(cell)
         return found - np.log(self.outcomes.cell_sizes[cell])
 
     def _law(self, policy: int) -> DirichletRow:
         found = self._rows.get(policy)
-        return DirichletRow(self.outcomes.counts[policy], self.spread) if found is None else found
+        return DirichletRow(self._counts[policy], self.spread) if found is None else found
 
     def _outdate(self) -> None:
         """Have every policy that was tried computed again when read: all depend on the spreads' probabilities."""
@@ -215,4 +217,4 @@ class TaskCounts(TaskOutcomes):
         # One product a policy: BLAS may round the columns of a larger product differently.
         flat = by_spread.reshape(len(rows), len(weights), -1)
         probs = np.array([np.dot(weights[None], own) for own in flat]).reshape(len(rows), *by_spread.shape[2:])
-        self._expected.replace(policies, probs * (self.outcomes.totals[policies] + total[:, None])[..., None])
+        self._expected.replace(policies, probs * (self._totals[policies] + total[:, None])[..., None])

@@ -50,7 +50,7 @@ class TaskNormals(TaskOutcomes):
     Parameters
     ----------
     moments : OutcomeMoments
-        What the runs of the library say; not copied and not changed.
+        What the runs of the library say; read once and not changed.
     spread : Spread
 
     Attributes
@@ -62,9 +62,9 @@ class TaskNormals(TaskOutcomes):
 
     def __init__(self, moments: OutcomeMoments, spread: Spread) -> None:
         super().__init__(spread)
-        # Policy first: an update reads the row of a policy.
-        self._location = np.ascontiguousarray(moments.mean.T)
-        self._variance = np.ascontiguousarray(moments.variance.T)
+        # Policy first: an update reads the row of a policy. Copies: the task does not see what is learnt later.
+        self._location = np.array(moments.mean.T, order="C")
+        self._variance = np.array(moments.variance.T, order="C")
         self._rarity = np.ascontiguousarray(1 / moments.count.T)
         self._doubt = np.ascontiguousarray(1 / moments.freedom.T)
         # Count, mean and sum of squares of each policy's outcomes, and the policies in the order of their trials.
