@@ -138,7 +138,13 @@ def live(
         str | None,
         Option(metavar="FILE", help="CSV in long format: run, task, agent, episode, measure, value."),
     ] = None,
-    seed: Annotated[int, Option(help="Draws the world, the tasks and the agents' choices.")] = 0,
+    seed: Annotated[
+        int,
+        Option(
+            help="Draws the world, the tasks and the agents' choices. Robots of one seed meet the same tasks, "
+            "whatever their names."
+        ),
+    ] = 0,
     jobs: Annotated[int, Option(help="Threads; results do not depend on their number.")] = 2,
     density: Annotated[float | None, Option(help="noise: share of obstacles, in (0, 1).")] = None,
     discount: Annotated[float | None, Option(help="Discount γ [building: 0.99, else 0.95].")] = None,
