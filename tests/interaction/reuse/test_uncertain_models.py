@@ -298,7 +298,15 @@ def test_kernels_and_numpy_give_the_same_bits(monkeypatch, static):
             agent.update(policy, value)
             model = outcomes_of(agent.task)
             excess = model.expected_mean_excess(float(model.mean.max()) - 5.0)
-            states += [agent.log_belief, model.mean.copy(), model.noise.copy(), model.mean_variance, excess]
+            next_density = model.log_density(policy, value + 1.0)
+            states += [
+                agent.log_belief,
+                model.mean.copy(),
+                model.noise.copy(),
+                model.mean_variance,
+                excess,
+                next_density,
+            ]
         found[compiled] = states
     assert all(np.array_equal(a, b) for a, b in zip(found[True], found[False], strict=True))
 

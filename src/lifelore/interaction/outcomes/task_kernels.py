@@ -38,6 +38,12 @@ def _densities(value, count, average, squares, location, variance, rarity, doubt
 
 
 @kernel
+def densities(value, shown, location, variance, rarity, doubt, spreads, heights, out):
+    """Write the log densities of an outcome, (n_spreads, n_types); arguments are those of `task_evidence`."""
+    _densities(value, shown[0], shown[1], shown[2], location, variance, rarity, doubt, spreads, heights, out)
+
+
+@kernel
 def task_evidence(
     value,
     shown,

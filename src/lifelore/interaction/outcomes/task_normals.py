@@ -41,6 +41,8 @@ LARGEST_FREEDOM = 1e7
 LARGEST_SQUARE = 1e300
 """Squared scales and squared distances count as at most this, so that no logarithm overflows."""
 _NOTHING = np.empty(0)
+_UNTRIED = np.zeros(3)
+"""What a policy has shown that was never tried."""
 _ROOT_2_PI = np.sqrt(2 * np.pi)
 
 
@@ -88,23 +90,19 @@ class TaskNormals(TaskOutcomes):
     def predicted(self, policy: int, value: float) -> Array:
         """The log density of `value` given what the task has shown, (n_spreads, n_types)."""
         self._check(policy, value)
-        shown = self._numbers[policy].tolist()
-        return self._log_density(policy, value, shown) if shown[0] else self.predicted_anew(policy, value)
+        return self._log_density(policy, value, self._numbers[policy] if self._numbers[policy, 0] else _UNTRIED)
 
     def predicted_anew(self, policy: int, value: float) -> Array:
         """`predicted` of a task that has shown nothing."""
         self._check(policy, value)
-        return self._log_density(policy, value, (0.0, 0.0, 0.0))
+        return self._log_density(policy, value, _UNTRIED)
 
     def evidence(self, policy: int, signal: float, log_belief: Array, log_anew: Array | None) -> TaskEvidence:
         """The evidence of an outcome, before it is taken in; see `evidence_of`."""
         if not kernel_pays(8 * log_belief.size * len(self.log_weights)):
             return super().evidence(policy, signal, log_belief, log_anew)
         self._check(policy, signal)
-        rows = self._policy_rows.get(policy)
-        if rows is None:
-            laws = (self._location, self._variance, self._rarity, self._doubt)
-            rows = self._policy_rows[policy] = (*(law[policy] for law in laws), self._heights(policy, 0.0))
+        rows = self._rows_of(policy)
         shown, n = self._numbers[policy], len(log_belief)
         found = TaskEvidence(np.empty(n), np.empty(n), np.zeros(len(self.log_weights)))
         count = float(shown[0])
@@ -325,8 +323,22 @@ class TaskNormals(TaskOutcomes):
             found = (variance + doubt * (squares + k / grown * (apart * apart))) / (1 + doubt * k)
         return location + k * left * apart, left, np.minimum(found, LARGEST**2), freedom
 
-    def _log_density(self, policy: int, value: float, shown: Any) -> Array:
-        """Log densities of `value`, (n_spreads, n_types); the bits are those of the kernel."""
+    def _rows_of(self, policy: int) -> tuple[Array, ...]:
+        """Location, variance, 1/n, 1/ν and the heights before any outcome, (n_types,) each."""
+        rows = self._policy_rows.get(policy)
+        if rows is None:
+            laws = (self._location, self._variance, self._rarity, self._doubt)
+            rows = self._policy_rows[policy] = (*(law[policy] for law in laws), self._heights(policy, 0.0))
+        return rows
+
+    def _log_density(self, policy: int, value: float, shown: Array) -> Array:
+        """Log densities of `value`, (n_spreads, n_types); compiled where that pays, with the same bits."""
+        if kernel_pays(8 * self.n_types * len(self.log_weights)):
+            *rows, new_heights = self._rows_of(policy)
+            heights = self._heights(policy, float(shown[0])) if shown[0] else new_heights
+            found = np.empty((len(self.log_weights), self.n_types))
+            _kernels().densities(float(value), shown, *rows, self.spread.values, heights, found)
+            return found
         location, rarity, variance, freedom = self._law(policy, shown)
         square = np.minimum(variance * (1 + rarity), LARGEST_SQUARE)
         gap = value - location
@@ -334,7 +346,7 @@ class TaskNormals(TaskOutcomes):
         normal = freedom == np.inf
         finite = np.where(normal, 1.0, freedom)
         tail = 0.5 * (finite + 1) * log1ps(np.minimum(z2 / finite, LARGEST_SQUARE))
-        return self._heights(policy, shown[0]) - 0.5 * logs(square) - np.where(normal, 0.5 * z2, tail)
+        return self._heights(policy, float(shown[0])) - 0.5 * logs(square) - np.where(normal, 0.5 * z2, tail)
 
     def _heights(self, policy: int, count: float) -> Array:
         """Log densities at the location, scale 1, of a policy with `count` outcomes, (n_types,)."""
