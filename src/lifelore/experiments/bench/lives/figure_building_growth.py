@@ -44,5 +44,7 @@ def draw_building_growth(
 def _line(axes: "Axes", x: Sequence[float], y: Sequence[float], colour: str, label: str) -> None:
     axes.plot(x, y, color=colour, marker="o", markersize=4, linewidth=1.8, label=label)
     for place, value in zip(x, y, strict=True):
-        axes.annotate(f"{value:#.2g}" if value < 10 else f"{value:.0f}", (place, value), (0, 6),
-                      textcoords="offset points", ha="center", fontsize=7.5)  # fmt: skip
+        # Below to the right, where no line that rises passes.
+        axes.annotate(f"{value:#.2g}" if value < 10 else f"{value:.0f}", (place, value), (3, -11),
+                      textcoords="offset points", fontsize=7.5)  # fmt: skip
+    axes.margins(0.1)
