@@ -158,15 +158,19 @@ class KnownTypes:
 
     def library(self, prior: Array) -> PolicyLibrary:
         """A library whose policies are the judged causes, and whose signals are their effects."""
+        performance = GaussianOutcomes(np.zeros((len(self), len(self.judged))), 1.0)
+        return PolicyLibrary(performance, self._signal, tuple(known.name for known in self.types), prior=prior)
+
+    @cached_property
+    def _signal(self) -> CategorySignal:
+        """The effects of the judged causes; libraries share it, and so its spread is estimated once."""
         rows = self.counts[:, self.judged] + self._base[self.judged]
         count = rows.sum(axis=2)
-        performance = GaussianOutcomes(np.zeros(count.shape), 1.0)
-        signal = CategorySignal(rows / count[:, :, None], count=count)
-        return PolicyLibrary(performance, signal, tuple(known.name for known in self.types), prior=prior)
+        return CategorySignal(rows / count[:, :, None], count=count)
 
     def forget_laws(self) -> None:
         """Compute the laws again: counts have changed."""
-        for name in ("_counted", "counts", "concentrations", "pooled", "_base", "judged"):
+        for name in ("_counted", "counts", "concentrations", "pooled", "_base", "judged", "_signal"):
             self.__dict__.pop(name, None)
 
 

@@ -149,5 +149,8 @@ class FactoryCustomers:
         True
         """
         drawn = self.stream.draw(number, context, episode)
-        layout = modified_factory(stream(self.seed, "factory customers", "layout", number))
-        return drawn, CustomerOrder(layout, drawn.hidden_type)
+        return drawn, CustomerOrder(self.layout(number), drawn.hidden_type)
+
+    def layout(self, number: int) -> Factory:
+        """The factory of task `number`."""
+        return modified_factory(stream(self.seed, "factory customers", "layout", number))

@@ -32,7 +32,7 @@ ACTS = tuple(f"{use} component {k}" for use in ("procure", "assemble") for k in 
 EFFECTS = ("paid", "refused")
 PAID, REFUSED = range(2)
 MOST_TABLES = 32
-"""Tables of best acts that a family keeps, 6 MB each; an older order's is computed again."""
+"""Tables of best acts that a family keeps, 6 MB each; that of an order not met for long is computed again."""
 
 
 @dataclass(frozen=True)
@@ -72,18 +72,21 @@ class FactoryFamily:
 
     def meet(self, number: int, abilities: Abilities, context: int | None = None) -> "tuple[DrawnTask, OrderTask]":
         """Order `number`, drawn and met; there are no relations to perceive."""
-        drawn, order = self.order(number, context)
-        if number not in self.tables:
-            if len(self.tables) >= MOST_TABLES:
-                del self.tables[next(iter(self.tables))]
-            self.tables[number] = OrderTable.of(order.factory)
-        if not self.changing:
-            return drawn, OrderTask(order, self.tables[number])
+        table, drawn = self._table(number), self.stream.draw(number, context)
 
         def in_episode(episode: int) -> CustomerOrder:
-            return self.order(number, context, episode)[1]
+            return CustomerOrder(table.factory, self.stream.draw(number, context, episode).hidden_type)
 
-        return drawn, OrderTask(order, self.tables[number], in_episode)
+        return drawn, OrderTask(in_episode(0), table, in_episode if self.changing else None)
+
+    def _table(self, number: int) -> OrderTable:
+        table = self.tables.pop(number, None)
+        if table is None:
+            table = OrderTable.of(FactoryCustomers(self.stream, self.seed).layout(number))
+        if len(self.tables) >= MOST_TABLES:
+            del self.tables[next(iter(self.tables))]
+        self.tables[number] = table  # the last: tables are in the order of their last use
+        return table
 
     def best_return(self, number: int, context: int | None = None) -> float:
         """The best discounted return, in the first episode."""

@@ -1,6 +1,6 @@
 """C5.5: spare time spent by curiosity or uniform replay, and lives in which a type arrives late. Thesis: §5.2."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -34,7 +34,12 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     if cell["part"] == LATE:
         found = live_with_late_type(1000 * seed + cell["life"], settings["orders"], settings["arrival"])
         return {**cell, **vars(found)}
-    return {**cell, **{chooser: _spare_time(settings, cell["life"], chooser, seed) for chooser in CHOOSERS}}
+    family = FactoryFamily(TaskStream(tuple(CUSTOMERS), 1000 * seed + cell["life"], settings["contexts"]), seed)
+    best = [family.best_return(number) for number in _tests(settings)]
+    return {
+        **cell,
+        **{chooser: _spare_time(settings, family, best, chooser, cell["life"], seed) for chooser in CHOOSERS},
+    }
 
 
 def late_lives(results: list[Mapping]) -> list[LateTypeLife]:
@@ -43,22 +48,22 @@ def late_lives(results: list[Mapping]) -> list[LateTypeLife]:
     return [LateTypeLife(**{name: one[name] for name in names}) for one in results if one["part"] == LATE]
 
 
-def _spare_time(settings: Mapping, life: int, chooser: str, seed: int) -> list[float]:
-    types = tuple(CUSTOMERS)
-    family = FactoryFamily(TaskStream(types, 1000 * seed + life, settings["contexts"]), seed)
+def _spare_time(
+    settings: Mapping, family: FactoryFamily, best: Sequence[float], chooser: str, life: int, seed: int
+) -> list[float]:
     knowledge, abilities = Knowledge.empty(family), AGENTS["full"]
     living = LivingSettings(n_episodes=settings["episodes"])
     for number in range(settings["lived"]):
         live_task(knowledge, *family.meet(number, abilities), abilities, living, f"lived.{number}", seed)
     random = stream(seed, "C5.5", "spare time", life)
-    missed = [_missed(settings, knowledge)]
+    missed = [_missed(settings, knowledge, best)]
     for number in range(SPARE_NUMBER, SPARE_NUMBER + settings["spare"]):
         context = _chosen(knowledge, family, chooser, settings["lived"], random)
         # The date goes on from task to task: spare orders are the latest.
         drawn, task = family.meet(number, abilities, context)
         live_task(knowledge, drawn, task, abilities, living, f"spare.{number}", seed)
         if (number + 1 - SPARE_NUMBER) % settings["every"] == 0:
-            missed.append(_missed(settings, knowledge))
+            missed.append(_missed(settings, knowledge, best))
     return missed
 
 
@@ -72,11 +77,16 @@ def _chosen(
     return max(curious_contexts(knowledge), key=lambda one: (one.learnable, -one.context)).context
 
 
-def _missed(settings: Mapping, knowledge: Knowledge) -> float:
-    """Mean points that the first episodes of new orders miss of the best possible; nothing is learnt from them."""
+def _tests(settings: Mapping) -> range:
+    """The numbers of the test orders."""
+    return range(TEST_NUMBER, TEST_NUMBER + settings["tests"])
+
+
+def _missed(settings: Mapping, knowledge: Knowledge, best: Sequence[float]) -> float:
+    """Mean points that the first episodes of new orders miss of their `best`; nothing is learnt from them."""
     family, abilities, missed = knowledge.family, AGENTS["full"], []
-    for number in range(TEST_NUMBER, TEST_NUMBER + settings["tests"]):
+    for number, most in zip(_tests(settings), best, strict=True):
         drawn, task = family.meet(number, abilities)
         lived, _ = attempt_task(knowledge, drawn, task, abilities, ONCE, "test")
-        missed.append(family.best_return(number) - lived.returns[0])
+        missed.append(most - lived.returns[0])
     return round(float(np.mean(missed)), 4)
