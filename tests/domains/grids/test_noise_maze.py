@@ -34,7 +34,8 @@ def test_a_cell_is_spared_exactly_when_the_rest_stays_connected(seed):
         without = free.copy()
         without[row, column] = False
         connected = ndimage.label(without)[1] == 1
-        assert _can_spare(bytearray(free.tobytes()), row * 9 + column, 9) == connected
+        stack, seen = np.zeros((2, free.size), np.int64)
+        assert _can_spare(free.ravel(), row * 9 + column, 9, stack, seen, 1) == connected
 
 
 def test_the_maze_of_figure_3_1():

@@ -9,6 +9,7 @@ Thesis: §3.4.1, Figures 3.1 and 3.4.
 import numpy as np
 from numpy.typing import NDArray
 
+from lifelore.core.compiled.jit import kernel
 from lifelore.core.errors import InputError
 from lifelore.domains.grids.grid_world import GridWorld
 
@@ -82,55 +83,56 @@ def _wall_up(free: NDArray[np.bool_], count: int, generator: np.random.Generator
 
     Every connected set has a cell it can spare, so passes end only when enough are walled up.
     """
-    width = free.shape[1]
-    cells = bytearray(free.tobytes())
+    cells = free.reshape(-1)
     while count:
-        for cell in generator.permutation(np.flatnonzero(np.frombuffer(bytes(cells), bool))).tolist():
-            if count and _can_spare(cells, cell, width):
-                cells[cell] = 0
-                count -= 1
-    free[:] = np.frombuffer(bytes(cells), bool).reshape(free.shape)
+        count = _wall_up_some(cells, generator.permutation(np.flatnonzero(cells)), count, free.shape[1])
 
 
-def _can_spare(free: bytearray, cell: int, width: int) -> bool:
-    """Whether the free neighbours of `cell` stay connected without it."""
+@kernel
+def _wall_up_some(free, order, count, width):
+    """Wall up at most `count` cells, in `order`, that can be spared; returns how many are left to do.
+
+    free : (n_cells,) bool, row by row; its outermost cells are walls
+    """
+    stack, seen = np.empty(free.size, np.int64), np.zeros(free.size, np.int64)
+    for number in range(order.size):
+        if count == 0:
+            break
+        if _can_spare(free, order[number], width, stack, seen, number + 1):
+            free[order[number]] = False
+            count -= 1
+    return count
+
+
+@kernel(allocates=False)
+def _can_spare(free, cell, width, stack, seen, mark):
+    """Whether the free neighbours of `cell` stay connected without it.
+
+    stack, seen : (n_cells,) int64, work space; no number of `seen` is `mark`, which is above 0
+    """
     ring = (-width, 1 - width, 1, width + 1, width, width - 1, -1, -width - 1)  # N, NE, E … clockwise
-    around = [free[cell + step] for step in ring]
-    sides = sum(around[::2])
-    # Side by side round the ring, two free sides meet through a free corner: no search is needed.
-    joins = sum(around[i] and around[i + 1] and around[(i + 2) % 8] for i in (0, 2, 4, 6))
+    sides, joins, first = 0, 0, 0
+    for i in range(0, 8, 2):
+        if free[cell + ring[i]]:
+            sides += 1
+            first = cell + ring[i]
+            # Side by side round the ring, two free sides meet through a free corner.
+            if free[cell + ring[i + 1]] and free[cell + ring[(i + 2) % 8]]:
+                joins += 1
     if sides - joins <= 1:
         return sides > 0
-    return _meet_without(free, cell, [cell + step for step in ring[::2] if free[cell + step]], width)
-
-
-def _meet_without(free: bytearray, cell: int, sides: list[int], width: int) -> bool:
-    """Whether walks that never enter `cell` join all of `sides`.
-
-    The walks grow from all sides in turn, so that a dead end costs a search of its own size only.
-    """
-    walks = [({side}, [side]) for side in sides]
-    while len(walks) > 1:
-        seen, frontier = walks.pop(0)
-        frontier = _one_step_on(free, cell, seen, frontier, width)
-        met = next((walk for walk in walks if not walk[0].isdisjoint(frontier)), None)
-        if met is not None:
-            walks.remove(met)
-            walks.append((seen | met[0], frontier + met[1]))
-        elif not frontier:
-            return False
-        else:
-            walks.append((seen, frontier))
-    return True
-
-
-def _one_step_on(free: bytearray, cell: int, seen: set[int], frontier: list[int], width: int) -> list[int]:
-    """The free cells beside `frontier` that are not yet in `seen`, which they join."""
-    reached = []
-    for place in frontier:
-        for step in (-width, width, 1, -1):
-            beside = place + step
-            if free[beside] and beside != cell and beside not in seen:
-                seen.add(beside)
-                reached.append(beside)
-    return reached
+    # Walk from one side, never into the cell, until all sides are met.
+    seen[cell], seen[first], stack[0] = mark, mark, first
+    n, left = 1, sides - 1
+    while n and left:
+        n -= 1
+        place = stack[n]
+        for i in range(0, 8, 2):
+            beside = place + ring[i]
+            if free[beside] and seen[beside] != mark:
+                seen[beside] = mark
+                stack[n] = beside
+                n += 1
+                apart = abs(beside - cell)
+                left -= apart == 1 or apart == width
+    return left == 0
