@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lifelore.core.metrics import mean_estimate
 from lifelore.experiments.bench.lives import tabletop_lives
 from lifelore.experiments.bench.lives.tabletop_lives import (
     INFORMED,
@@ -41,7 +42,7 @@ def lives(n=4):
 
 
 def test_shares_differences_and_goals_by_hand():
-    found = report(lives())
+    found = report([lives()[:2], lives()[2:]])
     rows = {row["name"]: row for row in found["rows"]}
     assert rows["full: first episodes on new trays"]["value"] == pytest.approx((7.0 + 0.15) / 8)
     assert rows["full less no-reuse: first episodes on new trays"]["value"] == pytest.approx(2 / 8)
@@ -51,6 +52,15 @@ def test_shares_differences_and_goals_by_hand():
     assert (good["met"], spilled["met"], spilled["measured"]) == (False, True, 0.0)
     share = np.mean([(7.0 + 0.1 * i) / (7.2 + 0.1 * i) for i in range(4)])
     assert rows["full: first episodes on new trays, of the informed agent's"]["value"] == pytest.approx(share)
+
+
+def test_intervals_are_of_rounds():
+    # Five lives of a round that are all alike tell no more than one.
+    firsts = [lives(1)[0]["full"].first[0] + 0.3 * i * i for i in range(4)]
+    rounds = [[{agent: result(first) for agent in [*LIVING_AGENTS, INFORMED]}] * 5 for first in firsts]
+    row = next(row for row in report(rounds)["rows"] if row["name"] == "full: first episodes on new trays")
+    assert tuple(row["ci95"]) == mean_estimate(np.array(firsts) / 8).ci95
+    assert row["n"] == 20
 
 
 def test_the_curve_is_a_mean_over_ten_tasks():

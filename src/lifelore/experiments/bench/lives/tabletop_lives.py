@@ -8,12 +8,12 @@ the simulator; it knows the true scene and the hidden type. The informed agent k
 
 import time
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Self, cast
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from lifelore.agent.long_lived.families.by_name import TABLETOP_TYPES
 from lifelore.agent.long_lived.families.tabletop import TabletopFamily
@@ -89,7 +89,8 @@ class LifeResult:
         return float(self.alarms[NEW][known].mean()) if known.any() else 0.0
 
 
-NEW = slice(N_TASKS, None)
+NEW, LATE = slice(N_TASKS, None), slice(-20, None)
+"""The tasks on new trays, and the last twenty of them."""
 
 
 def lived_round(
@@ -183,51 +184,42 @@ def bench_tabletop_lives(repeats: int, progress: Progress, out: Path = OUT) -> d
     for lives in rounds:
         done.append(lives)
         progress(len(done), repeats, "rounds")
-    lives = [life for found in done for life in found]
     if repeats > 1:
-        _draw(lives, out)
-    return report(lives)
+        _draw([life for lives in done for life in lives], out)
+    return report(done)
 
 
-def report(lives: Sequence[Mapping[str, LifeResult]]) -> dict[str, Any]:
-    """Rows and goals of some lives."""
+def report(rounds: Sequence[Sequence[Mapping[str, LifeResult]]]) -> dict[str, Any]:
+    """Rows and goals of rounds with equally many lives; intervals are over rounds, whose lives share trays."""
+    lives = [life for one in rounds for life in one]
     shares = {agent: np.array([life[agent].share(NEW) for life in lives]) for agent in LIVING_AGENTS}
     spills = {agent: np.array([life[agent].spills[NEW].mean() for life in lives]) for agent in LIVING_AGENTS}
     rows = []
+
+    def add(name: str, of_lives: ArrayLike, unit: str) -> None:
+        estimate = mean_estimate(np.reshape(of_lives, (len(rounds), -1)).mean(axis=1))
+        rows.append(estimated_row(name, replace(estimate, n=len(lives)), unit))
+
     for agent in LIVING_AGENTS:
         early = [life[agent].share(slice(0, N_TASKS)) for life in lives]
         last = [life[agent].share(NEW, "last") for life in lives]
-        rows += [
-            estimated_row(
-                f"{agent}: first episodes of the first forty tasks", mean_estimate(early), "of the best"
-            ),
-            estimated_row(f"{agent}: first episodes on new trays", mean_estimate(shares[agent]), "of the best"),
-            estimated_row(f"{agent}: last episodes on new trays", mean_estimate(last), "of the best"),
-            estimated_row(
-                f"{agent}: spills in first episodes on new trays", mean_estimate(spills[agent]), "a task"
-            ),
-        ]
+        add(f"{agent}: first episodes of the first forty tasks", early, "of the best")
+        add(f"{agent}: first episodes on new trays", shares[agent], "of the best")
+        add(f"{agent}: last episodes on new trays", last, "of the best")
+        add(f"{agent}: spills in first episodes on new trays", spills[agent], "a task")
         if agent != "full":
             less = shares["full"] - shares[agent]
-            rows.append(
-                estimated_row(
-                    f"full less {agent}: first episodes on new trays", mean_estimate(less), "of the best"
-                )
-            )
-    types = mean_estimate([life["full"].n_types for life in lives])
-    alarms = mean_estimate([life["full"].alarms[NEW].mean() for life in lives])
-    false = mean_estimate([life["full"].false_alarms for life in lives])
+            add(f"full less {agent}: first episodes on new trays", less, "of the best")
+            late = [life["full"].share(LATE) - life[agent].share(LATE) for life in lives]
+            add(f"full less {agent}: first episodes of the last twenty tasks", late, "of the best")
+    add("full: types known at the end", [life["full"].n_types for life in lives], "types")
+    add("full: alarms on new trays", [life["full"].alarms[NEW].mean() for life in lives], "a task")
+    false = [life["full"].false_alarms for life in lives]
+    add("full: false alarms on new trays", false, "a task of a type that was met thrice")
     informed = np.array([life[INFORMED].share(NEW) for life in lives])
+    add(f"{INFORMED}: first episodes on new trays", informed, "of the best")
     of_informed = shares["full"] / informed
-    rows += [
-        estimated_row("full: types known at the end", types, "types"),
-        estimated_row("full: alarms on new trays", alarms, "a task"),
-        estimated_row("full: false alarms on new trays", false, "a task of a type that was met thrice"),
-        estimated_row(f"{INFORMED}: first episodes on new trays", mean_estimate(informed), "of the best"),
-        estimated_row(
-            "full: first episodes on new trays, of the informed agent's", mean_estimate(of_informed), "of its"
-        ),
-    ]
+    add("full: first episodes on new trays, of the informed agent's", of_informed, "of its")
     scratch = float(spills["scratch"].mean())
     goals = [
         at_least("full: first episodes on new trays", 0.95, float(shares["full"].mean())),
