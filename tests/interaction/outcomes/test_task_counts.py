@@ -1,9 +1,12 @@
-"""Counted outcomes of one task: all policies are computed anew at once, with the bits of one after another."""
+"""Counted outcomes of one task: what is computed together, or for one outcome alone, has the same bits."""
 
 import numpy as np
 import pytest
 
+from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
+from lifelore.interaction.outcomes.dirichlet import DirichletRow, first_log_probability
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
+from lifelore.interaction.outcomes.spread import Spread
 
 
 def renewed_alone(task, policy):
@@ -38,3 +41,21 @@ def test_many_policies_are_renewed_with_the_bits_of_each_alone(n_types, n_polici
             assert (task.mean_variance[:, tried] == variance).all()
     assert (task.mean[:, -1] == at_start[:, -1]).all()
     assert len(task.tried) > 1
+
+
+def test_a_single_outcome_has_the_cell_that_many_have():
+    values = np.array([-2.0, 0.0, 1.0, 1e6])
+    model = CategoricalOutcomes.from_samples(np.tile(values, (2, 1, 1)), values)
+    asked = np.array(
+        [-3.0, -2.0, -1.0, -1e-10, 0.0, 0.5, 1.0, 1 + 5e-10, 1 + 5e-9, 1e6, 1e6 + 1e-4, 1e6 + 1.0, 1e9]
+    )
+    each = [-1 if (cell := model.cell_of(value)) is None else cell for value in asked.tolist()]
+    assert each == model.cells_of(asked).tolist()
+
+
+def test_a_category_alone_has_the_bits_of_its_row():
+    counts = np.random.default_rng(0).integers(0, 4, (5, 6)) + np.eye(5, 6)
+    spread = Spread.up_to(0.8)
+    for category in range(6):
+        of_row = DirichletRow(counts, spread).log_probability(category)
+        np.testing.assert_array_equal(first_log_probability(counts, spread, category), of_row)

@@ -13,9 +13,8 @@ exactly (n and ν₀ infinite, no spread) keep their normal distribution. Thesis
 """
 
 from collections.abc import Iterable
-from functools import cache, lru_cache
+from functools import lru_cache
 from math import lgamma, log, pi
-from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -30,7 +29,13 @@ from lifelore.interaction.outcomes.outcome_model import LARGEST, is_outcome, ove
 from lifelore.interaction.outcomes.outcome_moments import OutcomeMoments
 from lifelore.interaction.outcomes.special_functions import gammaln, ndtr, stdtr
 from lifelore.interaction.outcomes.spread import GRID, Spread, held_out, likeliest
-from lifelore.interaction.outcomes.task_outcomes import TaskEvidence, TaskOutcomes, normal_excess
+from lifelore.interaction.outcomes.task_outcomes import (
+    NOTHING,
+    TaskEvidence,
+    TaskOutcomes,
+    normal_excess,
+    task_kernels,
+)
 
 Array = NDArray[np.float64]
 
@@ -40,7 +45,6 @@ LARGEST_FREEDOM = 1e7
 """Degrees of freedom above which a t distribution is computed as this one's."""
 LARGEST_SQUARE = 1e300
 """Squared scales and squared distances count as at most this, so that no logarithm overflows."""
-_NOTHING = np.empty(0)
 _UNTRIED = np.zeros(3)
 """What a policy has shown that was never tried."""
 _ROOT_2_PI = np.sqrt(2 * np.pi)
@@ -106,7 +110,7 @@ class TaskNormals(TaskOutcomes):
         shown, n = self._numbers[policy], len(log_belief)
         found = TaskEvidence(np.empty(n), np.empty(n), np.zeros(len(self.log_weights)))
         count = float(shown[0])
-        _kernels().task_evidence(
+        task_kernels().task_evidence(
             float(signal),
             shown,
             *rows[:4],
@@ -116,7 +120,7 @@ class TaskNormals(TaskOutcomes):
             self.log_weights,
             self._log_first,
             log_belief,
-            _NOTHING if log_anew is None else log_anew,
+            NOTHING if log_anew is None else log_anew,
             *found,
         )
         return found
@@ -216,7 +220,7 @@ class TaskNormals(TaskOutcomes):
             if self._stale:
                 self._renew()
             excess = np.empty_like(self._mean)
-            _kernels().mean_excess(
+            task_kernels().mean_excess(
                 self._mean,
                 self._of_runs,
                 self._of_spread,
@@ -282,7 +286,7 @@ class TaskNormals(TaskOutcomes):
         cut = np.minimum(filled, LARGEST**2)
         if kernel_pays(8 * self.n_types * cut.size):
             below = np.empty((len(policies), self.n_types, n_bins - 1))
-            _kernels().normal_below(chosen, cut, mean, deviation, below)
+            task_kernels().normal_below(chosen, cut, mean, deviation, below)
         else:
             below = ndtrs((cut[:, None] - mean.T[chosen, :, None]) / deviation.T[chosen, :, None])
         probs = np.empty((len(policies), self.n_types, n_bins))
@@ -337,7 +341,7 @@ class TaskNormals(TaskOutcomes):
             *rows, new_heights = self._rows_of(policy)
             heights = self._heights(policy, float(shown[0])) if shown[0] else new_heights
             found = np.empty((len(self.log_weights), self.n_types))
-            _kernels().densities(float(value), shown, *rows, self.spread.values, heights, found)
+            task_kernels().densities(float(value), shown, *rows, self.spread.values, heights, found)
             return found
         location, rarity, variance, freedom = self._law(policy, shown)
         square = np.minimum(variance * (1 + rarity), LARGEST_SQUARE)
@@ -374,7 +378,7 @@ class TaskNormals(TaskOutcomes):
         policies = np.array(sorted(self._stale_means))
         self._stale_means.clear()
         weights = np.exp(self.log_weights)
-        _kernels().renew_means(
+        task_kernels().renew_means(
             policies,
             self._numbers[policies],
             self._location,
@@ -391,7 +395,7 @@ class TaskNormals(TaskOutcomes):
         self._stale_means.clear()
         shown = self._numbers[policies]
         if kernel_pays(8 * len(policies) * self.n_types * len(weights)):
-            _kernels().renew(
+            task_kernels().renew(
                 policies,
                 shown,
                 self._location,
@@ -436,14 +440,6 @@ def spread_of(moments: OutcomeMoments) -> Spread:
             found[number, place] = -0.5 * (apart / variance + np.log(variance)).sum(axis=1)
         found[:, place, i] = -np.inf
     return Spread.up_to(likeliest(found))
-
-
-@cache
-def _kernels() -> ModuleType:
-    """The module of kernels, imported at its first use, because the import starts Numba."""
-    from lifelore.interaction.outcomes import task_kernels
-
-    return task_kernels
 
 
 @lru_cache(maxsize=1024)

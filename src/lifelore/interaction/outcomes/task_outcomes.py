@@ -25,7 +25,8 @@ Array = NDArray[np.float64]
 ROOT_2_PI = sqrt(2 * pi)
 SLACK = 1e-5
 """Rounding error of probabilities that sum to 1."""
-_NOTHING = np.empty(0)
+NOTHING = np.empty(0)
+"""What the kernels take in place of `log_anew` where types are static."""
 
 
 class TaskEvidence(NamedTuple):
@@ -195,8 +196,8 @@ def evidence_of(
     if kernel_pays(8 * by_spread.size):
         n_spreads, n_types = by_spread.shape
         found = TaskEvidence(np.empty(n_types), np.empty(n_types), np.zeros(n_spreads))
-        log_first, anew = np.log(spread.weights), _NOTHING if log_anew is None else log_anew
-        _kernels().evidence_of(by_spread, fresh, log_weights, log_first, log_belief, anew, *found)
+        log_first, anew = np.log(spread.weights), NOTHING if log_anew is None else log_anew
+        task_kernels().evidence_of(by_spread, fresh, log_weights, log_first, log_belief, anew, *found)
         return found
     terms = by_spread + log_weights[:, None]
     if log_anew is None:
@@ -227,7 +228,7 @@ def gain_of(by_spread: Array, belief: Array) -> Array:
         return np.zeros(1)
     if kernel_pays(8 * by_spread.size):
         gain = np.empty(len(by_spread))
-        _kernels().gain_of(by_spread, belief, gain)
+        task_kernels().gain_of(by_spread, belief, gain)
         return gain
     if (top := by_spread.max()) == -np.inf:
         return np.zeros(len(by_spread))
@@ -237,11 +238,11 @@ def gain_of(by_spread: Array, belief: Array) -> Array:
 
 
 @cache
-def _kernels() -> ModuleType:
-    # Imported at the first use: the import starts Numba.
-    from lifelore.interaction.outcomes import task_kernels
+def task_kernels() -> ModuleType:
+    """The kernels of a single task, imported at their first use, because the import starts Numba."""
+    from lifelore.interaction.outcomes import task_kernels as kernels
 
-    return task_kernels
+    return kernels
 
 
 def _sum_of_rows(values: Array) -> Array:
