@@ -68,6 +68,18 @@ def test_a_change_of_pace_is_followed():
     assert pace.remaining() == 40
 
 
+def test_pieces_that_differ_in_turns_of_many_are_averaged():
+    now, left = 0.0, []
+    pace = _Pace(clock=lambda: now)
+    for done in range(1, 1001):
+        now += 10.0 if done % 50 < 25 else 1.0  # 5.5 s a piece
+        pace.update(done, 2000, "")
+        left.append(pace.remaining())
+    assert left[-1] == pytest.approx(5.5 * 1000, rel=0.01)
+    assert max(left[500:]) < 9000  # twenty pieces alone would say 15000 and 1000 in turns
+    assert min(left[500:]) > 5000
+
+
 def test_the_first_interrupt_asks_and_the_second_insists(capsys):
     before = signal.getsignal(signal.SIGINT)
     with stop_on_interrupt() as stop:

@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from lifelore.core.errors import InputError, LifeloreError, NotFoundError
+from lifelore.core.metrics import Estimate
 from lifelore.experiments.bench import BENCHES, bench
 from lifelore.experiments.bench.learners import c_loop, kernels
 from lifelore.experiments.bench.learners.gymnasium_loop import TextbookLattice, short_textbook_rate, textbook_rate
@@ -14,7 +15,14 @@ from lifelore.experiments.bench.learners.lattice_case import lattice_task, new_c
 from lifelore.experiments.bench.learners.list_loop import short_tuned_rate, tuned_rate
 from lifelore.experiments.bench.learners.many_learners import alone_rate, many_rate
 from lifelore.experiments.bench.learners.thread_scaling import check_same_bits, run_all
-from lifelore.experiments.bench.rounds import at_least, at_most, interleaved, paired_ratio, row
+from lifelore.experiments.bench.rounds import (
+    at_least,
+    at_most,
+    estimated_row,
+    interleaved,
+    paired_ratio,
+    row,
+)
 from lifelore.experiments.bench.startup import first_result
 
 FOLDER = Path(c_loop.__file__).parents[1]
@@ -145,6 +153,16 @@ def test_lines_by_hand():
     assert at_least("x", 2.0, 2.0) == {"name": "x", "goal": ">= 2.0", "measured": 2.0, "met": True}
     assert at_most("x", 2.0, 2.1)["met"] is False
     assert at_least("x", 2.0, None)["met"] is None
+
+
+def test_a_row_from_an_estimate_has_interval_number_and_ratio():
+    steps, ratio = Estimate(4.0, 3.5, (3.0, 5.0), 6), Estimate(0.5, 0.5, None, 6)
+    alone = estimated_row("lore", steps, "steps")
+    assert alone == row("lore", 4.0, "steps") | {"ci95": [3.0, 5.0], "n": 6}
+    beside = {"ratio_to": "scratch", "ratio": 0.5, "ratio_ci95": None}
+    assert estimated_row("lore", steps, "steps", "scratch", ratio) == alone | beside
+    nothing = Estimate(float("nan"), float("nan"), None, 0)
+    assert estimated_row("lore", nothing, "steps") == row("lore", None, "steps") | {"ci95": None, "n": 0}
     assert row("x", 1.0, "s") == {"name": "x", "value": 1.0, "unit": "s", "ratio_to": None, "ratio": None}
 
 

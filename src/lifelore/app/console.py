@@ -16,8 +16,12 @@ if TYPE_CHECKING:
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as in shells."""
-RECENT = 20
-"""Finished pieces whose mean time predicts the next pieces; fewer follow a change of pace faster."""
+RECENT, RECENT_SHARE = 20, 0.1
+"""The mean time of this many finished pieces, or of this share of all pieces if that is more, predicts the next.
+
+Fewer follow a change of pace faster. More are steadier where short and long pieces alternate, as in runs of
+many claims.
+"""
 
 
 def print_json(document: Any) -> None:
@@ -36,12 +40,14 @@ class _Pace:
     def __init__(self, clock: Callable[[], float] = time.monotonic) -> None:
         self._clock = clock
         self.done, self.total, self.label = 0, 0, ""
-        self._finished = deque([(clock(), 0)], maxlen=RECENT + 1)
+        self._finished = deque([(clock(), 0)])
         self._began = clock()
 
     def update(self, done: int, total: int, label: str) -> None:
         self.done, self.total, self.label = done, total, label
         self._finished.append((self._clock(), done))
+        while len(self._finished) > max(RECENT, int(RECENT_SHARE * total)) + 1:
+            self._finished.popleft()
 
     def remaining(self) -> float | None:
         """Seconds until the end if the next pieces take as long as the last; None before the first is finished."""

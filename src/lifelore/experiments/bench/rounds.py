@@ -1,5 +1,6 @@
 """Interleaved rounds: everyone is measured in every round, so that a busy machine is busy for all alike."""
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from statistics import median
 from typing import Any
@@ -31,9 +32,20 @@ def row(name: str, value: float | None, unit: str, ratio_to: str | None = None, 
     return {"name": name, "value": value, "unit": unit, "ratio_to": ratio_to, "ratio": ratio}
 
 
-def estimated_row(name: str, estimate: Estimate, unit: str) -> dict[str, Any]:
-    """One line of the table from an estimate, with its interval and the number of values behind it."""
-    return row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
+def estimated_row(
+    name: str, estimate: Estimate, unit: str, ratio_to: str | None = None, ratio: Estimate | None = None
+) -> dict[str, Any]:
+    """One line of the table from an estimate, with its interval and the number of values behind it.
+
+    Where there was nothing to measure (the value is not finite), value and interval are None. `ratio` is this
+    row's value over that of the row `ratio_to`; its interval is ``ratio_ci95``.
+    """
+    if not math.isfinite(estimate.value):
+        return row(name, None, unit) | {"ci95": None, "n": estimate.n}
+    line = row(name, estimate.value, unit) | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
+    if ratio is None:
+        return line
+    return line | {"ratio_to": ratio_to, "ratio": ratio.value, "ratio_ci95": ratio.to_dict()["ci95"]}
 
 
 def at_least(name: str, goal: float, measured: float | None) -> dict[str, Any]:

@@ -3,7 +3,8 @@
 - ``claim.toml``: title, what the thesis reports, settings with their limits, and the conditions and rules of the
   verdict.
 - ``run.py``: ``cells(settings)`` lists the cells of a run (without it: `each_run`), ``run_cell(settings, cell,
-  seed)`` computes one of them. Cells are independent plain dictionaries, run in any order on any thread.
+  seed)`` computes one of them. Cells are independent plain dictionaries, run in any order in any thread
+  or process.
 - ``measure.py``: ``measure(settings, results)`` gives named estimates, ``rows(settings, results)`` compact rows.
 - ``figure.py``: ``draw(result)`` draws the finished result; it runs nothing again.
 

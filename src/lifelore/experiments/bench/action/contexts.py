@@ -19,7 +19,7 @@ from lifelore.bridges.gymnasium_world import GymnasiumWorld
 from lifelore.core.metrics import interquartile_mean_estimate, mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
-from lifelore.experiments.bench.rounds import at_least, row
+from lifelore.experiments.bench.rounds import at_least, estimated_row, row
 
 WORLD = "SimpleCrossingS9N2"
 TILE = 4
@@ -127,7 +127,5 @@ def bench_contexts(
                 "interquartile mean": interquartile_mean_estimate(values),
             }
             for kind, estimate in estimates.items():
-                found = estimate.to_dict()
-                entry = row(f"{words}, lore minus scratch, {kind}: {name}", estimate.value, "return")
-                rows.append(entry | {"ci95": found["ci95"], "n": estimate.n})
+                rows.append(estimated_row(f"{words}, lore minus scratch, {kind}: {name}", estimate, "return"))
     return {"rows": rows, "goals": [at_least("lives with each kind of context", LEAST_LIVES, repeats)]}

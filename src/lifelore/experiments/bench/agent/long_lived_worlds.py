@@ -77,12 +77,9 @@ def _rows_of_halves(case: Case, lives: dict[str, list[Life]], best: Sequence[Arr
         for name, own in lives.items():
             missed = _missed(own, *tasks)
             label = f"{case.name}, {half}: {name}"
-            line = estimated_row(label, mean_estimate(missed), UNIT)
-            if name != SCRATCH:
-                ratio = ratio_estimate(missed, scratch)
-                line |= {"ratio_to": f"{case.name}, {half}: {SCRATCH}", "ratio": ratio.value}
-                line |= {"ratio_ci95": ratio.to_dict()["ci95"]}
-            rows.append(line)
+            ratio = None if name == SCRATCH else ratio_estimate(missed, scratch)
+            reference = f"{case.name}, {half}: {SCRATCH}"
+            rows.append(estimated_row(label, mean_estimate(missed), UNIT, reference, ratio))
             if name != FULL:
                 more = difference_estimate(missed, _missed(lives[FULL], *tasks))
                 rows.append(estimated_row(f"{label}, more than {FULL}", more, "points"))

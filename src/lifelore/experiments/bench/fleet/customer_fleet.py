@@ -34,7 +34,7 @@ from lifelore.experiments.bench.fleet.fleet_robot import (
     robot_orders,
 )
 from lifelore.experiments.bench.fleet.postgresql_server import new_place, postgresql_server
-from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row, row
 from lifelore.memory import Memory, open_memory
 
 Array = NDArray[np.float64]
@@ -180,8 +180,8 @@ def _rows(needed: dict[int, list[int]], scratch: list[float], processes: dict, k
     first = f"{min(needed)} robots: rounds to competence"
     for robots, each in needed.items():
         mean, name = float(np.mean(each)), f"{robots} robots: rounds to competence"
-        interval = mean_estimate(each).to_dict()["ci95"]
-        rows.append(row(name, mean, "rounds", first, mean / alone) | {"ci95": interval, "n": len(each)})
+        line = estimated_row(name, mean_estimate(each), "rounds")
+        rows.append(line | {"ratio_to": first, "ratio": mean / alone})
         rows.append(row(f"{robots} robots: tasks of all until then", robots * mean, "tasks"))
         late = sum(value == ROUNDS[robots] for value in each)
         rows.append(row(f"{robots} robots: worlds of {len(each)} that took all rounds or more", late, "worlds"))

@@ -14,7 +14,7 @@ from lifelore.core.metrics import mean_estimate
 from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.golf.golf import CATEGORIES, EDGES, Golf, category_of
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_most, estimated_row
 from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.ordered_normal_signal import OrderedNormalSignal
 
@@ -65,8 +65,8 @@ def loss(signal: CategorySignal | OrderedNormalSignal) -> float:
 def _row(n: int, name: str, values: list[float], losses: dict[tuple[int, str], list[float]]) -> dict:
     estimate, usual = mean_estimate(values), _words(n, USUAL)
     ratio = None if name == USUAL else estimate.value / float(np.mean(losses[n, USUAL]))
-    found = row(_words(n, name), estimate.value, "nats a shot", None if name == USUAL else usual, ratio)
-    return found | {"ci95": estimate.ci95, "n": estimate.n}
+    found = estimated_row(_words(n, name), estimate, "nats a shot")
+    return found | {"ratio_to": None if name == USUAL else usual, "ratio": ratio}
 
 
 def _words(n: int, name: str) -> str:

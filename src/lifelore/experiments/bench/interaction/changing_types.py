@@ -17,7 +17,7 @@ from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.experiments.bench.interaction.reuse_case import NOISE
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_most, estimated_row
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, STUCK, late_regret
 from lifelore.interaction.beliefs.type_dynamics import DEFAULT_HAZARD, TypeDynamics
 from lifelore.interaction.library.policy_library import PolicyLibrary
@@ -111,8 +111,7 @@ def _rows(found: dict[tuple[str, str, float], Array], case: tuple[str, str, floa
 def _estimated(
     name: str, values: Array, unit: str, ratio_to: str | None = None, ratio: float | None = None
 ) -> dict:
-    estimate = mean_estimate(values)
-    return row(name, estimate.value, unit, ratio_to, ratio) | {"ci95": estimate.ci95, "n": estimate.n}
+    return estimated_row(name, mean_estimate(values), unit) | {"ratio_to": ratio_to, "ratio": ratio}
 
 
 def _words(case: tuple[str, str, float]) -> str:

@@ -15,7 +15,7 @@ from lifelore.agent.live.summary import third
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.worlds import WorldSettings
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_most, estimated_row, row
 
 TASKS, VISITS = 30, 3
 AWAY = 1000
@@ -74,14 +74,9 @@ def _rows(where: str, tasks: Sequence[dict]) -> list[dict]:
     for measure, unit in (("steps_to_80", "steps to 80 %"), ("collisions", "collisions")):
         for agent in tasks[0]["agents"]:
             name, scratch = (f"{who} {where}, {unit}" for who in (agent, "scratch"))
+            ratio = None if agent == "scratch" else _ratio(tasks, agent, measure)
             mean = mean_estimate(_column(tasks, agent, measure))
-            spread = {"ci95": mean.to_dict()["ci95"]}
-            if agent == "scratch":
-                rows.append(row(name, mean.value, unit) | spread)
-                continue
-            ratio = _ratio(tasks, agent, measure)
-            spread["ratio_ci95"] = ratio.to_dict()["ci95"]
-            rows.append(row(name, mean.value, unit, scratch, ratio.value) | spread)
+            rows.append(estimated_row(name, mean, unit, scratch, ratio))
     for agent in tasks[0]["agents"]:
         capped = sum(not reached for reached in _column(tasks, agent, "reached"))
         rows.append(row(f"{agent} {where}, capped tasks of {len(tasks)}", float(capped), "tasks"))

@@ -27,7 +27,7 @@ from lifelore.core.protocols import Progress
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.worlds import make_world
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_most, estimated_row
 
 PLACES, TASKS = 10, 60
 LAWS = {"uniform": 0.0, "Zipf": 1.0}
@@ -61,7 +61,7 @@ def bench_destinations(repeats: int, progress: Progress, out: Path = OUT) -> dic
         rows += _rows(law, found)
         for other, most in ((BEST, MOST_RATIO), (TOLD, MOST_RATIO), (NEAREST, 1.0)):
             name, ratio = f"{EXACT} / {other}, {law}", ratio_estimate(found[EXACT], found[other])
-            rows.append(row(name, ratio.value, "") | {"ci95": ratio.to_dict()["ci95"]})
+            rows.append(estimated_row(name, ratio, ""))
             goals.append(at_most(name, most, ratio.value))
     if repeats >= 3:
         _draw(rows, out)
@@ -79,12 +79,8 @@ def _draw(rows: list[dict], out: Path) -> None:
 def _rows(law: str, found: dict[str, list[float]]) -> list[dict]:
     rows = []
     for name, steps in found.items():
-        mean = mean_estimate(steps)
-        line = row(f"{name}, {law}", mean.value, "steps") | {"ci95": mean.to_dict()["ci95"]}
-        if name != BEST:
-            ratio = ratio_estimate(steps, found[BEST])
-            line |= {"ratio_to": f"{BEST}, {law}", "ratio": ratio.value, "ratio_ci95": ratio.to_dict()["ci95"]}
-        rows.append(line)
+        ratio = None if name == BEST else ratio_estimate(steps, found[BEST])
+        rows.append(estimated_row(f"{name}, {law}", mean_estimate(steps), "steps", f"{BEST}, {law}", ratio))
     return rows
 
 

@@ -14,7 +14,7 @@ from lifelore.agent.live.summary import third
 from lifelore.core.metrics import mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.domains.worlds import WorldSettings
-from lifelore.experiments.bench.rounds import at_most, row
+from lifelore.experiments.bench.rounds import at_most, estimated_row, row
 
 TASKS = 30
 RANGES = (2.0, 5.0, 10.0)
@@ -67,13 +67,9 @@ def _rows(tasks: Sequence[dict], reach: float) -> list[dict]:
         scratch = _column(tasks, "scratch", measure)
         for agent in ("scratch", "rmax", "lore"):
             own = _column(tasks, agent, measure)
-            mean = mean_estimate(own)
-            line = row(f"{agent}, {reach:g} m, {unit}", mean.value, unit) | {"ci95": mean.to_dict()["ci95"]}
-            if agent != "scratch":
-                ratio = ratio_estimate(own, scratch)
-                line |= {"ratio_to": f"scratch, {reach:g} m, {unit}", "ratio": ratio.value}
-                line |= {"ratio_ci95": ratio.to_dict()["ci95"]}
-            rows.append(line)
+            name, reference = (f"{who}, {reach:g} m, {unit}" for who in (agent, "scratch"))
+            ratio = None if agent == "scratch" else ratio_estimate(own, scratch)
+            rows.append(estimated_row(name, mean_estimate(own), unit, reference, ratio))
     for agent in ("scratch", "rmax", "lore"):
         capped = sum(not reached for reached in _column(tasks, agent, "reached"))
         rows.append(row(f"{agent}, {reach:g} m, capped tasks of {len(tasks)}", float(capped), "tasks"))

@@ -32,7 +32,7 @@ from lifelore.experiments.bench.perception.segmentation_scenes import (
     simulated_true_scene,
     true_labels,
 )
-from lifelore.experiments.bench.rounds import at_least, row
+from lifelore.experiments.bench.rounds import at_least, estimated_row, row
 from lifelore.experiments.chapter2.scenes.real_scenes import real_scenes, real_scenes_folder
 from lifelore.experiments.chapter2.scoring.relation_scoring import share_over_scenes
 from lifelore.perception.reasoning.planning_state import PLAN_CONFIDENCE
@@ -97,9 +97,9 @@ def _rows(where: str, scenes: Sequence[Fetched]) -> list[dict]:
         planned, valid, useful = shares(scenes, key)
         name = f"{where}, {key[0]}, from {key[1]:g}"
         rows += [
-            _row(f"{name}: objects with a plan", planned),
-            _row(f"{name}: valid plans", valid),
-            _row(f"{name}: objects with a valid plan", useful),
+            estimated_row(f"{name}: objects with a plan", planned, "share"),
+            estimated_row(f"{name}: valid plans", valid, "share"),
+            estimated_row(f"{name}: objects with a valid plan", useful, "share"),
         ]
     reasons = [reason for scene in scenes for reason in scene.failures.values()]
     counts = {reason: reasons.count(reason) for reason in (NOT_FOUND, NO_PLAN, NO_OBJECT)}
@@ -108,11 +108,6 @@ def _rows(where: str, scenes: Sequence[Fetched]) -> list[dict]:
         row(f"{where}, default threshold, failures: {reason}", count, "objects")
         for reason, count in counts.items()
     ]
-
-
-def _row(name: str, estimate: Estimate) -> dict:
-    value = estimate.value if estimate.n else None
-    return row(name, value, "share") | {"ci95": estimate.to_dict()["ci95"], "n": estimate.n}
 
 
 def _goals(fetched: Mapping[str, Sequence[Fetched]]) -> list[dict]:

@@ -22,7 +22,7 @@ from lifelore.domains.tabletop.photograph import Photograph
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes
 from lifelore.domains.tabletop.views import true_contacts, views_around
 from lifelore.experiments.bench.perception.views import SHAPES, contacts_found, lasting_labels, together
-from lifelore.experiments.bench.rounds import row
+from lifelore.experiments.bench.rounds import estimated_row, row
 from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
@@ -147,8 +147,7 @@ def registration_rows(scenes: Sequence[Sequence[RegisteredPair]]) -> list[dict]:
             ("wrong", [sum(pair.is_wrong for pair in pairs) for pairs in own]),
         ):
             share = share_over_scenes(counts, [len(pairs) for pairs in own])
-            line = row(f"registration {word}, {name}", share.value, "share")
-            rows.append({**line, "ci95": share.ci95, "n": share.n})
+            rows.append(estimated_row(f"registration {word}, {name}", share, "share"))
         found = [pair for pairs in own for pair in pairs if pair.pose is not None]
         for word, unit, errors in (
             ("turn", "degrees", [pair.turn for pair in found]),
@@ -176,6 +175,5 @@ def _gain_rows(found: Sequence[RegisteredScene]) -> list[dict]:
         }
         if how != ALONE:
             measures = {**measures, "exact less 1 view": difference(judged, one)}
-        for name, number in measures.items():
-            rows.append({**row(f"{name}, {how}", number.value, "share"), "ci95": number.ci95, "n": number.n})
+        rows += [estimated_row(f"{name}, {how}", number, "share") for name, number in measures.items()]
     return rows

@@ -3,7 +3,7 @@
 from collections.abc import Mapping, Sequence
 
 from lifelore.experiments.bench.perception.relation_learners import LOGIC, OURS, SHIPPED
-from lifelore.experiments.bench.rounds import row
+from lifelore.experiments.bench.rounds import estimated_row
 from lifelore.experiments.chapter2.scoring.relation_scoring import JudgedPair, difference
 
 PEER = "orientation histogram"
@@ -22,6 +22,5 @@ def difference_rows(where: str, answers: Mapping[str, Sequence[JudgedPair]]) -> 
             continue
         for name, right in MEASURES.items():
             found = difference(answers[who], answers[PEER], right)
-            line = row(f"{who}, {where}, {name} less that of the {PEER}", found.value, "share")
-            rows.append(line | {"ci95": found.to_dict()["ci95"], "n": found.n})
+            rows.append(estimated_row(f"{who}, {where}, {name} less that of the {PEER}", found, "share"))
     return rows

@@ -13,7 +13,7 @@ from statistics import median
 
 import numpy as np
 
-from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.metrics import ratio_estimate
 from lifelore.core.protocols import Progress
 from lifelore.experiments.bench.perception.segmentation_scenes import (
     CURVATURE,
@@ -26,7 +26,7 @@ from lifelore.experiments.bench.perception.segmentation_scenes import (
     simulated_true_scenes,
     true_labels,
 )
-from lifelore.experiments.bench.rounds import at_least, at_most, row
+from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row, row
 from lifelore.experiments.chapter2.scoring.segmentation_scoring import segmentation_score
 from lifelore.perception.relations.relation_classifier import shipped_model
 
@@ -92,7 +92,7 @@ def _rows(name: str, results: Sequence[FoundScene]) -> list[dict]:
         "objects and relations": median(result.all_seconds for result in results),
     }
     return [
-        *(_share_row(f"{name}, {measure}", estimate) for measure, estimate in estimates.items()),
+        *(estimated_row(f"{name}, {measure}", estimate, "share") for measure, estimate in estimates.items()),
         *_confidence_rows(name, results),
         *(row(f"{name}, processor time, {part}", 1e3 * seconds, "ms") for part, seconds in times.items()),
     ]
@@ -109,13 +109,6 @@ def _confidence_rows(name: str, results: Sequence[FoundScene]) -> list[dict]:
             rows.append(row(f"{label}, mean", float(band[:, 0].mean()), "share") | {"n": len(band)})
             rows.append(row(f"{label}, right", float(band[:, 1].mean()), "share") | {"n": len(band)})
     return rows
-
-
-def _share_row(name: str, estimate: Estimate) -> dict:
-    """A row; the value is None where there is nothing to divide by."""
-    value = estimate.value if np.isfinite(estimate.value) else None
-    interval = estimate.to_dict()["ci95"] if value is not None else None
-    return row(name, value, "share") | {"ci95": interval, "n": estimate.n}
 
 
 def _goals(value: dict[str, float]) -> list[dict]:

@@ -23,7 +23,7 @@ from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.photograph import Photograph
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, tabletop_scenes, visible_gap
 from lifelore.domains.tabletop.views import true_contacts, views_around
-from lifelore.experiments.bench.rounds import row
+from lifelore.experiments.bench.rounds import estimated_row
 from lifelore.experiments.chapter2.scoring.relation_scoring import (
     JudgedPair,
     difference,
@@ -152,13 +152,11 @@ def _rows(found: Sequence[ViewsOfScene], measures: Mapping[int, Mapping[str, Est
     rows = []
     for views, numbers in measures.items():
         for name, number in numbers.items():
-            line = row(f"{name}, {views} view{'s' if views > 1 else ''}", number.value, "share")
-            rows.append({**line, "ci95": number.ci95, "n": number.n})
+            rows.append(estimated_row(f"{name}, {views} view{'s' if views > 1 else ''}", number, "share"))
     one = [pair for scene in found for pair in scene.judged[1]]
     for views in list(measures)[1:]:
         more = difference([pair for scene in found for pair in scene.judged[views]], one)
-        line = row(f"exact, {views} views less 1 view, the same pairs", more.value, "share")
-        rows.append({**line, "ci95": more.ci95, "n": more.n})
+        rows.append(estimated_row(f"exact, {views} views less 1 view, the same pairs", more, "share"))
     return rows
 
 
