@@ -254,7 +254,7 @@ class Advisor:
         return assessment
 
 
-@kernel
+@kernel(allocates=False)
 def _assess(guide, rule, agent, states, actions, assessment):
     advise, p_normal, gain, posterior = assessment
     for t in range(states.size):

@@ -172,13 +172,14 @@ def _cell(place: int) -> int:
     return (place + CELL // 2) // CELL
 
 
-@kernel
+@kernel(allocates=False)
 def slide(clearance, radius, x, y, dx, dy, distance):
     """How far a ball can go along an axis without touching anything, at most `distance`."""
     moved = 0
     while moved < distance:
-        # No place nearer than the clearance less the radius can touch.
-        room = int(np.ceil(clearance[y + dy * moved, x + dx * moved] - radius)) - 1
+        # No place nearer than the clearance less the radius can touch. Unsigned, because Numba checks every signed
+        # index for counting from the end.
+        room = int(np.ceil(clearance[np.uint64(y + dy * moved), np.uint64(x + dx * moved)] - radius)) - 1
         if room < 1:
             if not clearance[y + dy * (moved + 1), x + dx * (moved + 1)] > radius:
                 break
@@ -187,13 +188,13 @@ def slide(clearance, radius, x, y, dx, dy, distance):
     return moved
 
 
-@kernel
+@kernel(allocates=False)
 def crosses(goal, x0, y0, x1, y1):
     """Whether a way along an axis touches the goal."""
     return max(x0, x1) >= goal[0] and min(x0, x1) <= goal[2] and max(y0, y1) >= goal[1] and min(y0, y1) <= goal[3]
 
 
-@kernel
+@kernel(allocates=False)
 def travel(field, radius, x, y, dx, dy, distance):
     """Where a ball gets that is to go a distance along an axis, and whether something is in its way.
 
@@ -212,7 +213,7 @@ def travel(field, radius, x, y, dx, dy, distance):
     return x + dx * moved, y + dy * moved, touched
 
 
-@kernel
+@kernel(allocates=False)
 def step(field, kind, x, y, heading, distance, sigma, u, v, w):
     """One move.
 
