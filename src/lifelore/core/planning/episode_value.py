@@ -43,7 +43,7 @@ def best_episode_value(tables: Tables, max_steps: int, discount: float = 1.0) ->
 @kernel
 def _moments(tables, row_of, probs, max_steps, discount):
     """First and second moment of the return; touches only the states that can be reached so far."""
-    n_states, starts = tables[0].shape[0], tables[4]
+    n_states, starts = tables.next_state.shape[0], tables.starts
     begin, following, chance, reward_of = _followed(tables, row_of, probs)
     # Per state: its probability, and that times the return so far and its square.
     here, there = np.zeros((n_states, 3)), np.zeros((n_states, 3))

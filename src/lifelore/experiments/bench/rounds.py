@@ -38,7 +38,8 @@ def estimated_row(
     """One line of the table from an estimate, with its interval and the number of values behind it.
 
     Where there was nothing to measure (the value is not finite), value and interval are None. `ratio` is this
-    row's value over that of the row `ratio_to`; its interval is ``ratio_ci95``.
+    row's value over that of the row `ratio_to`; its interval is ``ratio_ci95``. Without a ratio, `ratio_to`
+    does not count.
     """
     if not math.isfinite(estimate.value):
         return row(name, None, unit) | {"ci95": None, "n": estimate.n}
