@@ -62,6 +62,15 @@ def test_two_policies_with_weights_by_hand():
     assert prior.probs([4])[0] == pytest.approx(np.array([1.1, 3.1, 4.1]) / 8.3)
 
 
+def test_a_weight_for_each_action():
+    prior = ActionPrior(3)
+    prior.update([4, 5, 4], [[True, True, False]] * 3, weight=[[1.0, 0.5, 9.0], [0.0, 0.0, 1.0], [0.25, 0.0, 0.0]])
+    assert prior.counts([4]).tolist() == [[1.25, 0.5, 0.0]]  # what is not best counts nothing
+    assert prior.contexts.tolist() == [4]
+    prior.update([], np.empty((0, 3)), weight=[])
+    assert len(prior) == 1
+
+
 def test_a_weight_for_each_row():
     prior, by_hand = ActionPrior(2), ActionPrior(2)
     prior.update([4, 4, 9, 9], [[True, False], [False, True], [True, True], [False, True]], [0.25, 0.75, 0.0, 0.0])
@@ -350,7 +359,10 @@ def test_unseen_rate():
         (lambda p: p.update([1], [[True, False, True]]), r"best must have shape \(1, 2\)"),
         (lambda p: p.update([1, 2], [[True, False]]), r"best must have shape \(2, 2\)"),
         (lambda p: p.update([1], [[True, False]], -1.0), "weight must lie in"),
-        (lambda p: p.update([1], [[True, False]], [1.0, 2.0]), "weight must be a number or"),
+        (
+            lambda p: p.update([1], [[True, False]], [1.0, 2.0]),
+            r"weight must be a number, \(1,\), one a row, or \(1, 2\)",
+        ),
         (lambda p: p.update([1], [[True, False]], float("nan")), "weight must lie in"),
         (lambda p: p.update([1], [[True, False]], 2 * MOST_WEIGHT), "weight must lie in"),
         (lambda p: p.update_trajectory([1], [2]), r"actions must lie in \[0, 2\), got 2..2"),

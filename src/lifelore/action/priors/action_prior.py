@@ -101,8 +101,8 @@ class ActionPrior:
         best : (n, n_actions) bool
             Best or tied-best actions of each state; rows without any are not counted. Leave out, or pass as all
             False: goal rows (where every action ties), completed rows, and states without a learnt policy.
-        weight : float or (n,) float
-            w(π) in [0, `MOST_WEIGHT`], of all rows or of each; rounded to six decimal digits.
+        weight : float, (n,) or (n, n_actions) float
+            w(π) in [0, `MOST_WEIGHT`], of all rows, of each, or of each action; rounded to six decimal digits.
         """
         contexts, best = np.asarray(contexts, np.int64).ravel(), np.asarray(best, bool)
         weights = np.asarray(weight, np.float64)
@@ -110,8 +110,11 @@ class ActionPrior:
             raise InputError(
                 f"best must have shape ({len(contexts)}, {self.n_actions}), one row a context, got {best.shape}"
             )
-        if weights.shape not in ((), (len(contexts),)):
-            raise InputError(f"weight must be a number or ({len(contexts)},), one a row, got {weights.shape}")
+        if weights.shape not in ((), (len(contexts),), best.shape):
+            raise InputError(
+                f"weight must be a number, ({len(contexts)},), one a row, or {best.shape}, one a row and action, "
+                f"got {weights.shape}"
+            )
         if not ((weights >= 0) & (weights <= MOST_WEIGHT)).all():
             raise InputError(f"weight must lie in [0, {MOST_WEIGHT:.0f}], got {weight}")
         # A slot of a record is code · n_actions + action, which must not overflow.
@@ -119,15 +122,13 @@ class ActionPrior:
         if contexts.size and not (-largest <= contexts.min() and contexts.max() <= largest):
             raise InputError(f"contexts must be codes of magnitude at most {largest}; shorten the hash")
         fixed_point = np.rint(weights * ONE).astype(np.int64)
-        counted = np.logical_or.reduce(list(best.T))  # column by column: rows are short
         if fixed_point.ndim:
-            counted &= fixed_point > 0
+            best = best * (fixed_point[:, None] if fixed_point.ndim == 1 else fixed_point)
+        counted = np.logical_or.reduce(list(best.T))  # column by column: rows are short
         if not counted.all():
             contexts, best = contexts[counted], best[counted]
-        if fixed_point.ndim:
-            self._add(contexts, best * fixed_point[counted, None])
-        elif fixed_point:
-            self._add(contexts, best, int(fixed_point))
+        if fixed_point.ndim or fixed_point:
+            self._add(contexts, best, 1 if fixed_point.ndim else int(fixed_point))
 
     def update_trajectory(self, contexts: ArrayLike, actions: ArrayLike, weight: float = 1.0) -> None:
         """Count the actions of a trajectory or demonstration, each visit once (§3.4.8)."""

@@ -111,10 +111,9 @@ class TypePrior:
         counts = np.asarray(counts, np.float64)
         if counts.shape != (self.n_types,) or not (counts >= 0).all():
             raise InputError(f"counts must be ({self.n_types},) and at least 0, got {counts!r:.80}")
-        held = np.flatnonzero(counts > 0)
         if date not in self.dates:
             self.dates[date] = ActionPrior(self.n_types, key=self.key)
-        self.dates[date].update(np.full(len(held), context), np.eye(self.n_types, dtype=bool)[held], counts[held])
+        self.dates[date].update([context], counts[None] > 0, counts[None])
         if date < self._next_date:
             self._forget_past()
 

@@ -6,19 +6,24 @@ from lifelore.core.compiled.jit import inlined, kernel
 
 
 @kernel
-def least_kept(belief, mass):
-    """The least belief among the likeliest types that together hold `mass` of `belief` (n_types,)."""
-    rising = np.sort(belief)
-    total = 0.0
-    for i in range(rising.shape[0]):
-        total += rising[i]
-    left_out = 0.0
-    # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.
-    for i in range(rising.shape[0]):
-        left_out += rising[i]
-        if rising[i] > 0 and left_out > (1.0 - mass) * total:
-            return rising[i]
-    return rising[-1]
+def least_kept(belief, mass, least):
+    """The least belief among the likeliest types that together hold `mass` of each belief.
+
+    belief : (n, n_types) float64
+    least : (n,) float64, written
+    """
+    for user in range(belief.shape[0]):
+        rising = np.sort(belief[user])
+        total = 0.0
+        for i in range(rising.shape[0]):
+            total += rising[i]
+        left_out, least[user] = 0.0, rising[-1]
+        # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.
+        for i in range(rising.shape[0]):
+            left_out += rising[i]
+            if rising[i] > 0 and left_out > (1.0 - mass) * total:
+                least[user] = rising[i]
+                break
 
 
 @kernel

@@ -25,7 +25,7 @@ def supported_types(belief: Array, mass: float) -> tuple[NDArray[np.int64], Arra
     if belief.min() > 2.0 * (1.0 - mass):
         # Even the least likely type holds more than may be left out, with a margin for rounding of the sum.
         return np.arange(len(belief)), belief
-    support = np.flatnonzero(belief >= least_kept(belief, mass))
+    support = np.flatnonzero(belief >= least_kept(belief[None], mass))
     if len(support) == len(belief):
         return support, belief
     share = belief[support]
@@ -34,8 +34,7 @@ def supported_types(belief: Array, mass: float) -> tuple[NDArray[np.int64], Arra
 
 def truncated(belief: Array, mass: float) -> Array:
     """Beliefs (n, n_types) with all but the supported types at 0, rows summing to 1."""
-    least = np.array([least_kept(row, mass) for row in belief])
-    support = np.where(belief >= least[:, None], belief, 0.0)
+    support = np.where(belief >= least_kept(belief, mass)[:, None], belief, 0.0)
     return support / support.sum(axis=1, keepdims=True)
 
 
@@ -45,17 +44,19 @@ def check_mass(mass: float) -> None:
         raise InputError(f"mass must lie in (0, 1], got {mass}")
 
 
-def least_kept(belief: Array, mass: float) -> float:
-    """The least belief among the likeliest types that together hold `mass` of `belief` (n_types,)."""
+def least_kept(belief: Array, mass: float) -> Array:
+    """The least belief among the likeliest types that together hold `mass` of each belief (n, n_types), (n,)."""
     if kernel_pays(belief.size):
         from lifelore.interaction.selection import information_kernels
 
-        return information_kernels.least_kept(belief, mass)
-    return rising_least(belief, mass)
+        least = np.empty(len(belief))
+        information_kernels.least_kept(belief, mass, least)
+        return least
+    return np.array([rising_least(row, mass) for row in belief])
 
 
 def rising_least(belief: Array, mass: float) -> float:
-    """The NumPy twin of `information_kernels.least_kept`."""
+    """The NumPy twin of `information_kernels.least_kept`, for one belief (n_types,)."""
     rising = np.sort(belief)
     held = np.add.accumulate(rising)
     # From below: the types left out may not exceed 1 - mass, and small numbers are summed first.

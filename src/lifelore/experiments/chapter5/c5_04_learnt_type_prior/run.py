@@ -85,7 +85,8 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             policies[:, t], _ = reuse.select(reuse.belief(log_belief), rule, generator, None)
             pays = mean[every, policies[:, t]] + reserve.deviation * noise[:, task, t]
             reuse.update(log_belief, every, policies[:, t], pays)
-        for own, context, belief in zip(learnt, seen, np.exp(log_belief), strict=True):
-            own.learn(int(context), belief / belief.sum(), date)
+        if cell["agent"] not in (LIBRARY, TRUE):
+            for own, context, belief in zip(learnt, seen, np.exp(log_belief), strict=True):
+                own.learn(int(context), belief / belief.sum(), date)
         early[:, task] = library_regret(mean, policies)[:, : settings["early"]].sum(axis=1)
     return {**cell, "early": early.round(3).tolist()}
