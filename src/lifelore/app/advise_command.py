@@ -24,7 +24,12 @@ def advise(
         Option(metavar="FILE", help='JSON lines {"state"} of the goals; default: the ends of the experts.'),
     ] = None,
     watch: Annotated[
-        str, Option(metavar="FILE", help="JSON lines with the steps of the agents to advise; - is stdin.")
+        str,
+        Option(
+            metavar="FILE",
+            help="JSON lines with the steps of the agents to advise; - is stdin. "
+            'With --method classes an agent that shows its class, as by a uniform, has a "class", too.',
+        ),
     ] = "-",
     method: Annotated[
         str,
@@ -34,7 +39,7 @@ def advise(
     ] = "better",
     shown: Annotated[
         str | None,
-        Option(metavar="CLASS", help="With --method classes: the class that the agents show, as by a uniform."),
+        Option(metavar="CLASS", help="With --method classes: the class of all agents whose lines show none."),
     ] = None,
     kappa: Annotated[float, Option(help="Least gain κ of advice, in nats.")] = 0.5,
     window: Annotated[int, Option(help="Number of last steps of an agent that count as evidence.")] = 300,
@@ -61,7 +66,7 @@ def advise(
     )
     name = "stdin" if watch == "-" else watch
     with nullcontext(sys.stdin) if watch == "-" else _opened(watch) as lines:
-        answers = (session.answer(step) for step in read_steps(lines, session.world, name))
+        answers = (session.answer(step) for step in read_steps(lines, session.world, name, session.classes))
         if as_json:
             print_json({"goals": session.goals, "experts": session.n_experts, "advice": list(answers)})
             return

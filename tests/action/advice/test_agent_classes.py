@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import classes_with_goals, pooled_classes
+from lifelore.action.advice.agent_classes import SURE, classes_with_goals, pooled_classes
 from lifelore.action.advice.goal_model import GoalModel, Trajectory
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 
 STAFF, VISITOR = 0, 1
 PLAIN = AdviceSettings(kappa=0.0)
@@ -114,6 +114,27 @@ def test_goals_apart_are_as_likely_as_their_class():
     assert shown.advisor.consider(agent, 4).goal == VISITOR, "who walks right is no staff, whatever the tag says"
     # The agent left place 3 without staying, so it is bound for the right end.
     assert agent.dropped.tolist() == [False, False, True]
+
+
+def test_who_shows_a_class_is_advised_as_with_its_share(models):
+    experts = {"staff": models["staff"], "visitor": models["visitor"], "cook": [walker([1, 1]), walker([1, 0])]}
+    known = pooled_classes(experts, PLAIN)
+    shown = known.showing("visitor")
+    wanted = pooled_classes(experts, PLAIN, {"staff": 0.005, "visitor": SURE, "cook": 0.005}).advisor
+    assert shown.guide.log_prior == pytest.approx(wanted.guide.log_prior)
+    assert shown.guide.goal_share == pytest.approx(wanted.guide.goal_share)
+    assert shown.guide.log_models is known.advisor.guide.log_models
+    # The other classes keep their odds, and nothing changes for agents that show nothing.
+    rare = pooled_classes(experts, PLAIN, {"staff": 3.0, "visitor": 5.0, "cook": 1.0})
+    before = rare.advisor.guide.log_prior.copy()
+    agent = rare.showing("visitor").watch()
+    assert rare.probs(agent) == pytest.approx({"staff": 0.0075, "visitor": SURE, "cook": 0.0025})
+    assert np.array_equal(rare.advisor.guide.log_prior, before)
+    assert rare.advisor.rule == rare.showing("cook").rule
+    alone = pooled_classes({"staff": models["staff"]}, PLAIN)
+    assert alone.showing("staff") is alone.advisor
+    with pytest.raises(NotFoundError, match="class must be one of staff, visitor, cook, got 'nurse'"):
+        known.showing("nurse")
 
 
 def test_classes_without_experts_and_strange_shares_are_refused(models):

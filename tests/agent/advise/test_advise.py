@@ -57,7 +57,11 @@ def experts(maze, tmp_path_factory):
 
 def test_states_and_actions_by_number_cell_or_name():
     lines = [line("a", 3, 2), "", line(7, [0, 4], "west"), line("a", 5, None)]
-    assert list(read_steps(lines, ROW, "x")) == [("a", 3, EAST), (7, 4, WEST), ("a", 5, NO_ACTION)]
+    assert list(read_steps(lines, ROW, "x")) == [
+        ("a", 3, EAST, None),
+        (7, 4, WEST, None),
+        ("a", 5, NO_ACTION, None),
+    ]
 
 
 @pytest.mark.parametrize(
@@ -168,12 +172,52 @@ def test_answers_have_the_promised_form(maze, experts):
             assert answer["gain"] >= 0
 
 
-def test_classes_have_priors_of_their_own(tmp_path):
-    # Staff walk east and visitors west, all from the middle.
+def steps_by_class():
+    """Staff walk east and visitors west, all from the middle."""
+
     def expert(agent, of_class, action, states):
         return [{"agent": agent, "class": of_class, "state": state, "action": action} for state in states]
 
-    steps = [*expert("s", "staff", EAST, range(2, 9)), *expert("v", "visitor", WEST, range(8, 1, -1))]
+    return [*expert("s", "staff", EAST, range(2, 9)), *expert("v", "visitor", WEST, range(8, 1, -1))]
+
+
+def test_each_agent_shows_its_own_class(tmp_path):
+    path = tmp_path / "experts.jsonl"
+    path.write_text("".join(json.dumps(step) + "\n" for step in steps_by_class()))
+    settings = AdviseSettings("lattice", str(path), method="classes", kappa=9.0)
+
+    def shown(agent, of_class):
+        return json.dumps({"agent": agent, "state": 5, "action": None, "class": of_class})
+
+    lines = [
+        shown("a", "staff"),
+        shown("b", "visitor"),
+        line("c", 5, None),
+        line("a", 5, None),
+        shown("c", "staff"),
+    ]
+    answers = list(advise(lines, settings))
+    staff = [one["classes"]["staff"] for one in answers]
+    assert staff == pytest.approx([0.99, 0.01, 0.5, 0.99, 0.99]), "a class holds until another is shown"
+    # Steps count on when an agent shows its class later, and shown classes win over that of all agents.
+    late = list(advise([line("a", 5, WEST), shown("a", "staff")], settings))[-1]["classes"]["visitor"]
+    inferred = next(iter(advise([line("a", 5, WEST)], settings)))["classes"]["visitor"]
+    assert late / (1 - late) == pytest.approx(inferred / (1 - inferred) * 0.01 / 0.99)
+    everyone = replace(settings, shown="visitor")
+    assert [one["classes"]["staff"] for one in advise(lines[1:4], everyone)] == pytest.approx([0.01] * 3)
+    assert next(iter(advise(lines[:1], everyone)))["classes"]["staff"] == pytest.approx(0.99)
+    with pytest.raises(
+        InputError, match="input line 1: class must be one of staff, visitor, or left out, got 'cook'"
+    ):
+        list(advise([shown("a", "cook")], settings))
+    other = replace(settings, method="better")
+    assert "classes" not in next(iter(advise([shown("a", "cook")], other))), (
+        "classes are not read by other methods"
+    )
+
+
+def test_classes_have_priors_of_their_own(tmp_path):
+    steps = steps_by_class()
     path = tmp_path / "experts.jsonl"
     path.write_text("".join(json.dumps(step) + "\n" for step in steps))
     settings = AdviseSettings("lattice", str(path), method="classes", kappa=9.0)  # never advised

@@ -73,6 +73,41 @@ def test_advice_is_that_of_the_session_also_after_a_restart(serve, where, expert
     assert "step must be 400" in post(again, 500, wandering[:1]).json()["error"]["message"]
 
 
+def test_agents_of_a_desk_show_their_classes_also_after_a_restart(serve, where, experts, wandering, tmp_path):
+    names, goals = ("staff", "visitor"), {step["agent"] for step in experts}
+    by_class = [step | {"class": names[sorted(goals).index(step["agent"]) % 2]} for step in experts]
+    (tmp_path / "experts").write_text("".join(json.dumps(step) + "\n" for step in by_class))
+    desk = {"world": MAZE, "experts": by_class, "method": "classes"}
+    client = serve(where)
+    put = client.put("/v1/advice/hall", json=desk)
+    assert put.status_code == 200, put.text
+    assert put.json()["classes"] == list(names)
+    # Ada shows nothing at first, then a badge, then another; the answers are those of the session.
+    steps = [dict(step) for step in wandering]
+    steps[100]["class"], steps[250]["class"] = "visitor", "staff"
+    lines = [json.dumps({"agent": "ada", **step}) for step in steps]
+    own = list(advise(lines, AdviseSettings(MAZE, str(tmp_path / "experts"), method="classes")))
+    assert any(one["advise"] for one in own)
+    assert post(client, 0, steps[:200]).json() == own[199] | {"step": 200, "taken": True}
+    again = serve(where)
+    assert post(again, 200, steps[200:]).json() == own[-1] | {"step": 400, "taken": True}
+    unknown = post(again, 400, [wandering[0] | {"class": "cook"}])
+    assert unknown.status_code == 422
+    assert "class must be one of staff, visitor, or left out, got 'cook'" in unknown.json()["error"]["message"]
+    missing = again.put("/v1/advice/other", json=desk | {"experts": experts})
+    assert missing.status_code == 422
+    assert missing.json()["error"]["message"].startswith("experts line 1: class must be a name such as staff")
+
+
+def test_a_desk_without_classes_is_what_it_was(serve, where, experts, wandering):
+    client = serve(where)
+    client.put("/v1/advice/hall", json={"world": MAZE, "experts": experts})
+    post(client, 0, wandering[:10])
+    badges = [step | {"class": "staff"} for step in experts]
+    assert client.put("/v1/advice/hall", json={"world": MAZE, "experts": badges}).json()["classes"] == []
+    assert post(client, 10, wandering[10:11]).json()["step"] == 11, "the same desk again changes nothing"
+
+
 def test_a_wrong_step_changes_nothing(serve, experts, wandering):
     client = serve()
     client.put("/v1/advice/hall", json={"world": MAZE, "experts": experts})

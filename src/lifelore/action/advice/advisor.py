@@ -7,6 +7,7 @@ share of advised steps, and saves them up so that it can advise a whole path. Th
 """
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -143,9 +144,9 @@ class Advisor:
         experts = [Experts(model.prior) for model in goal_models]
         others = [Uniform(self.n_actions)] if others is None else others
         kinds = [_per_goal(entry, len(goal_models)) for entry in (experts, *others)]
-        shares = _checked_weights(goal_weights, len(goal_models), "goal_weights", "one for each goal model")
-        kind_weights = _checked_weights(weights, len(kinds), "weights", "experts first")
-        self.guide = self._guide(goal_models, kinds, kind_weights, shares)
+        self._kind_sizes = [len(kind) for kind in kinds]
+        self._kind_weights = _checked_weights(weights, len(kinds), "weights", "experts first")
+        self.guide = self._guide(goal_models, kinds, _checked_goal_weights(goal_weights, len(goal_models)))
         chosen = self.settings
         self.rule = AdviceRule(
             float(chosen.kappa), float(chosen.share), float(chosen.burst), chosen.own_steps_only
@@ -156,13 +157,32 @@ class Advisor:
         """M₁ from all experts pooled, M₂ uniform (§3.7.1.2)."""
         return cls([GoalModel.pooled(goal_models)], None, settings)
 
-    def _guide(self, goal_models, kinds, weights, shares) -> Guide:
+    def with_goal_weights(self, goal_weights: ArrayLike) -> "Advisor":
+        """An advisor that finds other goals likely beforehand and shares this one's tables.
+
+        What one of them has observed of an agent is evidence for the other, too.
+        """
+        weights = _checked_goal_weights(goal_weights, len(self.guide.theta))
+        log_prior, goal_share = self._beforehand(weights)
+        other = copy(self)
+        other.guide = self.guide._replace(log_prior=log_prior, goal_share=goal_share)
+        return other
+
+    def _beforehand(self, goal_weights: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """`log_prior` and `goal_share` of the guide."""
+        of_goals, alone = goal_weights / goal_weights.sum(), np.ones(1)
+        prior = np.concatenate(
+            [
+                weight * (of_goals if size > 1 else alone)
+                for size, weight in zip(self._kind_sizes, self._kind_weights, strict=True)
+            ]
+        )
+        return np.log(prior / prior.sum()), goal_weights / goal_weights.mean()
+
+    def _guide(self, goal_models, kinds, goal_weights) -> Guide:
         models = [model for kind in kinds for model in kind]
         goal_of_model = [g if len(kind) > 1 else -1 for kind in kinds for g in range(len(kind))]
-        of_goals, alone = shares / shares.sum(), np.ones(1)
-        prior = np.concatenate(
-            [w * (of_goals if len(kind) > 1 else alone) for kind, w in zip(kinds, weights, strict=True)]
-        )
+        log_prior, goal_share = self._beforehand(goal_weights)
         goal_of_state = np.full(self.n_states, -1, np.int32)
         for g, model in enumerate(goal_models):
             goal_of_state[list(model.goals)] = g
@@ -171,10 +191,10 @@ class Advisor:
             np.stack([model.steps for model in goal_models]),
             goal_of_state,
             np.log(np.stack([self._table(model) for model in models])),
-            np.log(prior / prior.sum()),
+            log_prior,
             np.arange(len(models)) < len(goal_models),
             np.array(goal_of_model, np.int32),
-            shares / shares.mean(),
+            goal_share,
         )
 
     def _table(self, model: Behaviour) -> NDArray[np.float64]:
@@ -292,6 +312,10 @@ def _checked_weights(weights: ArrayLike | None, n: int, name: str, order: str) -
     if weights.shape != (n,) or not (weights > 0).all():
         raise InputError(f"{name} must be {n} positive numbers, {order}, got {weights}")
     return weights
+
+
+def _checked_goal_weights(weights: ArrayLike | None, n_goals: int) -> NDArray[np.float64]:
+    return _checked_weights(weights, n_goals, "goal_weights", "one for each goal model")
 
 
 def _check_goal_models(goal_models: Sequence[GoalModel]) -> None:

@@ -2,10 +2,10 @@
 
     P(c | H) ∝ P(c) Σ_{M of c} P(M | c) Π P(a | s, M)  over the window H
 
-Where a uniform or a name tag shows the class, P(c) says so. The thesis names "hospital staff vs visitors" and
-their uniforms, and measures neither way (§3.7). Its own advisor has one prior over all goals. `pooled_classes` has
-one for each class. Advice from a prior over several goals leads to none of them, whatever the class;
-`classes_with_goals` leads to one goal at a time, and the class says which goals are likely.
+Where a uniform or a name tag shows the class, P(c) says so (`ClassAdvisor.showing`). The thesis names "hospital
+staff vs visitors" and their uniforms, and measures neither way (§3.7). Its own advisor has one prior over all
+goals. `pooled_classes` has one for each class. Advice from a prior over several goals leads to none of them,
+whatever the class; `classes_with_goals` leads to one goal at a time, and the class says which goals are likely.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,10 +18,12 @@ from lifelore.action.advice.advice import WatchedAgent
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
 from lifelore.action.advice.behaviour_models import Behaviour
 from lifelore.action.advice.goal_model import GoalModel, extend_goal_models
-from lifelore.core.errors import InputError
+from lifelore.core.errors import InputError, NotFoundError
 
 Experts = Mapping[str, Sequence[GoalModel]]
 """The goal models of each class."""
+SURE = 0.99
+"""P(class) of agents that show their class: a name tag may be borrowed. Nearer 1 takes longer to see that."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,26 @@ class ClassAdvisor:
         total = weights.sum()
         weights = weights / total if total > 0 else np.full(len(weights), 1 / len(weights))
         return dict(zip(self.names, weights.tolist(), strict=True))
+
+    def showing(self, name: str) -> Advisor:
+        """The advisor of agents that show a class, which is `SURE`; it shares the tables of `advisor`.
+
+        Evidence about an agent counts on when it shows its class later.
+
+        Raises
+        ------
+        NotFoundError
+            There is no such class.
+        """
+        if name not in self.names:
+            raise NotFoundError(f"class must be one of {', '.join(self.names)}, got '{name}'")
+        if len(self.names) == 1:
+            return self.advisor
+        goals = self.advisor.guide.goal_share
+        before = np.bincount(self.class_of_goal, goals)
+        others = np.array([one != name for one in self.names])
+        after = np.where(others, (1 - SURE) * before / before[others].sum(), SURE)
+        return self.advisor.with_goal_weights(goals * (after / before)[self.class_of_goal])
 
 
 def pooled_classes(

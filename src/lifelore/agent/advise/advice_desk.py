@@ -1,7 +1,8 @@
 """Advice desks in memory: experts' walks in a named world, and the steps of the agents that they advise.
 
     advice_desk/NAME            the desk as packed JSON: world, experts, goals, settings; about: id, bytes
-    advice_steps/NAME/AGENT     slots: number of the step; values: state · 8 + action + 1
+    advice_steps/NAME/AGENT     slots: number of the step; values: (class · n_states + state) · 8 + action + 1,
+                                with the number of the class that the agent shows, from 1, or 0
 
 A desk gives the same advice after a restart: it takes in the stored steps of an agent again. Steps are numbered,
 so that a step that comes twice counts once.
@@ -70,14 +71,15 @@ class AdviceDesk:
         ----------
         number : int
             Number of the first of the steps, from 0.
-        steps : sequence of {"state", "action"}
-            As the lines of `step_lines`; the last may have the action None.
+        steps : sequence of {"state", "action", "class"}
+            As the lines of `step_lines`; the last may have the action None. ``class`` may be left out, and counts
+            with method ``classes`` alone.
 
         Returns
         -------
         dict
             ``agent``; ``step``, number of steps so far; ``taken``: False where the steps were stored before;
-            ``advise``, ``theta``, ``p_normal`` and ``gain`` after the last stored step, see `advise`.
+            ``advise``, ``theta``, ``p_normal``, ``gain`` and ``classes`` after the last stored step, see `advise`.
 
         Raises
         ------
@@ -85,7 +87,7 @@ class AdviceDesk:
             A step breaks its rule, or steps before `number` are missing; nothing is stored.
         """
         lines = (json.dumps({"agent": agent, **step}) for step in steps)
-        read = list(read_steps(lines, self.session.world, "steps"))
+        read = list(read_steps(lines, self.session.world, "steps", self.session.classes))
         if not read:
             raise InputError("steps must hold at least one step, got none")
         with self._lock:
@@ -137,18 +139,25 @@ class AdviceDesk:
         record = self._memory.recall(STEPS, self._key(agent), VERSION)
         if record is None or not record.slots.size or record.about["id"] != self.id:
             return []
-        places, actions = np.divmod(record.values, _ACTIONS)
-        pairs = zip(places.tolist(), (actions - 1).tolist(), strict=True)
-        return self._take(agent, [StepLine(agent, state, action) for state, action in pairs])
+        return self._take(agent, [self._step_of(agent, value) for value in record.values.tolist()])
 
     def _store(self, agent: str, number: int, steps: Sequence[StepLine]) -> bool:
-        values = np.array([step.state * _ACTIONS + step.action + 1 for step in steps], np.int64)
+        values = np.array([self._value_of(step) for step in steps], np.int64)
         about = {"desk": self.name, "agent": agent, "id": self.id}
         record = Record(STEPS, self._key(agent), VERSION, "newest", number + np.arange(len(values)), values, about)
         robot = f"advise {self.name}: {_digest(agent)}"
         return self._memory.contribute(
             robot, [record], process=self.id, seq=number, task={"desk": self.name, "steps": len(steps)}
         )
+
+    def _value_of(self, step: StepLine) -> int:
+        shown = 0 if step.shown is None else self.session.classes.index(step.shown) + 1
+        return (shown * self.session.world.n_states + step.state) * _ACTIONS + step.action + 1
+
+    def _step_of(self, agent: str, value: int) -> StepLine:
+        place, action = divmod(value, _ACTIONS)
+        shown, state = divmod(place, self.session.world.n_states)
+        return StepLine(agent, state, action - 1, self.session.classes[shown - 1] if shown else None)
 
     def _key(self, agent: str) -> str:
         # Steps under an earlier desk of this name are none of this one.
@@ -162,7 +171,8 @@ def register_desk(memory: Memory, name: str, document: Mapping[str, Any], maps: 
     ----------
     document : mapping
         ``world``, a map's name in `maps`, or the name and seed of a world (``advice:3``); ``experts``, steps
-        {"agent", "state", "action"}; ``goals``, states, optional; the other fields of `AdviseSettings`, optional.
+        {"agent", "state", "action"}, with method ``classes`` also "class"; ``goals``, states, optional; the other
+        fields of `AdviseSettings`, optional.
 
     Raises
     ------

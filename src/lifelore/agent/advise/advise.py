@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from lifelore.action.advice.advice import WatchedAgent
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
@@ -29,8 +29,6 @@ from lifelore.domains.grids.grid_world import MOVES, GridWorld
 from lifelore.domains.worlds import WorldSettings, domain_names, world_from_settings
 
 METHODS = ("better", "thesis", "classes")
-SURE = 0.99
-"""P(class) of agents that show their class: a name tag may be borrowed. Nearer 1 takes longer to see that."""
 
 
 @dataclass(frozen=True)
@@ -59,7 +57,7 @@ class AdviseSettings:
     burst : float, optional
         With a share below 1: number of saved steps at which advice begins; default 120.
     shown : str, optional
-        Method ``classes``: the class that the advised agents show, by a uniform or a name tag.
+        Method ``classes``: the class of agents whose lines show none, by a uniform or a name tag.
     """
 
     world: str
@@ -83,6 +81,14 @@ class AdviseSettings:
             )
 
 
+class _Known(NamedTuple):
+    """An agent that steps: its evidence, the class that it showed last, and whether it is advised now."""
+
+    agent: WatchedAgent
+    shown: str | None
+    advised: bool
+
+
 class AdviceSession:
     """Gives advice step by step, for any number of agents at the same time.
 
@@ -97,6 +103,8 @@ class AdviceSession:
         States of the goals that advice leads to.
     n_experts : int
         Number of expert walks.
+    classes : tuple of str
+        Classes of the experts, with method ``classes``; else none.
     """
 
     def __init__(self, settings: AdviseSettings) -> None:
@@ -106,21 +114,28 @@ class AdviceSession:
             raise InputError(f"{settings.experts} must hold at least one step with an action, got none")
         self.n_experts = len(walks)
         self.goals = _goals(settings, walks, self.world)
-        self.classes: ClassAdvisor | None = None
+        self.classes: tuple[str, ...] = ()
+        self._class_advisor: ClassAdvisor | None = None
+        # By the class that an agent shows; None: no class.
+        self._advisors: dict[str | None, Advisor] = {}
         if settings.method == "classes":
-            self.classes = _classes(settings, self.goals, self.world)
-            self.advisor = self.classes.advisor
+            known = self._class_advisor = _class_advisor(settings, self.goals, self.world)
+            self.classes = known.names
+            self._advisors |= {name: known.showing(name) for name in known.names}
+            self._advisors[None] = self._advisors[settings.shown] if settings.shown else known.advisor
         else:
-            self.advisor = _advisor(settings, walks, self.goals, self.world)
-        self._agents: dict[str | int, tuple[WatchedAgent, bool]] = {}
+            self._advisors[None] = _advisor(settings, walks, self.goals, self.world)
+        self._agents: dict[str | int, _Known] = {}
 
     def answer(self, step: StepLine) -> dict[str, Any]:
         """Advice for the agent in the state after its step; see `advise`."""
-        agent, advised = self._agents.get(step.agent) or (self.advisor.watch(), False)
+        known = self._agents.get(step.agent) or _Known(self._advisors[None].watch(), None, False)
+        shown = step.shown or known.shown
+        agent, advisor = known.agent, self._advisors[shown]
         if step.action != NO_ACTION:
-            self.advisor.observe(agent, step.state, step.action, advised)
-        advice = self.advisor.consider(agent, state_after(self.world, step))
-        self._agents[step.agent] = (agent, advice.advise)
+            advisor.observe(agent, step.state, step.action, known.advised)
+        advice = advisor.consider(agent, state_after(self.world, step))
+        self._agents[step.agent] = _Known(agent, shown, advice.advise)
         answer = {
             "agent": step.agent,
             "advise": advice.advise,
@@ -128,8 +143,8 @@ class AdviceSession:
             "p_normal": advice.p_normal,
             "gain": advice.gain,
         }
-        if self.classes is not None:
-            answer["classes"] = self.classes.probs(agent)
+        if self._class_advisor is not None:
+            answer["classes"] = self._class_advisor.probs(agent)
         return answer
 
     def forget(self, agent: str | int) -> None:
@@ -139,6 +154,8 @@ class AdviceSession:
 
 def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") -> Iterator[dict[str, Any]]:
     """Advice for each line ``{"agent", "state", "action"}``, as soon as the line arrives.
+
+    With method ``classes`` a line may show the agent's ``class``, which holds until it shows another.
 
     Yields
     ------
@@ -156,7 +173,7 @@ def advise(lines: Iterable[str], settings: AdviseSettings, name: str = "input") 
         The world or a file does not exist.
     """
     desk = AdviceSession(settings)
-    for step in read_steps(lines, desk.world, name):
+    for step in read_steps(lines, desk.world, name, desk.classes):
         yield desk.answer(step)
 
 
@@ -215,7 +232,7 @@ def _advisor(settings: AdviseSettings, walks: list[Trajectory], goals: list[int]
     return Advisor(models, non_expert_models(world, [model.goals[0] for model in models]), chosen)
 
 
-def _classes(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
+def _class_advisor(settings: AdviseSettings, goals: list[int], world: GridWorld) -> ClassAdvisor:
     """Goal models of each class, classes by name."""
     class_of = read_classes(_lines_of(settings.experts), settings.experts)
     steps = list(read_steps(_lines_of(settings.experts), world, settings.experts))
@@ -226,13 +243,9 @@ def _classes(settings: AdviseSettings, goals: list[int], world: GridWorld) -> Cl
     for name in names:
         walks = trajectories((step for step in steps if class_of[step.agent] == name), world)
         experts[name] = goal_models(walks, goals, world)
-    shares = None
-    if settings.shown is not None and len(names) > 1:
-        rest = (1 - SURE) / (len(names) - 1)
-        shares = {name: SURE if name == settings.shown else rest for name in names}
     ends = [model.goals[0] for models in experts.values() for model in models]
     others = non_expert_models(world, ends)
-    return classes_with_goals(experts, world.neighbour, _advice_settings(settings), shares, others)
+    return classes_with_goals(experts, world.neighbour, _advice_settings(settings), others=others)
 
 
 def _advice_settings(settings: AdviseSettings) -> AdviceSettings:

@@ -2,10 +2,11 @@
 
 ``state`` is the number of a state or its cell ``[row, column]``. ``action`` is the number or name of the move that
 the agent tried in that state, or null: the agent has reached its goal, or asks for advice before it moves.
+``class`` may name the class of agents that it shows.
 """
 
 import json
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -17,15 +18,23 @@ NO_ACTION = -1
 
 
 class StepLine(NamedTuple):
-    """The action that an agent tried in a state; action -1: no action."""
+    """The action that an agent tried in a state, -1: no action; and the class that it shows there, if any."""
 
     agent: str | int
     state: int
     action: int
+    shown: str | None = None
 
 
-def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[StepLine]:
+def read_steps(
+    lines: Iterable[str], world: GridWorld, name: str, classes: Sequence[str] = ()
+) -> Iterator[StepLine]:
     """The steps in order; empty lines are skipped.
+
+    Parameters
+    ----------
+    classes : sequence of str
+        The classes that agents can show; without any, ``class`` is not read.
 
     Raises
     ------
@@ -34,7 +43,8 @@ def read_steps(lines: Iterable[str], world: GridWorld, name: str) -> Iterator[St
     """
     for number, document in read_objects(lines, name):
         try:
-            yield StepLine(_agent(document), state_number(document, world), _action(document))
+            shown = _shown(document, classes)
+            yield StepLine(_agent(document), state_number(document, world), _action(document), shown)
         except InputError as error:
             raise InputError(f"{name} line {number}: {error}") from None
 
@@ -89,6 +99,15 @@ def _agent(document: dict[str, Any]) -> str | int:
     if isinstance(agent, bool) or not isinstance(agent, (str, int)):
         raise InputError(f"agent must be a name or a number, got {agent!r}")
     return agent
+
+
+def _shown(document: dict[str, Any], classes: Sequence[str]) -> str | None:
+    given = document.get("class")
+    if not classes or given is None:
+        return None
+    if given not in classes:
+        raise InputError(f"class must be one of {', '.join(classes)}, or left out, got {given!r}")
+    return given
 
 
 def state_number(document: dict[str, Any], world: GridWorld) -> int:

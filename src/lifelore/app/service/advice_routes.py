@@ -19,6 +19,13 @@ class Step(BaseModel):
     model_config = ConfigDict(extra="forbid")
     state: State = Field(description="Number of the state, or its cell [row, column].")
     action: int | str | None = Field(description="north, south, east, west, its number, or null: no move.")
+    class_: str | None = Field(
+        None,
+        alias="class",
+        min_length=1,
+        max_length=60,
+        description="With method classes: the class of an expert, or that a watched agent shows from here on.",
+    )
 
 
 class ExpertStep(Step):
@@ -45,7 +52,9 @@ class DeskRequest(BaseModel):
     world: str = Field(description="A map that is served, or NAME:SEED of a world of the thesis.")
     experts: list[ExpertStep] = Field(min_length=1, description="Steps of the experts in their order.")
     goals: list[State] | None = Field(None, description="States of the goals; left out: the ends of the walks.")
-    method: Literal["better", "thesis"] = Field("better", description="One goal at a time, or one prior over all.")
+    method: Literal["better", "thesis", "classes"] = Field(
+        "better", description="One goal at a time, one prior over all, or one goal at a time by class of agent."
+    )
     kappa: FiniteFloat = Field(0.5, description="Least gain of advice in nats.")
     window: int = Field(300, ge=1, le=100_000, description="Last steps of an agent that count as evidence.")
     share: FiniteFloat | None = Field(None, description="Largest share of an agent's steps that are advised.")
@@ -80,14 +89,17 @@ def router(service: Service) -> APIRouter:
             "goals": session.goals,
             "experts": session.n_experts,
             "states": session.world.n_states,
+            "classes": session.classes,
         }
 
     @routes.put("", summary="Register walks of experts in a world")
     def put(name: Name, document: DeskRequest) -> dict[str, Any]:
-        desks[name] = register_desk(memory, name, document.model_dump(), maps)
+        # Without classes a document is what it was before steps had one: the same desk again changes nothing.
+        unread = None if document.method == "classes" else {"experts": {"__all__": {"class_"}}}
+        desks[name] = register_desk(memory, name, document.model_dump(by_alias=True, exclude=unread), maps)
         return described(desks[name])
 
-    @routes.get("", summary="A desk: goals, number of experts' walks and of states")
+    @routes.get("", summary="A desk: goals, classes, number of experts' walks and of states")
     def show(name: Name) -> dict[str, Any]:
         return described(desk(name))
 
@@ -96,6 +108,6 @@ def router(service: Service) -> APIRouter:
         return await service.writer.run(advise, name, agent, document)
 
     def advise(name: str, agent: str, document: StepsRequest) -> dict[str, Any]:
-        return desk(name).answer(agent, document.step, [step.model_dump() for step in document.steps])
+        return desk(name).answer(agent, document.step, [step.model_dump(by_alias=True) for step in document.steps])
 
     return routes

@@ -16,9 +16,8 @@ from numpy.typing import NDArray
 
 from lifelore.action.advice.advised_walk import Walk, advised_walk
 from lifelore.action.advice.advisor import BETTER, AdviceSettings, Advisor
-from lifelore.action.advice.agent_classes import ClassAdvisor, classes_with_goals, pooled_classes
+from lifelore.action.advice.agent_classes import SURE, ClassAdvisor, classes_with_goals, pooled_classes
 from lifelore.action.advice.goal_model import GoalModel
-from lifelore.agent.advise.advise import SURE
 from lifelore.agent.advise.walk_building import spread_places
 from lifelore.core.metrics import mean_estimate, ratio_estimate
 from lifelore.core.protocols import Progress
