@@ -1,8 +1,8 @@
 """Advice desks in memory: experts' walks in a named world, and the steps of the agents that they advise.
 
     advice_desk/NAME            the desk as packed JSON: world, experts, goals, settings; about: id, bytes
-    advice_steps/NAME/AGENT     slots: number of the step; values: (class · n_states + state) · 8 + action + 1,
-                                with the number of the class that the agent shows, from 1, or 0
+    advice_steps/NAME/AGENT     slots: number of the step; values: class · 2⁴⁰ + state · 8 + action + 1,
+                                with the number of the class that the agent shows, from 1; 0: none
 
 A desk gives the same advice after a restart: it takes in the stored steps of an agent again. Steps are numbered,
 so that a step that comes twice counts once.
@@ -30,7 +30,7 @@ from lifelore.memory import Memory
 from lifelore.memory.byte_words import bytes_of, words_of
 
 DESK, STEPS, VERSION = "advice_desk", "advice_steps", 1
-_ACTIONS = 8
+_ACTIONS, _CLASS = 8, 1 << 40
 ATTEMPTS = 100
 SMALLEST_CELL, LARGEST_CELL = 0.05, 10.0
 """Metres; smaller cells make a world that does not fit main memory."""
@@ -152,11 +152,11 @@ class AdviceDesk:
 
     def _value_of(self, step: StepLine) -> int:
         shown = 0 if step.shown is None else self.session.classes.index(step.shown) + 1
-        return (shown * self.session.world.n_states + step.state) * _ACTIONS + step.action + 1
+        return shown * _CLASS + step.state * _ACTIONS + step.action + 1
 
     def _step_of(self, agent: str, value: int) -> StepLine:
-        place, action = divmod(value, _ACTIONS)
-        shown, state = divmod(place, self.session.world.n_states)
+        shown, move = divmod(value, _CLASS)
+        state, action = divmod(move, _ACTIONS)
         return StepLine(agent, state, action - 1, self.session.classes[shown - 1] if shown else None)
 
     def _key(self, agent: str) -> str:
