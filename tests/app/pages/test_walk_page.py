@@ -11,6 +11,7 @@ pytest.importorskip("fastapi", reason="needs the extra web")
 pytest.importorskip("playwright", reason="needs the extra browser")
 
 from fastapi.testclient import TestClient
+from numpy.typing import NDArray
 from playwright.sync_api import Browser, Page, Route, expect
 
 from lifelore.agent.advise.advice_desk import AdviceDesk
@@ -18,6 +19,7 @@ from lifelore.agent.advise.walk_building import WalkBuilding, walk_building
 from lifelore.app.pages.mount import app_with_pages
 from lifelore.app.service.settings import ServiceSettings
 from lifelore.app.service.tokens import add_token
+from lifelore.core.learning.known_world import GOAL, goal_distances
 from lifelore.domains.grids.grid_world import MOVE_NAMES
 from lifelore.memory import open_memory
 
@@ -57,11 +59,16 @@ class Walker:
 
 def way(building: WalkBuilding, walk: str) -> list[str]:
     """Moves of a shortest way of a walk's errand."""
-    state, place = building.errand(walk)
+    start, place = building.errand(walk)
+    return moves_down(building, start, building.distance[place])
+
+
+def moves_down(building: WalkBuilding, state: int, distance: NDArray[np.int32]) -> list[str]:
+    """Moves from a state to where the distance is 0."""
     moves = []
-    while building.distance[place, state]:
+    while distance[state]:
         target = building.world.neighbour[state]
-        left = np.where(target >= 0, building.distance[place, target], np.iinfo(np.int32).max)
+        left = np.where(target >= 0, distance[target], np.iinfo(np.int32).max)
         moves.append(MOVE_NAMES[int(np.argmin(left))])
         state = int(target[np.argmin(left)])
     return moves
@@ -112,6 +119,22 @@ def test_a_person_gets_lost_is_advised_and_finds_the_place(
         state = int(building.places[building.errand(walker.walk)[1]])
         answer = desk.answer(walker.walk, 0, [{"state": state, "action": None}])
     assert answer["step"] == walker.steps + 1
+
+
+def test_the_page_says_where_no_expert_has_been(serve_pages: Callable[..., str], open_page: Callable[..., Page]):
+    page = open_page(serve_pages() + "/walk")
+    walker = Walker(page)
+    walker.begin(MAZE)
+    building = walk_building(MAZE, {})
+    passed = {step["state"] for step in building.expert_steps}
+    unknown = np.array([0 if s in passed else GOAL for s in range(building.world.n_states)], np.int8)
+    start, _ = building.errand(walker.walk)
+    moves = moves_down(building, start, goal_distances(building.world.neighbour, unknown))
+    assert moves
+    for move in moves:
+        expect(page.locator("#counsel")).not_to_contain_text("No expert")
+        walker.press(move)
+    expect(page.locator("#counsel")).to_contain_text("No expert's walk leads on from here")
 
 
 def painted(page: Page) -> bytes:

@@ -41,7 +41,7 @@ def walk_desk(memory: Memory, building: WalkBuilding, advice: bool, maps: Mappin
     """
     document = {
         "world": building.name,
-        "experts": building.expert_steps(),
+        "experts": building.expert_steps,
         "goals": building.places.tolist(),
         "kappa": KAPPA if advice else NEVER,
         "window": WINDOW,

@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -57,16 +58,26 @@ class WalkBuilding:
     def errand(self, walk: str) -> tuple[int, int]:
         """Start and place (its number) of a walk; the same name gives the same errand.
 
-        The start is one of the farther half of the states from which the place is out of sight.
+        The start is out of sight of the place, and an expert has passed it: elsewhere nobody could advise the
+        person. It is one of the farther half of these states.
         """
         random = stream(0, "walk errand", self.name, walk)
         place = int(random.integers(len(self.places)))
-        hidden = np.ones(self.world.n_states, bool)
+        passed = self._passed & (self.distance[place] > 0)
+        hidden = passed.copy()
         hidden[self.in_sight(int(self.places[place]))] = False
-        starts = np.flatnonzero(hidden) if hidden.any() else np.flatnonzero(self.distance[place] > 0)
+        starts = np.flatnonzero(hidden if hidden.any() else passed)
         far = self.distance[place, starts]
         return int(random.choice(starts[far >= np.median(far)])), place
 
+    @cached_property
+    def _passed(self) -> NDArray[np.bool_]:
+        """(n_states,) states in which an expert has moved."""
+        passed = np.zeros(self.world.n_states, np.bool_)
+        passed[[step["state"] for step in self.expert_steps if step["action"] is not None]] = True
+        return passed
+
+    @cached_property
     def expert_steps(self) -> list[dict[str, Any]]:
         """Steps of simulated experts, who walk a shortest way to each place from `WALKS` random states."""
         random, steps = stream(0, "walk experts", self.name), []

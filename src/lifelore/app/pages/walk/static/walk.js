@@ -159,6 +159,7 @@ function surroundings() {
 function counsel() {
   const numbers = `P(M | H) ${walk.p_normal.toFixed(2)}; gain ${walk.gain.toFixed(2)} nats, threshold ${walk.kappa}.`;
   if (!walk.advice) return `Advice is off. ${numbers}`;
+  if (!walk.theta) return `No expert's walk leads on from here, so there is no advice. ${numbers}`;
   if (!walk.advise) return `No advice now. ${numbers}`;
   const moves = MOVES.map((name, k) => [name, walk.theta[k]]).filter(([, share]) => share > 0);
   return `Advice: ${moves.map(([name, share]) => `${name} ${percent(share)}`).join(", ")}. ${numbers}`;
