@@ -7,6 +7,8 @@ from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.predicate import HOLDS, Condition, number_in_words, short
 from lifelore.experiments.engine.second_reading import GRID, HEADLINE, MISSING, NO, OPEN, PRINTED, YES
 
+MOST_DIGITS = 7
+"""Significant digits; more show differences that rounding errors make."""
 OPS = {">": "above", ">=": "at least", "<": "below", "<=": "at most", "between": "between"}
 ANSWERS = {True: YES, False: NO, None: MISSING}
 MET = {YES: "yes", NO: "**no**", OPEN: "open", MISSING: "not measured"}
@@ -33,7 +35,7 @@ def counted_rows(claim: Claim, result: Mapping) -> list[Row]:
     measured = measured_now(result)
     if claim.second and result.get("second"):
         return [
-            Row(one.role, one.condition, bounds_in_words(one.condition), one.answer(measured))
+            Row(one.role, one.condition, bounds_in_words(one.condition, measured), one.answer(measured))
             for one in claim.second.conditions
             if one.role in COUNTED
         ]
@@ -43,7 +45,7 @@ def counted_rows(claim: Claim, result: Mapping) -> list[Row]:
 
 def first_rows(claim: Claim, measured: Mapping) -> list[Row]:
     """All conditions of the first reading."""
-    return [Row(HEADLINE, c, _asked(c), ANSWERS[c.met(measured)]) for c in claim.predicate.conditions]
+    return [Row(HEADLINE, c, _asked(c, measured), ANSWERS[c.met(measured)]) for c in claim.predicate.conditions]
 
 
 def condition_table(
@@ -63,15 +65,30 @@ def condition_table(
 def measured_in_words(condition: Condition, measured: Mapping) -> str:
     """The number that a condition asks of; a dash where there is none."""
     number = measured.get(condition.measure)
-    return number_in_words(number) if number else "–"
+    return number_in_words(number, _significant(condition, number)) if number else "–"
 
 
-def _asked(condition: Condition) -> str:
-    words = bounds_in_words(condition)
+def bounds_in_words(condition: Condition, measured: Mapping) -> str:
+    """What is asked of the number: ``above 0.5``."""
+    bounds = _bounds(condition)
+    digits = _significant(condition, measured.get(condition.measure))
+    words = dict.fromkeys(short(bound, digits) for bound in bounds)
+    return f"{OPS[condition.op] if len(words) == len(bounds) else 'exactly'} {' and '.join(words)}"
+
+
+def _asked(condition: Condition, measured: Mapping) -> str:
+    words = bounds_in_words(condition, measured)
     return f"interval {words}" if condition.part == "interval" else words
 
 
-def bounds_in_words(condition: Condition) -> str:
-    """What is asked of the number: ``above 0.5``."""
-    bounds = condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
-    return f"{OPS[condition.op]} {' and '.join(short(bound) for bound in bounds)}"
+def _bounds(condition: Condition) -> tuple[float, ...]:
+    return condition.bound if isinstance(condition.bound, tuple) else (condition.bound,)
+
+
+def _significant(condition: Condition, number: Mapping | None) -> int:
+    """Significant digits, 3 or more, at which the value and the bounds read differently where they differ."""
+    value = () if number is None or number["value"] is None else (number["value"],)
+    different = {*_bounds(condition), *value}
+    return next(
+        (n for n in range(3, MOST_DIGITS) if len({short(x, n) for x in different}) == len(different)), MOST_DIGITS
+    )

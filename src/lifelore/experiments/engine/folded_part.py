@@ -41,7 +41,7 @@ def _second_reading(claim: Claim, result: Mapping) -> list[str]:
         return []
     measured = result["measured"]
     rows = [
-        f"| {one.role} | {one.condition.words} | {bounds_in_words(one.condition)} "
+        f"| {one.role} | {one.condition.words} | {bounds_in_words(one.condition, measured)} "
         f"| {measured_in_words(one.condition, measured)} | {MET[one.answer(measured)]} |"
         for one in claim.second.conditions
     ]

@@ -132,20 +132,20 @@ def _said(condition: Condition, measured: Measured, cause: str) -> str:
     return f"{condition.words} ({shown})" + (f", likely because {cause}" if cause else "")
 
 
-def number_in_words(number: Mapping) -> str:
+def number_in_words(number: Mapping, significant: int = 3) -> str:
     """An estimate as people read it: ``1.23 [1.10, 1.31], n 50``."""
     if number["value"] is None:
         return f"no finite value, n {number['n']}"
     interval = ""
     if number["ci95"]:
-        interval = f" [{short(number['ci95'][0])}, {short(number['ci95'][1])}]"
-    return f"{short(number['value'])}{interval}, n {number['n']}"
+        interval = f" [{short(number['ci95'][0], significant)}, {short(number['ci95'][1], significant)}]"
+    return f"{short(number['value'], significant)}{interval}, n {number['n']}"
 
 
-def short(x: float) -> str:
-    """A number to three significant digits, without an exponent from 0.001 to a million."""
+def short(x: float, significant: int = 3) -> str:
+    """A number to so many significant digits, without an exponent from 0.001 to a million."""
     if x == 0 or not math.isfinite(x):
         return "0" if x == 0 else str(x)
-    digits = max(0, 2 - math.floor(math.log10(abs(x))))
-    text = f"{x:,.{digits}f}" if digits <= 5 else f"{x:.2e}"
+    digits = max(0, significant - 1 - math.floor(math.log10(abs(x))))
+    text = f"{x:,.{digits}f}" if digits <= significant + 2 else f"{x:.{significant - 1}e}"
     return (text.rstrip("0").rstrip(".") if "." in text and "e" not in text else text).replace("-", "−")
