@@ -1,5 +1,7 @@
 """`lifelore memory …` from end to end, and what else says its piece in JSON: doctor, reproduce."""
 
+import json
+import re
 import sqlite3
 from pathlib import Path
 
@@ -7,6 +9,8 @@ import numpy as np
 import pytest
 
 from lifelore.app.memory_table import print_memory
+from lifelore.experiments.engine.condition_table import counted_rows
+from lifelore.experiments.engine.registry import claim_of
 from lifelore.memory import open_memory
 
 OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
@@ -232,4 +236,13 @@ def test_a_claim_from_the_command_line(as_json, ask, tmp_path):
         (result,) = said.document
         assert (result["claim"], result["mode"]) == ("C3.1", "quick")
     else:
-        assert said.out.startswith("C3.1 (quick): ")
+        result = json.loads((tmp_path / "results/C3.1/result.json").read_text(encoding="utf-8"))
+        words = " ".join(said.out.split())
+        assert (
+            f": {result['second']['verdict']} (first reading: {result['verdict']}; a quick run, no evidence)"
+            in words
+        )
+        answers = re.findall(r"^  (yes|no|open|missing) ", said.out, flags=re.M)
+        assert len(answers) == len(counted_rows(claim_of("C3.1"), result))
+        assert answers == sorted(answers, key=lambda answer: answer == "yes")
+        assert said.out.endswith("results/C3.1/figure.png\n\n")

@@ -2,6 +2,7 @@
 
 import importlib
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -70,6 +71,11 @@ def test_the_claims_own_check_sees_the_overridden_settings():
     seen = []
     claim(seen.append).settings("full", {"runs": "3"})
     assert seen[0]["runs"] == 3
+
+
+def test_a_cause_says_whether_a_test_shows_it():
+    one = replace(claim(), causes={"a": "it rains", "b": "it pours"}, shown_by={"b": "E7"})
+    assert one.causes_in_words() == {"a": "it rains (untested)", "b": "it pours (shown by tests: E7)"}
 
 
 def test_overriding_leaves_the_claim_as_it_was():

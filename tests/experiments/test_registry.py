@@ -101,7 +101,8 @@ class TestEveryClaim:
 
     def test_causes_belong_to_conditions(self, claim_id):
         claim = claim_of(claim_id)
-        assert set(claim.causes) <= {c.name for c in claim.predicate.conditions}
+        second = [one.condition for one in claim.second.conditions] if claim.second else []
+        assert set(claim.causes) <= {c.name for c in (*claim.predicate.conditions, *second)}
         assert set(claim.shown_by) <= set(claim.causes)
         assert set(claim.shown_by.values()) <= ERRATA
 

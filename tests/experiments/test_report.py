@@ -41,7 +41,7 @@ def test_committed_results_are_full_and_their_verdict_follows_from_their_numbers
     assert result["mode"] == "full"
     assert result["settings"] == claim.settings("full")
     assert result["verdict"] == claim.predicate.verdict(result["measured"])
-    assert result["why"] == claim.predicate.why(result["measured"], claim.causes)
+    assert result["why"] == claim.predicate.why(result["measured"], claim.causes_in_words())
     assert result["thesis"] == claim.thesis
     if result.get("second"):
         assert claim.second is not None

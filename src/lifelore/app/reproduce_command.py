@@ -81,8 +81,9 @@ def reproduce(
     if as_json:
         print_json(results)
     else:
-        for result in results:
-            print(f"{result['claim']} ({result['mode']}): {result['verdict']}. {result['why']}")
+        from lifelore.app.claim_table import print_claims
+
+        print_claims(results, out)
 
 
 def _print_pools(pools: list[dict]) -> None:

@@ -65,7 +65,7 @@ class Claim:
     predicate : Predicate
         Conditions and rules of the verdict.
     causes : mapping
-        Likely cause by condition, reported where the condition is not met.
+        Likely cause by condition of either reading, reported where the condition is not met.
     shown_by : mapping
         The erratum whose tests show a cause, by condition; a cause without one is untested.
     named : tuple of str
@@ -148,6 +148,8 @@ class Claim:
                 f"modules of {folder} must define {', '.join(FUNCTIONS)}; missing {', '.join(absent)}"
             )
         predicate = Predicate.from_data(data)
+        second = data.get("second", {}).get("conditions", [])
+        explained = [(c.get("name", c.get("first")), c) for c in (*data["conditions"], *second)]
         return cls(
             id=claim_id,
             title=data["title"],
@@ -157,8 +159,8 @@ class Claim:
             sizes={"quick": full | data["settings"].get("quick", {}), "full": full},
             limits=data.get("limits", {}),
             predicate=predicate,
-            causes={c["name"]: c["cause"] for c in data["conditions"] if "cause" in c},
-            shown_by={c["name"]: c["shown_by"] for c in data["conditions"] if "shown_by" in c},
+            causes={name: c["cause"] for name, c in explained if "cause" in c},
+            shown_by={name: c["shown_by"] for name, c in explained if "shown_by" in c},
             named=tuple(data.get("named", ())),
             timed=data.get("timed", False),
             data=tuple(data.get("data", ())),
@@ -167,6 +169,11 @@ class Claim:
             second=SecondReading.from_data(data["second"], predicate) if "second" in data else None,
             **{name: functions[0] for name, functions in found.items() if functions},
         )
+
+    def causes_in_words(self) -> dict[str, str]:
+        """`causes`, each with the erratum whose tests show it, or *untested*."""
+        shown = {name: f"shown by tests: {erratum}" for name, erratum in self.shown_by.items()}
+        return {name: f"{cause} ({shown.get(name, 'untested')})" for name, cause in self.causes.items()}
 
     def read_measures(self) -> set[str]:
         """Names of the measures that conditions, figures or pages read."""

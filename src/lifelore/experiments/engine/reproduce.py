@@ -210,7 +210,7 @@ def finish(run: ClaimRun, kept: Sequence[Mapping]) -> dict:
     estimates = {name: rounded(estimate.to_dict()) for name, estimate in claim.measure(settings, results).items()}
     measured, others = split_measures(claim, estimates)
     rows = rounded(claim.rows(settings, results)) + others
-    why = claim.predicate.why(measured, claim.causes)
+    why = claim.predicate.why(measured, claim.causes_in_words())
     seconds = round(sum(found["seconds"] for found in kept), 1)
     module = claim.run_cell.__module__
     data = claim.data if settings.get("real", True) else ()

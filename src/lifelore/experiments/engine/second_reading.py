@@ -41,6 +41,7 @@ SECOND_VERDICTS = (HOLDS, IN_PART, FAILS, UNDECIDED, UNTESTED)
 HEADLINE, PRINTED, GRID, DETAIL, OWN = ROLES = ("headline", "printed", "grid", "detail", "own")
 YES, NO, OPEN, MISSING = ANSWERS = ("yes", "no", "open", "missing")
 _KEYS = {"name", "measure", "op", "bound", "words"}
+_OTHER_KEYS = {"role", "exact", "cause", "shown_by"}
 
 
 @dataclass(frozen=True)
@@ -174,7 +175,7 @@ def _condition(data: Mapping[str, Any], filed: Mapping[str, Condition]) -> ReadC
                 f"second reading: first must name a condition of the first reading, got '{data['first']}'"
             )
         return ReadCondition(role, filed[data["first"]], exact)
-    given: Sequence[str] = sorted(data.keys() - {"role", "exact"})
+    given: Sequence[str] = sorted(data.keys() - _OTHER_KEYS)
     if set(given) != _KEYS:
         raise InputError(
             f"second reading: a condition must have {', '.join(sorted(_KEYS))}, got {', '.join(given)}"
