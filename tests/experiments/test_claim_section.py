@@ -6,12 +6,14 @@ from pathlib import Path
 import pytest
 
 from lifelore.experiments.engine.claim_section import MOST_WORDS, claim_section, verdict_now, visible_words
-from lifelore.experiments.engine.condition_table import counted_rows
+from lifelore.experiments.engine.condition_table import counted_rows, second_rows
 from lifelore.experiments.engine.predicate import FAILS, HOLDS
+from lifelore.experiments.engine.reason import reason_in_words
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.report import read_results
-from lifelore.experiments.engine.second_reading import MISSING, NO, YES
+from lifelore.experiments.engine.second_reading import NO, YES
 
+MOST_WORDS_OF_A_REASON = 40
 RESULTS = read_results(Path(__file__).parents[2] / "results")
 
 
@@ -43,21 +45,35 @@ class TestEverySection:
         ):
             assert part.lower() in seen.lower()
 
-    def test_names_conditions_that_are_not_met(self, result):
+    def test_names_conditions_that_are_not_met_by_their_numbers(self, result):
         claim, seen = claim_of(result["claim"]), in_view(claim_section(result, "results"))
         rows = counted_rows(claim, result)
-        missed = [row.condition.name for row in rows if row.answer in (NO, MISSING)]
-        assert all(f"*{name}*" in seen for name in missed[:4])
+        missed = [row.number for row in rows if row.answer != YES]
+        (why,) = [
+            line for line in seen.splitlines() if re.match(rf"\*\*{verdict_now(result)}(\.|:|, but)", line, re.I)
+        ]
+        named = re.findall(r"(?:not met|bound|measured): ([\d, ]+)\.", why, flags=re.I)
+        assert sorted(int(n) for numbers in named for n in numbers.split(", ")) == missed
         assert seen.count("| **no** |") <= sum(row.answer == NO for row in rows)
-        assert f"{sum(row.answer == YES for row in rows)} of {len(rows)} conditions are met" in seen
+
+    def test_tables_have_a_cell_for_each_head(self, result):
+        for table in re.findall(r"(?:^\|.*\n)+", claim_section(result, "results"), flags=re.M):
+            heads, *lines = (len(re.findall(r"(?<!\\)\|", line)) for line in table.splitlines())
+            assert set(lines) == {heads}, table
 
     def test_folds_every_condition_of_both_readings(self, result):
         claim, section = claim_of(result["claim"]), claim_section(result, "results")
-        folded = section.removeprefix(in_view(section))
-        second = [one.condition for one in claim.second.conditions] if result.get("second") else []
+        folded = section.removeprefix(in_view(section)).replace("\\|", "|")
+        second = [row.condition for row in second_rows(claim, result["measured"])] if result.get("second") else []
         for condition in (*claim.predicate.conditions, *second):
-            assert f"| {condition.words} | " in folded
+            assert f"| {claim.words_of(condition)} | " in folded
         assert all(f"`{key}`" in folded for key in result["settings"])
+
+    def test_reason_is_one_clause_with_numbers_of_the_result(self, result):
+        reason = reason_in_words(claim_of(result["claim"]), result)
+        assert "{" not in reason
+        assert not reason.endswith(".")
+        assert len(reason.split()) <= MOST_WORDS_OF_A_REASON
 
 
 @pytest.mark.parametrize("result", RESULTS, ids=lambda r: r["claim"])
@@ -75,7 +91,7 @@ def test_a_table_takes_names_where_words_do_not_fit():
     seen = in_view(claim_section(result, "results"))
     rows = counted_rows(claim_of("C3.9"), result)
     assert sum(len(row.condition.words.split()) for row in rows) > MOST_WORDS
-    assert len(re.findall(r"^\| \*", seen, flags=re.M)) > 5
+    assert len(re.findall(r"^\| \d+ \| \w+ \| \*", seen, flags=re.M)) > 5
 
 
 def test_every_claim_has_a_sentence_of_its_own():

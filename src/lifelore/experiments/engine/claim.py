@@ -27,7 +27,7 @@ from typing import TYPE_CHECKING, Any
 from lifelore.core.errors import InputError
 from lifelore.core.metrics import Estimate
 from lifelore.experiments.engine.limits import check_limits
-from lifelore.experiments.engine.predicate import Predicate
+from lifelore.experiments.engine.predicate import Condition, Predicate
 from lifelore.experiments.engine.second_reading import SecondReading
 
 if TYPE_CHECKING:
@@ -37,7 +37,7 @@ MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
 FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
-OPTIONAL = {"limits", "named", "timed", "data", "second", "sentence", "more"}
+OPTIONAL = {"limits", "named", "timed", "data", "second", "sentence", "reason", "more"}
 """Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
@@ -83,6 +83,10 @@ class Claim:
         A second reading of the verdict.
     sentence : str
         What the claim says in one plain sentence, true or false, for the list of all claims.
+    reason : str
+        Why the verdict is what it is, or what limits it, in one clause; see `reason_in_words`.
+    plain : mapping
+        Words for pages by condition, where the filed ones cannot be understood alone; they ask the same.
     more : str
         What else was run, and choices; folded on the page.
     shared : tuple of str, optional
@@ -110,6 +114,8 @@ class Claim:
     second: SecondReading | None = None
     shown_by: Mapping[str, str] = field(default_factory=dict)
     sentence: str = ""
+    reason: str = ""
+    plain: Mapping[str, str] = field(default_factory=dict)
     more: str = ""
     shared: tuple[str, ...] | None = None
 
@@ -165,10 +171,16 @@ class Claim:
             timed=data.get("timed", False),
             data=tuple(data.get("data", ())),
             sentence=data.get("sentence", data["title"]),
+            reason=data.get("reason", ""),
+            plain={name: c["plain"] for name, c in explained if "plain" in c},
             more=data.get("more", ""),
             second=SecondReading.from_data(data["second"], predicate) if "second" in data else None,
             **{name: functions[0] for name, functions in found.items() if functions},
         )
+
+    def words_of(self, condition: Condition) -> str:
+        """The words of a condition on pages."""
+        return self.plain.get(condition.name, condition.words)
 
     def causes_in_words(self) -> dict[str, str]:
         """`causes`, each with the erratum whose tests show it, or *untested*."""

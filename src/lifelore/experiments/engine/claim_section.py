@@ -1,8 +1,9 @@
 """The section of one claim on its chapter's page, in at most `MOST_WORDS` visible words; all else is folded.
 
 Visible are the verdict and why, the thesis's sentence, what was done, the figure, and those conditions that the
-verdict counts. A condition is shown by its name, or in its own words as far as they fit: first those not met, then
-headline, printed, grid. The folded part has all of them in words, likely causes, choices and settings.
+verdict counts. A condition has the number of its place in its reading, by which sentences name it. It is shown in
+its own words as far as they fit, else by its name: first those not met, then headline, printed, grid. The folded
+part has all of them in words, likely causes, choices and settings.
 """
 
 import re
@@ -17,11 +18,14 @@ from lifelore.experiments.engine.condition_table import (
     measured_now,
 )
 from lifelore.experiments.engine.folded_part import folded_part
+from lifelore.experiments.engine.predicate import HOLDS
+from lifelore.experiments.engine.reason import reason_in_words
 from lifelore.experiments.engine.registry import claim_of
-from lifelore.experiments.engine.second_reading import MISSING, NO, OPEN, YES
+from lifelore.experiments.engine.second_reading import GRID, MISSING, NO, OPEN, YES
 
 MOST_WORDS = 250
 """Visible words of a claim, its heading and table included, its figure not."""
+NO_GRID = "Every condition is met; no choice was varied."
 PRIVATE = "Real scenes and labels are not public (`LIFELORE_DATA`); `--set real=false` runs the simulated part."
 
 
@@ -46,16 +50,16 @@ def claim_section(result: Mapping, figures: str) -> str:
     """The section as Markdown; `figures` is the folder of the results as the page's links see it."""
     claim = claim_of(result["claim"])
     rows = counted_rows(claim, result)
-    causes = _causes(claim, [row.condition.name for row in rows if row.answer in (NO, OPEN)])
+    causes = _causes(claim, [row for row in rows if row.answer in (NO, OPEN)])
 
     def visible(words: Mapping[Row, str], causes: Sequence[str] = ()) -> str:
         return "\n".join(
             [
                 *_opening(claim, result),
-                *condition_table(rows, words, measured_now(result)),
+                *condition_table(rows, words, measured_now(result), roles=bool(result.get("second"))),
                 f"![{claim.title}]({figures}/{claim.id}/figure.png)",
                 "",
-                _why(result, rows),
+                _why(claim, result, rows),
                 "",
                 *causes,
             ]
@@ -68,7 +72,7 @@ def claim_section(result: Mapping, figures: str) -> str:
     words: dict[Row, str] = {}
     shown: list[str] = []
     names = [(row, f"*{row.condition.name}*") for row in by_weight]
-    in_full = [(row, row.condition.words) for row in by_weight]
+    in_full = [(row, claim.words_of(row.condition)) for row in by_weight]
     n_missed = sum(row.answer != YES for row in rows)
     for step in (names, in_full[:n_missed], None, in_full[n_missed:]):
         if step is None:
@@ -106,32 +110,42 @@ def _opening(claim: Claim, result: Mapping) -> list[str]:
     ]
 
 
-def _why(result: Mapping, rows: Sequence[Row]) -> str:
-    """Why the verdict is what it is: how many conditions are met, and the names of those that are not."""
-    met = sum(row.answer == YES for row in rows)
-    words = [f"{met} of {len(rows)} conditions are met"]
-    for answer, kind in (
-        (NO, "Not met"),
-        (OPEN, "Open, as the interval spans the bound"),
-        (MISSING, "Not measured"),
-    ):
-        names = [f"*{row.condition.name}*" for row in rows if row.answer == answer]
-        if names:
-            words.append(f"{kind}: {'; '.join(names[:4])}" + (f"; and {len(names) - 4} more" if names[4:] else ""))
-    return f"**{verdict_now(result).capitalize()}, because** {'. '.join(words)}.{_on_seeds(result)}"
+def _why(claim: Claim, result: Mapping, rows: Sequence[Row]) -> str:
+    """The reason for the verdict, then the conditions that are not met by their numbers in the table."""
+    verdict, reason = verdict_now(result), reason_in_words(claim, result)
+    if reason:
+        opening = f"**{verdict.capitalize()}**{', but' if verdict == HOLDS else ':'} {reason}."
+    else:
+        opening = f"**{verdict.capitalize()}.**"
+    return " ".join([opening, *answers_in_words(rows), *_on_seeds(result)])
 
 
-def _on_seeds(result: Mapping) -> str:
+def answers_in_words(rows: Sequence[Row]) -> list[str]:
+    """Sentences that name the conditions not met, by role, those that are open and those not measured."""
+    unmet = {role: [row.number for row in rows if (row.role, row.answer) == (role, NO)] for role in COUNTED}
+    kinds = {f"{role.capitalize()} not met": numbers for role, numbers in unmet.items()}
+    kinds["Open, as the interval spans the bound"] = [row.number for row in rows if row.answer == OPEN]
+    kinds["Not measured"] = [row.number for row in rows if row.answer == MISSING]
+    found = [f"{kind}: {', '.join(map(str, numbers))}." for kind, numbers in kinds.items() if numbers]
+    if found:
+        return found
+    return ["Every condition is met." if any(row.role == GRID for row in rows) else NO_GRID]
+
+
+def _on_seeds(result: Mapping) -> list[str]:
     """Whether a single seed would have had another verdict."""
     own = [one["verdict"] for one in (result.get("seeds") or {}).get("by_seed", ())]
-    return f" The verdict depends on the seed: {', '.join(own)}." if len(set(own)) > 1 else ""
+    return [f"The verdict depends on the seed: {', '.join(own)}."] if len(set(own)) > 1 else []
 
 
-def _causes(claim: Claim, names: Sequence[str]) -> list[str]:
+def _causes(claim: Claim, rows: Sequence[Row]) -> list[str]:
     """Why conditions are likely not met, a line each, and whether a test shows it."""
-    named = [name for name in names if name in claim.causes]
-    lines = [f"- {name}: {claim.causes[name]} ({_shown(claim.shown_by.get(name))})." for name in named]
-    return ["**Why not, likely.**", "", *lines, ""] if lines else []
+    lines = [
+        f"- {row.number}: {claim.causes[row.condition.name]} ({_shown(claim.shown_by.get(row.condition.name))})."
+        for row in rows
+        if row.condition.name in claim.causes
+    ]
+    return ["**Likely causes.**", "", *lines, ""] if lines else []
 
 
 def _shown(erratum: str | None) -> str:

@@ -17,8 +17,9 @@ COUNTED = (HEADLINE, PRINTED, GRID)
 
 
 class Row(NamedTuple):
-    """A condition that the verdict counts, and its answer by the reading that decides."""
+    """A condition with its place among those of its reading, from 1, and its answer."""
 
+    number: int
     role: str
     condition: Condition
     asked: str
@@ -34,38 +35,55 @@ def counted_rows(claim: Claim, result: Mapping) -> list[Row]:
     """The conditions that decide: of the second reading where there is one, else those of the first."""
     measured = measured_now(result)
     if claim.second and result.get("second"):
-        return [
-            Row(one.role, one.condition, bounds_in_words(one.condition, measured), one.answer(measured))
-            for one in claim.second.conditions
-            if one.role in COUNTED
-        ]
+        return [row for row in second_rows(claim, measured) if row.role in COUNTED]
     asked = {name for rule in claim.predicate.rules if rule.verdict == HOLDS for name in rule.all_of + rule.any_of}
     return [row for row in first_rows(claim, measured) if row.condition.name in asked]
 
 
+def second_rows(claim: Claim, measured: Mapping) -> list[Row]:
+    """All conditions of the second reading."""
+    conditions = claim.second.conditions if claim.second else ()
+    return [
+        Row(n, one.role, one.condition, bounds_in_words(one.condition, measured), one.answer(measured))
+        for n, one in enumerate(conditions, 1)
+    ]
+
+
 def first_rows(claim: Claim, measured: Mapping) -> list[Row]:
     """All conditions of the first reading."""
-    return [Row(HEADLINE, c, _asked(c, measured), ANSWERS[c.met(measured)]) for c in claim.predicate.conditions]
+    return [
+        Row(n, HEADLINE, c, _asked(c, measured), ANSWERS[c.met(measured)])
+        for n, c in enumerate(claim.predicate.conditions, 1)
+    ]
 
 
 def condition_table(
-    rows: Sequence[Row], words: Mapping[Row, str], measured: Mapping, n: bool = False
+    rows: Sequence[Row], words: Mapping[Row, str], measured: Mapping, n: bool = False, roles: bool = True
 ) -> list[str]:
     """The rows that have words, with the sample sizes where `n` is true; a line says how many have none."""
-    lines = ["| condition | asked | measured [95\u00a0%] | met |", "|---|---|---|---|"]
+    heads = ["", *(["counts as"] if roles else []), "condition", "asked", "measured [95\u00a0%]", "met"]
+    lines = [table_line(heads), "|" + "---|" * len(heads)]
     for row in rows:
         if row in words:
             number = measured_in_words(row.condition, measured)
             number = number if n else number.partition(", n ")[0]
-            lines.append(f"| {words[row]} | {row.asked} | {number} | {MET[row.answer]} |")
+            role = [row.role] if roles else []
+            lines.append(table_line([str(row.number), *role, words[row], row.asked, number, MET[row.answer]]))
     left = len(rows) - len(words)
     return [*(lines if words else []), "", *([f"{left} more below.", ""] if left else [])]
+
+
+def table_line(cells: Sequence[str]) -> str:
+    """A line of a Markdown table; a bar within a cell is no border."""
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |"
 
 
 def measured_in_words(condition: Condition, measured: Mapping) -> str:
     """The number that a condition asks of; a dash where there is none."""
     number = measured.get(condition.measure)
-    return number_in_words(number, _significant(condition, number)) if number else "–"
+    if not number or not number["n"]:
+        return "–"
+    return number_in_words(number, _significant(condition, number))
 
 
 def bounds_in_words(condition: Condition, measured: Mapping) -> str:

@@ -5,14 +5,8 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from lifelore.experiments.engine.claim import Claim
-from lifelore.experiments.engine.condition_table import (
-    MET,
-    bounds_in_words,
-    condition_table,
-    first_rows,
-    measured_in_words,
-)  # fmt: skip
-from lifelore.experiments.engine.predicate import FAILS, number_in_words, short
+from lifelore.experiments.engine.condition_table import condition_table, first_rows, second_rows, table_line
+from lifelore.experiments.engine.predicate import FAILS, Rule, number_in_words, short
 
 SAME = " Real scenes are the same under every seed: where they count, pooled intervals are too narrow."
 
@@ -39,15 +33,10 @@ def folded_part(claim: Claim, result: Mapping, causes: Sequence[str]) -> list[st
 def _second_reading(claim: Claim, result: Mapping) -> list[str]:
     if claim.second is None or not result.get("second"):
         return []
-    measured = result["measured"]
-    rows = [
-        f"| {one.role} | {one.condition.words} | {bounds_in_words(one.condition, measured)} "
-        f"| {measured_in_words(one.condition, measured)} | {MET[one.answer(measured)]} |"
-        for one in claim.second.conditions
-    ]
+    rows = second_rows(claim, result["measured"])
     return [
         f"**Second reading: {result['second']['verdict']}.** {claim.second.why}", "",
-        "| counts as | condition | asked | measured [95\u00a0%] | met |", "|---|---|---|---|---|", *rows, "",
+        *condition_table(rows, {row: claim.words_of(row.condition) for row in rows}, result["measured"], n=True),
     ]  # fmt: skip
 
 
@@ -56,40 +45,40 @@ def _seeds(claim: Claim, result: Mapping) -> list[str]:
     pool = result.get("seeds")
     if not pool or claim.second is None:
         return []
-    asked_by = {one.condition.measure: one.condition.name for one in claim.second.conditions}
-    heads = [f"seed {one['seed']}: {one['verdict']}" for one in pool["by_seed"]]
+    place_of = {one.condition.measure: n for n, one in enumerate(claim.second.conditions, 1)}
+    heads = ["", "pooled", *(f"seed {one['seed']}: {one['verdict']}" for one in pool["by_seed"])]
     rows = [
-        f"| {asked_by[name]} | {number_in_words(number)} | "
-        + " | ".join(number_in_words(one["measured"][name]) for one in pool["by_seed"])
-        + " |"
-        for name, number in pool["pooled"].items()
+        [str(place_of[name]), number_in_words(number)]
+        + [number_in_words(one["measured"][name]) for one in pool["by_seed"]]
+        for name, number in sorted(pool["pooled"].items(), key=lambda item: place_of[item[0]])
     ]
     same = SAME if claim.data else ""
     return [
-        f"**{len(heads)} seeds: {pool['verdict']}.** The table above is of the first seed.{same}", "",
-        f"| condition | pooled | {' | '.join(heads)} |", "|---|---|" + "---|" * len(heads), *rows, "",
+        f"**{len(pool['seeds'])} seeds: {pool['verdict']}.** The table above is of the first seed.{same}", "",
+        table_line(heads), "|" + "---|" * len(heads), *map(table_line, rows), "",
     ]  # fmt: skip
 
 
 def _first_reading(claim: Claim, result: Mapping) -> list[str]:
     measured = result["measured"]
-    conditions = claim.predicate.conditions
     rows = first_rows(claim, measured)
-    rules = [f"*{rule.verdict}*: {_rule_in_words(rule.all_of, rule.any_of, len(conditions))}"
-             for rule in claim.predicate.rules]  # fmt: skip
+    place_of = {row.condition.name: row.number for row in rows}
+    rules = [f"*{rule.verdict}*: {_rule_in_words(rule, place_of)}" for rule in claim.predicate.rules]
+    words = {row: claim.words_of(row.condition) for row in rows}
     return [
         f"**First reading: {result['verdict']}.** {'; '.join(rules)}; else *{FAILS}*.",
         "",
-        *condition_table(rows, {row: row.condition.words for row in rows}, measured, n=True),
+        *condition_table(rows, words, measured, n=True, roles=False),
     ]
 
 
-def _rule_in_words(all_of: Sequence[str], any_of: Sequence[str], n_conditions: int) -> str:
-    if len(all_of) == n_conditions:
+def _rule_in_words(rule: Rule, place_of: Mapping[str, int]) -> str:
+    """The conditions of a rule by their numbers."""
+    if len(rule.all_of) == len(place_of):
         return "all conditions"
-    parts = [f"all of {', '.join(all_of)}"] if all_of else []
-    parts += [f"one of {', '.join(any_of)}"] if any_of else []
-    return " and ".join(parts)
+    kinds = {"all of": rule.all_of, "one of": rule.any_of}
+    places = {how: ", ".join(str(place_of[name]) for name in names) for how, names in kinds.items() if names}
+    return " and ".join(f"{how} {numbers}" for how, numbers in places.items())
 
 
 def _made_in_words(made: Mapping[str, Any] | None) -> list[str]:

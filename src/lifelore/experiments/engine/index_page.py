@@ -3,13 +3,13 @@
 from collections.abc import Mapping, Sequence
 
 from lifelore.experiments.engine.claim_section import anchor, verdict_now
-from lifelore.experiments.engine.condition_table import counted_rows
 from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.more_seeds import deciding_conditions
 from lifelore.experiments.engine.predicate import FAILS, HOLDS, IN_PART, UNTESTED, VERDICTS
+from lifelore.experiments.engine.reason import reason_in_words
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.run_again import run_again
-from lifelore.experiments.engine.second_reading import NO, SECOND_VERDICTS, UNDECIDED
+from lifelore.experiments.engine.second_reading import MINORITY, SECOND_VERDICTS, UNDECIDED
 
 CHAPTERS = {
     "2": "Chapter 2: perception",
@@ -21,28 +21,30 @@ ORDER = (HOLDS, IN_PART, UNDECIDED, FAILS, UNTESTED)
 NOTES = {"5": "These are ideas: the thesis proposes them without numbers."}
 """Words under the title of a chapter."""
 PLURALS = {HOLDS: "hold", IN_PART: "hold in part", FAILS: "do not hold", UNDECIDED: "are undecided"}
-MOST_MISSED = 3
-"""Names of unmet conditions after a claim's sentence."""
+SINGULARS = {UNDECIDED: "is undecided"}
+"""A verdict as the verb of a sentence; itself where it is not named."""
+OURS, IDEAS = "not of the thesis", "5"
+"""Where a claim of our own stands, and the chapter of ideas."""
 OPENING = """# Reproduction
 
 What the thesis says, and whether our measurements agree: every claim in a sentence under its verdict. The chapter
 pages show the numbers. These pages are generated from `results/` by `make docs`; do not edit them by hand.
 """
-READINGS = """## What a verdict means
+READINGS = f"""## What a verdict means
 
-The conditions of each verdict were filed before the first full run and stand in the `claim.toml` of the claim's
-folder. Intervals are 95 %; ratios and differences are paired.
-
-The first reading of a claim has rules of its own, which stand in the folded part of its section. A *second
-reading* has one meaning of each verdict for all claims. It was filed, as data, before the run that it judges, and
-after the first reading's result was known.
-
-- **holds**: what the thesis's sentence says holds by its 95 % intervals, with the numbers it prints, at the
-  default and in most of the choices that the thesis leaves open.
-- **holds in part**: it holds at the default or in a stated minority of these choices, or a printed number is
-  missed.
-- **undecided**: an interval spans its bound.
+- **holds**: what the thesis's sentence says (the *headline*) is certain, by 95 % intervals, at the default, with
+  the numbers that the thesis prints, and in most of the choices that it leaves open (the *grid*), where these were
+  varied.
+- **holds in part**: the headline is certain at the default, but a printed number is missed or most of the grid
+  fails; or it fails at the default and holds in more than a tenth ({MINORITY:g}) of the grid.
+- **undecided**: an interval spans its bound; more runs could tell.
 - **does not hold**: otherwise. Our own extras are shown apart and never count.
+
+The conditions of each verdict were filed, as data, before the run that it judges; a test compares the commits.
+Ratios and differences are paired. Each claim also has a *first reading*, filed before its first full run, with
+rules of its own. The *second reading*, which is told here, has one meaning of each verdict for all claims; it was
+filed after the first result was known. [Both readings](#both-readings) of every claim stand below, and in the
+folded part of its section.
 
 Where a verdict would turn if one number moved by its interval's width, three more seeds are run at full size and
 pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their values, with the interval of a mean of
@@ -57,17 +59,15 @@ def chapter_of(claim_id: str) -> str:
 
 def index_page(found: Sequence[Mapping], verified: Sequence[Mapping], figures: str) -> str:
     """The page as Markdown; `verified` as in `run_again`, `figures`: the folder of the results as links see it."""
-    lines = [OPENING, _total(found), "", f"![Verdicts of all claims]({figures}/verdicts.png)", ""]
-    lines += ["A tile is a claim: its upper half the second reading, the rest the first.", ""]
-    lines += ["## What holds", ""]
-    lines += ["The verdict is that of the second reading; *¹* marks claims that have a first reading only.", ""]
+    lines = [OPENING, *_totals(found), "", f"![Verdicts of all claims]({figures}/verdicts.png)", "", READINGS]
+    lines += ["## What holds", "", "*¹* marks claims that have a first reading only.", ""]
     for number, title in CHAPTERS.items():
         results = [result for result in found if chapter_of(result["claim"]) == number]
         if results:
             lines += [f"### [{title}](chapter{number}.md)", ""]
             lines += [NOTES[number], ""] if number in NOTES else []
             lines += _sentences(results)
-    lines += [*_without_answer(found), READINGS, *run_again(found, verified, figures)]
+    lines += [*_without_answer(found), *run_again(found, verified, figures)]
     lines += [*_tables(found), *_counts(found)]
     return "\n".join(lines)
 
@@ -88,19 +88,28 @@ def _sentences(results: Sequence[Mapping]) -> list[str]:
 
 
 def _sentence(result: Mapping) -> str:
-    """A line of the list: the claim's sentence, and which of its conditions are not met."""
+    """A line of the list: the claim's sentence, and the reason for its verdict."""
     claim = claim_of(result["claim"])
-    missed = [f"*{row.condition.name}*" for row in counted_rows(claim, result) if row.answer == NO]
-    more = f"; and {len(missed) - MOST_MISSED} more" if len(missed) > MOST_MISSED else ""
-    why = f" Not met: {'; '.join(missed[:MOST_MISSED])}{more}." if missed else ""
-    return f"- {_link(claim.id)}{'' if result.get('second') else '¹'} {claim.sentence}{why}"
+    reason = reason_in_words(claim, result)
+    how = "But" if verdict_now(result) == HOLDS else "Measured"
+    words = f" {how}: {reason}." if reason else ""
+    return f"- {_link(claim.id)}{'' if result.get('second') else '¹'} {claim.sentence}{words}"
 
 
-def _total(found: Sequence[Mapping]) -> str:
-    """How many claims have each verdict."""
-    now = [verdict_now(result) for result in found]
-    counts = [f"{now.count(verdict)} {PLURALS.get(verdict, verdict)}" for verdict in ORDER if verdict in now]
-    return f"**Of {len(found)} claims with a result, {', '.join(counts)}.**"
+def _totals(found: Sequence[Mapping]) -> list[str]:
+    """How many claims of the thesis, of its ideas and of our own have each verdict."""
+    ours = [r for r in found if claim_of(r["claim"]).where == OURS]
+    ideas = [r for r in found if chapter_of(r["claim"]) == IDEAS and r not in ours]
+    thesis = [r for r in found if r not in (*ours, *ideas)]
+    named = (("Claims of the thesis", thesis), ("Ideas that it proposes", ideas), ("Claims of our own", ours))
+    return [f"- {kind}: {_total(results)}." for kind, results in named if results]
+
+
+def _total(results: Sequence[Mapping]) -> str:
+    now = [verdict_now(result) for result in results]
+    counts = {verdict: now.count(verdict) for verdict in ORDER if verdict in now}
+    words = [f"{n} {(SINGULARS if n == 1 else PLURALS).get(verdict, verdict)}" for verdict, n in counts.items()]
+    return f"of {len(now)}, {', '.join(words)}"
 
 
 def _without_answer(found: Sequence[Mapping]) -> list[str]:

@@ -17,10 +17,11 @@ from lifelore.experiments.engine.ledger import entries
 from lifelore.experiments.engine.more_seeds import FILE
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import own_rows, stored_result
+from lifelore.experiments.engine.symbols import symbols
 
-HOW_TO_READ = """A condition in italics is shown by its name. The folded part of each claim has all conditions in
-words, likely causes, the choices that the thesis leaves open, and the settings.
-[What a verdict means](index.md)."""
+HOW_TO_READ = """[What a verdict means](index.md#what-a-verdict-means). A condition keeps its number in all
+tables of its reading; in italics stands its name alone. The folded part of each claim has all conditions in words,
+likely causes, the choices that the thesis leaves open, and the settings."""
 
 
 def render_pages(results: str | Path = "results", figures: str = "../../results") -> dict[str, str]:
@@ -38,7 +39,9 @@ def render_pages(results: str | Path = "results", figures: str = "../../results"
     for number, title in CHAPTERS.items():
         sections = [claim_section(result, figures) for result in found if chapter_of(result["claim"]) == number]
         if sections:
-            pages[f"chapter{number}.md"] = "\n".join([f"# {title}", "", HOW_TO_READ, "", *sections])
+            pages[f"chapter{number}.md"] = "\n".join(
+                [f"# {title}", "", HOW_TO_READ, "", *symbols(number), *sections]
+            )
     return pages
 
 

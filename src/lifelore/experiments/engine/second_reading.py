@@ -40,8 +40,10 @@ UNDECIDED = "undecided"
 SECOND_VERDICTS = (HOLDS, IN_PART, FAILS, UNDECIDED, UNTESTED)
 HEADLINE, PRINTED, GRID, DETAIL, OWN = ROLES = ("headline", "printed", "grid", "detail", "own")
 YES, NO, OPEN, MISSING = ANSWERS = ("yes", "no", "open", "missing")
+MINORITY = 0.1
+"""Share of the grid above which a headline that fails at the default holds in part."""
 _KEYS = {"name", "measure", "op", "bound", "words"}
-_OTHER_KEYS = {"role", "exact", "cause", "shown_by"}
+_OTHER_KEYS = {"role", "exact", "plain", "cause", "shown_by"}
 
 
 @dataclass(frozen=True)
@@ -100,7 +102,7 @@ class SecondReading:
 
     why: str
     conditions: tuple[ReadCondition, ...]
-    minority: float = 0.1
+    minority: float = MINORITY
 
     def __post_init__(self) -> None:
         names = [one.condition.name for one in self.conditions]
@@ -118,7 +120,7 @@ class SecondReading:
         """From ``[second]`` of a ``claim.toml``; ``first = "name"`` takes a condition of the first reading."""
         filed = {condition.name: condition for condition in first.conditions}
         conditions = tuple(_condition(one, filed) for one in data["conditions"])
-        return cls(data["why"], conditions, data.get("minority", 0.1))
+        return cls(data["why"], conditions, data.get("minority", MINORITY))
 
     def to_data(self) -> dict[str, Any]:
         """As plain data, in which it is filed."""
