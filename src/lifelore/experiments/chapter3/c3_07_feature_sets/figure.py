@@ -46,7 +46,7 @@ def _draw_grid(axes: Axes, result: Mapping) -> None:
         [[row[f"closed_{method}"] for method in methods] for row in cells],
         [_name(row, settings["default"]) for row in cells],
         [LABELS[method] for method in methods],
-        neutral=0.0, scale=100.0, spread=100.0, words="{:.0f}".format,
+        neutral=0.0, scale=100.0, spread=100.0, words="{:z.0f}".format,
         outlined=(place_of_default(cells, settings), methods.index("phi3")),
     )  # fmt: skip
     axes.set_title("Distance from no prior to the optimum that is closed, all episodes (%)")
