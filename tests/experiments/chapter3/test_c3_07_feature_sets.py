@@ -1,5 +1,7 @@
 """Measures of C3.7 from made-up cells, by hand, and the priors of a few small runs."""
 
+from itertools import product
+
 import numpy as np
 import pytest
 
@@ -88,20 +90,62 @@ def test_differences_by_hand():
     assert found["phi2_minus_phi3_of_optimal"].value == pytest.approx(-100 / 50)
 
 
-def test_other_numbers_of_walls_join_the_second_grid_alone():
-    settings = {**SETTINGS, "walls": [[1, 2], [2, 4]]}
+def in_other_cells(settings, changed):
+    """Runs in a grid of more cells, each as at the default walls and code but for `changed(found)`."""
     cells = [(method, cell) for method in METHODS for cell in grid_of(settings).cells_of(method)]
     results = made_up()
     for result in results:
-        of_walls = {(f["method"], str(f["walls"]), f["ties"]): f for f in result["found"]}
-        result["found"] = [{**of_walls[m, "[2, 4]", c["ties"]], **c, "method": m} for m, c in cells]
-        for found in result["found"]:
-            if found["walls"] == [1, 2] and found["method"] == "phi2":
-                found["all"] = -10.0
+        by_ties = {(f["method"], f["ties"]): f for f in result["found"]}
+        found = [{**by_ties[method, cell["ties"]], **cell, "method": method} for method, cell in cells]
+        result["found"] = [{**one, **changed(one)} for one in found]
         result["optimal_of_walls"] = [[0.0], [-50.0, 50.0]]
-    found = measure(settings, results)
+    return results
+
+
+def test_other_numbers_of_walls_join_the_second_grid_alone():
+    settings = {**SETTINGS, "walls": [[1, 2], [2, 4]]}
+
+    def changed(found):
+        return {"all": -10.0} if found["walls"] == [1, 2] and found["method"] == "phi2" else {}
+
+    found = measure(settings, in_other_cells(settings, changed))
+    # Two cells, by ties, of each number of walls; in those with few φ2 is best.
     assert (found["grid_phi3_best"].value, found["grid_phi3_best"].n) == (1.0, 2)
-    assert found["walls_grid_phi3_best"].value == pytest.approx(2 / 3)
+    assert (found["walls_grid_phi3_best"].value, found["walls_grid_phi3_best"].n) == (0.5, 4)
+
+
+def test_codes_of_states_count_where_states_are_compared_alone():
+    settings = {**SETTINGS, "encodings": ["global", "left", "phase"], "walls": [[1, 2], [2, 4]]}
+
+    def changed(found):
+        return {"all": -9000.0} if found["encoding"] == "left" else {}
+
+    found = measure(settings, in_other_cells(settings, changed))
+    # Walls × ties, then two other codes; coded by the left, states earn less than no prior.
+    order = found["walls_grid_features_above_state_above_uniform"]
+    assert (order.value, order.n) == (pytest.approx(5 / 6), 6)
+    assert found["walls_grid_phi3_best"].n == 4
+    # The first reading counts a cell of the sets of features once for each code.
+    assert found["grid_phi3_best"].n == 2 + 2
+
+
+def test_the_grid_crosses_walls_schedules_and_ties():
+    full = claim_of("C3.7").settings("full")
+    grid = grid_of(full)
+    crossed = list(product(full["walls"], full["schedules"], full["ties"]))
+    assert [(cell["walls"], cell["schedule"], cell["ties"]) for cell in grid.cells[: len(crossed)]] == crossed
+    assert len({grid.key(cell) for cell in grid.cells}) == len(grid.cells) == 3 * 2 * 2 + 3 + 1 + 1 + 1
+
+
+def test_the_first_grid_is_the_part_with_the_default_walls():
+    full = claim_of("C3.7").settings("full")
+    grid, default = grid_of(full), full["default"]
+    first = [cell for cell in grid.cells if cell["walls"] == default["walls"]]
+    alone = {"encoding": ["left", "listed", "phase"], "alpha0": [1.0], "max_steps": [20000], "policies": [10]}
+    assert first == [
+        *({**default, "schedule": s, "ties": t} for s in full["schedules"] for t in full["ties"]),
+        *({**default, key: value} for key, values in alone.items() for value in values),
+    ]
 
 
 def test_shares_of_the_grid_by_hand():
@@ -126,7 +170,7 @@ def test_verdicts(changed, verdict):
 
 
 def test_every_condition_asks_of_something_measured():
-    assert {c.measure for c in CLAIM.predicate.conditions} <= set(measure(SETTINGS, made_up()))
+    assert CLAIM.read_measures() <= set(measure(SETTINGS, made_up()))
 
 
 def test_the_figure_is_drawn_from_rows_alone():
@@ -135,6 +179,8 @@ def test_the_figure_is_drawn_from_rows_alone():
     curves, grid = CLAIM.draw(result).axes
     assert len(curves.lines) == len(METHODS) + 1
     assert [text.get_text() for text in grid.texts][:5] == ["20", "40", "78", "80", "70"]
+    names = [label.get_text() for label in grid.get_yticklabels()]
+    assert names == ["2 to 4 walls, ε 1 × 0.95, ties uniform", "2 to 4 walls, ε 1 × 0.95, ties prior"]
 
 
 @pytest.fixture(scope="module")
@@ -149,8 +195,8 @@ def test_every_method_is_met_once_in_each_cell_it_reads(small):
     met = [(f["method"], str([f[key] for key in KEYS])) for f in result["found"]]
     assert len(set(met)) == len(met)
     by_method = {method: sum(name == method for name, _ in met) for method in METHODS}
-    # ε × ties, α⁰, cap, policies, two of walls; states have three codings more; no prior has ε, cap and walls.
-    assert by_method == {"uniform": 5, "state": 12, **dict.fromkeys(("phi1", "phi2", "phi3", "phi4"), 9)}
+    # Walls × ε × ties, α⁰, cap, policies; states have three codings more; no prior has walls × ε and the cap.
+    assert by_method == {"uniform": 7, "state": 18, **dict.fromkeys(("phi1", "phi2", "phi3", "phi4"), 15)}
 
 
 def test_without_a_prior_it_is_plain_q_learning(small):

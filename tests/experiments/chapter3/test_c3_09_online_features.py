@@ -6,6 +6,7 @@ from lifelore.core.errors import InputError
 from lifelore.experiments.chapter3.c3_09_online_features.measure import measure, rows
 from lifelore.experiments.chapter3.c3_09_online_features.run import (
     METHODS,
+    first_grid_of,
     grid_of,
     run_cell,
 )
@@ -17,6 +18,7 @@ from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C3.9")
 QUICK = dict(claim_of("C3.9").sizes["quick"])
+FULL_SIZE = claim_of("C3.9").settings("full")
 
 SETTINGS = {
     **QUICK,
@@ -33,7 +35,7 @@ END = {"uniform": 3.0, "full": 2.0, "selected": 4.0}
 JITTER = [-3.0, 1.0, -1.0, 3.0]
 
 
-def made_up(first=FIRST, last=LAST, learnt_first=None):
+def made_up(first=FIRST, last=LAST, learnt_first=None, settings=SETTINGS):
     """Four runs of three tasks; the first task, in which nobody has a prior, is another number altogether."""
 
     def numbers(method, how, run):
@@ -45,7 +47,7 @@ def made_up(first=FIRST, last=LAST, learnt_first=None):
         found |= {"loss": [5.0] * (len(block_edges(SETTINGS["long_episodes"])) - 1), "loss_at_end": END[method]}
         return {"method": method, **how, **found}
 
-    met = [(method, cell) for method in METHODS for cell in grid_of(SETTINGS).cells_of(method)]
+    met = [(method, cell) for method in METHODS for cell in grid_of(settings).cells_of(method)]
     return [
         {"run": run, "optimal": [7.0, 0.0, 0.0], "found": [numbers(*at, run) for at in met]} for run in range(4)
     ]
@@ -116,10 +118,63 @@ def test_every_condition_asks_of_something_measured():
     assert CLAIM.read_measures() <= set(measure(SETTINGS, made_up()))
 
 
-def test_the_grid_is_the_default_and_every_other_choice_alone():
-    grid = grid_of(QUICK)
-    assert grid.cells[0] == grid.default == QUICK["default"]
-    assert len(grid.cells) == 1 + 2 + 1 + 1 + 1
+def test_the_first_grid_is_the_default_and_every_other_choice_alone():
+    default = FULL_SIZE["default"]
+    assert first_grid_of(FULL_SIZE).cells == (
+        default,
+        {**default, "source": "learnt, promising"},
+        {**default, "source": "exact"},
+        {**default, "schedule": [0.1, 1.0, 0.1]},
+        {**default, "ties": "prior"},
+        {**default, "max_steps": 2000},
+    )
+
+
+def test_the_grid_crosses_all_choices_and_holds_the_first():
+    grid = grid_of(FULL_SIZE)
+    assert len({grid.key(cell) for cell in grid.cells}) == len(grid.cells) == 3 * 2 * 2 * 2
+    assert all(cell in grid.cells for cell in first_grid_of(FULL_SIZE).cells)
+    # Learners without a prior read the schedule and the cap.
+    assert len(grid.cells_of("uniform")) == 2 * 2
+
+
+def test_shares_of_both_grids_by_hand():
+    settings = {**SETTINGS, "ties": ["uniform", "prior"], "max_steps": [100, 300]}
+    results = made_up(settings=settings)
+    for result in results:
+        for found in result["found"]:
+            if found["source"] == "exact" and found["ties"] == "prior":
+                found["first"] = [-8000.0, -20000.0, -20000.0]
+    found = measure(settings, results)
+    # The default, two other sources, the other ties and the other cap: exact policies meet the default ties there.
+    assert (found["grid_order_at_first"].value, found["grid_order_at_first"].n) == (1.0, 5)
+    # Of 3 × 2 × 2 cells, two have exact policies and ties by the prior.
+    crossed = found["crossed_grid_order_at_first"]
+    assert (crossed.value, crossed.n) == (pytest.approx(10 / 12), 12)
+
+
+def test_alike_is_within_five_percent_of_the_optimal_reward_by_hand():
+    results = made_up()
+    for result in results:
+        result["optimal"] = [7.0, -200.0, 0.0]
+        for found in result["found"]:
+            found["last"] = [-500.0, *[-100.0 - 3 * METHODS.index(found["method"])] * 2]
+            if (found["method"], found["source"]) == ("selected", "exact"):
+                found["last"] = [-500.0, -93.0, -93.0]
+    measured = measure(SETTINGS, results)
+    # 5 % of a size of 100 is 5. Rewards span 6 with both learnt sources, and 10 with exact policies.
+    assert measured["crossed_grid_alike_at_last"].value == 0.0
+    for result in results:
+        result["optimal"] = [7.0, -240.0, 20.0]
+    measured = measure(SETTINGS, results)
+    # 5 % of 130 is 6.5. Of the last task's 20 it is 1: the losses 2, 3 and 4 when learnt on span 2.
+    assert measured["crossed_grid_alike_at_last"].value == pytest.approx(2 / 3)
+    assert (measured["sources_alike_at_end"].value, measured["sources_alike_at_end"].n) == (0.0, 3)
+    for result in results:
+        for found in result["found"]:
+            if found["source"] == "exact":
+                found["loss_at_end"] = 3.5
+    assert measure(SETTINGS, results)["sources_alike_at_end"].value == pytest.approx(1 / 3)
 
 
 def test_a_small_run_agrees_with_an_agent_of_its_own():
@@ -148,12 +203,17 @@ def test_a_small_run_agrees_with_an_agent_of_its_own():
 def test_the_figure_is_drawn_from_rows_alone():
     results = made_up()
     result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, results)), "rows": rows(SETTINGS, results)}
-    learnt, _, exact, first, last, on = CLAIM.draw(result).axes
+    learnt, _, exact, _, on, _, *tables = CLAIM.draw(result).axes
     assert learnt.get_title(loc="left") == "policies counted: learnt"
     assert len(exact.lines) == 2 * len(METHODS)
+    assert on.get_title(loc="left") == "learnt on: learnt, promising"
     assert len(on.lines) == len(METHODS) + 1
-    assert [text.get_text() for text in first.texts] == ["−9.0", "−4.0", "−3.5"] * 3
-    assert [text.get_text() for text in last.texts] == ["−0.1"] * 9
+    # Of the 9000 between no prior and the optimum all ten features gain 5000 and selected ones 500 more.
+    assert [[text.get_text() for text in table.texts] for table in tables] == [["56"] * 3, ["6"] * 3, ["0"] * 3]
+    sides = [label.get_text() for label in tables[0].get_yticklabels()]
+    assert sides == ["learnt; cap 300", "learnt, promising; cap 300", "exact; cap 300"]
+    (frame,) = tables[0].patches
+    assert frame.get_xy() == (-0.5, 0.5)  # the second row: the source that the headlines judge
 
 
 def test_settings_without_a_source_that_the_claim_asks_about():

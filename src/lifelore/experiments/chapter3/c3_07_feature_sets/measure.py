@@ -8,6 +8,7 @@ from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.domains.factory.contexts import PHI
 from lifelore.experiments.chapter3.c3_07_feature_sets.run import KEYS, METHODS, PLAIN, STATE, grid_of
 from lifelore.experiments.engine.estimates import share_of
+from lifelore.experiments.engine.grid import Cell, Grid
 from lifelore.experiments.engine.results_table import ResultsTable
 
 
@@ -30,16 +31,36 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     size = np.abs([_of_walls(settings, result, grid.default) for result in results]).mean(axis=1)
     measured["optimal_size"] = mean_estimate(size)
     measured["phi2_minus_phi3_of_optimal"] = ratio_estimate(every["phi2"] - every["phi3"], size)
-    above, best, first = [], [], [cell["walls"] == grid.default["walls"] for cell in grid.cells]
-    for cell in grid.cells:
-        mean = {method: float(table.values("all", **grid.where(method, cell)).mean()) for method in METHODS}
-        above.append(min(mean[phi] for phi in PHI) > mean[STATE] > mean[PLAIN])
-        best.append(max(mean[phi] for phi in PHI) == mean["phi3"])
-    for name, answers in (("features_above_state_above_uniform", above), ("phi3_best", best)):
-        # The first reading's grid has one density of walls.
-        measured[f"grid_{name}"] = share_of([a for a, read in zip(answers, first, strict=True) if read])
-        measured[f"walls_grid_{name}"] = share_of(answers)
-    return measured
+    return {**measured, **_shares_of_the_grid(table, grid)}
+
+
+def _shares_of_the_grid(table: ResultsTable, grid: Grid) -> dict[str, Estimate]:
+    """Shares of cells in the reported order: with the default number of walls, and with walls crossed."""
+    means = [(cell, _means(table, grid, cell)) for cell in grid.cells]
+    first = [mean for cell, mean in means if cell["walls"] == grid.default["walls"]]
+    # Only the prior over states reads the code of a state: the sets of features meet one cell under every code.
+    distinct = [mean for cell, mean in means if cell["encoding"] == grid.default["encoding"]]
+    return {
+        "grid_features_above_state_above_uniform": share_of([_is_in_order(mean) for mean in first]),
+        "grid_phi3_best": share_of([_is_phi3_best(mean) for mean in first]),
+        "walls_grid_features_above_state_above_uniform": share_of([_is_in_order(mean) for _, mean in means]),
+        "walls_grid_phi3_best": share_of([_is_phi3_best(mean) for mean in distinct]),
+    }
+
+
+def _means(table: ResultsTable, grid: Grid, cell: Cell) -> dict[str, float]:
+    """Each method's mean reward of an episode in a cell."""
+    return {method: float(table.values("all", **grid.where(method, cell)).mean()) for method in METHODS}
+
+
+def _is_in_order(mean: Mapping[str, float]) -> bool:
+    """Whether every set of features earns more than states, and states more than no prior."""
+    return min(mean[phi] for phi in PHI) > mean[STATE] > mean[PLAIN]
+
+
+def _is_phi3_best(mean: Mapping[str, float]) -> bool:
+    """Whether φ3 earns most of the four sets."""
+    return max(mean[phi] for phi in PHI) == mean["phi3"]
 
 
 def _of_walls(settings: Mapping, result: Mapping, cell: Mapping) -> list[float]:

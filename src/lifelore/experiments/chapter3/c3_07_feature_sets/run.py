@@ -21,11 +21,14 @@ KEYS = ("encoding", "schedule", "ties", "alpha0", "max_steps", "policies", "wall
 
 
 def grid_of(settings: Mapping) -> Grid:
-    """The grid: schedules of ε × ties, and every other choice one at a time."""
+    """The grid: numbers of inner walls × schedules of ε × ties, and every other choice one at a time.
+
+    The first reading's grid is the part of it with the default number of walls.
+    """
+    crossed = {"walls": "walls", "schedule": "schedules", "ties": "ties"}
     singly = {"encoding": "encodings", "alpha0": "alpha0", "max_steps": "max_steps", "policies": "policies"}
-    singly["walls"] = "walls"
     reads = {PLAIN: (*READ_WITHOUT_PRIOR, "walls"), **dict.fromkeys(PHI, KEYS[1:])}
-    return Grid.crossed(settings, KEYS, {"schedule": "schedules", "ties": "ties"}, singly, reads)
+    return Grid.crossed(settings, KEYS, crossed, singly, reads)
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:

@@ -18,8 +18,9 @@ from lifelore.experiments.engine.curve_blocks import block_means
 from lifelore.experiments.engine.grid import READ_WITHOUT_PRIOR, Grid
 
 METHODS = (UNIFORM, FULL, SELECTED)
-KEYS = ("source", "schedule", "ties", "max_steps")
-"""The choices left open that make a cell of the grid."""
+CHOICES = {"source": "sources", "schedule": "schedules", "ties": "ties", "max_steps": "max_steps"}
+"""The choices left open that make a cell of the grid, each with its setting."""
+KEYS = tuple(CHOICES)
 SOURCES = {
     "learnt": Counting("learnt", "tried"),
     "learnt, promising": Counting("learnt", "visited"),
@@ -29,13 +30,17 @@ SOURCES = {
 ASKED = ("exact", "learnt")
 """The sources that the first reading asks about."""
 OF_E4 = "learnt, promising"
-"""The source that counts as erratum E4 says: a learnt policy in the states that promise a reward."""
+"""The source of the second reading's headlines: a learnt policy counts in states that promise a reward (E4)."""
 
 
 def grid_of(settings: Mapping) -> Grid:
-    """The default, then every other choice one at a time."""
-    singly = {"source": "sources", "schedule": "schedules", "ties": "ties", "max_steps": "max_steps"}
-    return Grid.crossed(settings, KEYS, {}, singly, {UNIFORM: READ_WITHOUT_PRIOR})
+    """All choices crossed: sources of policies × schedules of ε × ties × caps of an episode."""
+    return Grid.crossed(settings, KEYS, CHOICES, reads={UNIFORM: READ_WITHOUT_PRIOR})
+
+
+def first_grid_of(settings: Mapping) -> Grid:
+    """The first reading's part of the grid: the default, then every other choice one at a time."""
+    return Grid.crossed(settings, KEYS, {}, CHOICES, {UNIFORM: READ_WITHOUT_PRIOR})
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
