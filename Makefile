@@ -23,7 +23,7 @@ CUDA := .venv-cuda
 
 PYTHON_FILES := src tests examples docs/conf.py
 
-.PHONY: help setup setup-test demo test test-fast test-deep test-cuda coverage check format bench soak docs reproduction-pages \
+.PHONY: help setup setup-test demo test test-fast test-deep test-cluster test-cuda coverage check format bench soak docs reproduction-pages \
 	wheel-test reproduce clean
 
 help: ## Name every target
@@ -65,6 +65,11 @@ $(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
 	$(DEEP)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt \
 		--constraint constraints-deep.txt --editable '.[deep,envs,postgres]' pytest hypothesis
 	touch $@
+
+test-cluster: setup-test ## The tests of the extra cluster (dask.distributed), in .venv
+	$(PIP) --editable '.[cluster]'
+	$(BIN)/python -c "import distributed"
+	$(BIN)/python -m pytest tests/experiments/test_cluster.py
 
 test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
 	$(CUDA)/bin/python -c "import numba_cuda"

@@ -107,14 +107,20 @@ def test_the_index_says_what_running_again_costs_and_what_came_of_it():
     )
     lines = "\n".join(run_again(shared, [], "results"))
     assert f"{minutes(shared):.0f} minutes of processor time" in lines
-    assert "simulate physics (C2.1, C2.2)" in lines
+    assert "claims that simulate\nphysics (C2.1, C2.2)" in lines
     assert "Last run" not in lines
     made = {"date": "2030-01-02", "commit": "0123456789", "processor": "P"}
-    one = {"claim": "C3.1", "equal": True, "made": made, "n_differences": 0, "verdict": "holds"}
-    other = {**one, "claim": "C3.2", "equal": False, "n_differences": 3, "verdict": "undecided"}
-    lines = "\n".join(run_again(shared, [one, other], "results"))
-    assert "(2030-01-02, commit 0123456, P): 1 of 2 results were equal" in lines
+    commit_of = {result["claim"]: result["made"]["commit"] for result in shared}
+    one = {"equal": True, "made": made, "n_differences": 0, "verdict": "holds"}
+    verified = [
+        {**one, "claim": "C2.1", "of": commit_of["C2.1"]},
+        {**one, "claim": "C2.2", "of": commit_of["C2.2"], "equal": None, "made": None},
+        {**one, "claim": "C3.2", "of": "before", "equal": False, "n_differences": 3, "verdict": "undecided"},
+    ]
+    lines = "\n".join(run_again(shared, verified, "results"))
+    assert "1 of 2 results were equal to the last digit (2030-01-02, commit 0123456, P)." in lines
     assert "Others differ: C3.2 (3 numbers, verdict undecided)." in lines
+    assert "Made since then, and not run again: C3.2." in lines
 
 
 def test_every_claim_that_is_built_has_a_committed_result():

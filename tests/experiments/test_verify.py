@@ -44,6 +44,32 @@ def test_another_digit_is_found(stored, tmp_path):
     assert found["differences"][0]["where"].endswith(".value")
 
 
+def test_another_measure_and_another_second_verdict_are_found(stored, tmp_path):
+    def change(result):
+        result["second"]["verdict"] = "undecided"
+        (others,) = [row["other_measures"] for row in result["rows"] if "other_measures" in row]
+        next(iter(others.values()))["n"] += 1
+
+    (found,) = verify(["C3.1"], out=spoiled(stored, tmp_path, change))
+    assert found["n_differences"] == 2
+    assert found["differences"][0]["where"] == "second"
+
+
+def test_a_result_whose_outside_data_are_not_here_is_not_run(stored, tmp_path, monkeypatch):
+    def change(result):
+        result["made"]["data"] = {"osd": "0123456789abcdef"}
+
+    folder = spoiled(stored, tmp_path, change)
+    monkeypatch.delenv("LIFELORE_DATA", raising=False)
+    (found,) = verify(["C3.1"], out=folder)
+    assert (found["equal"], found["missing"], found["seconds"]) == (None, ["osd"], 0.0)
+    (tmp_path / "data" / "osd").mkdir(parents=True)
+    monkeypatch.setenv("LIFELORE_DATA", str(tmp_path / "data"))
+    (found,) = verify(["C3.1"], out=folder)
+    assert (found["equal"], found["missing"]) == (True, [])
+    assert {"where": "data.osd", "stored": "0123456789abcdef", "now": "nothing"} in found["changed"]
+
+
 def test_where_and_what_differs():
     one = {
         "claim": "C3.1", "verdict": "holds", "versions": {"numpy": "1"}, "rows": [{"x": 1}, {"x": 2}],

@@ -11,6 +11,8 @@ from importlib.metadata import packages_distributions, version
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from lifelore.core.usable_cores import usable_cores
 from lifelore.experiments.engine.source_key import PACKAGE, foreign_modules, source_key
 
@@ -32,8 +34,9 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
     -------
     dict
         ``date`` (UTC); ``commit``, None outside a checkout; ``changed``: whether files of the package differed
-        from the commit; ``source``, the key of all code that it rests on; ``processor``, ``cores``; ``data``: a
-        hash for each of the folders, None where it is not there.
+        from the commit; ``source``, the key of all code that it rests on; ``processor``, ``simd`` (instructions
+        that NumPy uses; its logarithms differ with them in the last bit), ``cores``; ``data``: a hash for each of
+        the folders, None where it is not there.
     """
     commit, changed = _commit()
     return {
@@ -42,8 +45,9 @@ def provenance(module: str, data: Sequence[str] = ()) -> dict[str, Any]:
         "changed": changed,
         "source": source_key(module),
         "processor": processor(),
+        "simd": simd(),
         "cores": usable_cores(),
-        "data": {name: _hash_of(Path(os.environ.get(DATA, "")) / name) for name in data},
+        "data": {name: data_hash(name) for name in data},
     }
 
 
@@ -87,9 +91,19 @@ def processor() -> str:
 
 
 @cache
-def _hash_of(folder: Path) -> str | None:
-    if DATA not in os.environ or not folder.is_dir():
-        return None
+def simd() -> str:
+    """The vector instructions that NumPy uses here, beyond those that all its processors have."""
+    return " ".join(np.show_config(mode="dicts")["SIMD Extensions"]["found"])
+
+
+def data_hash(name: str) -> str | None:
+    """The hash of a folder of outside data; None where it is not there."""
+    folder = Path(os.environ.get(DATA, "")) / name
+    return _hash_of(folder) if DATA in os.environ and folder.is_dir() else None
+
+
+@cache
+def _hash_of(folder: Path) -> str:
     digest = hashlib.sha256()
     for path in sorted(path for path in folder.rglob("*") if path.is_file()):
         digest.update(path.relative_to(folder).as_posix().encode() + b"\0")

@@ -26,26 +26,34 @@ def run_again(found: Sequence[Mapping], verified: Sequence[Mapping], figures: st
         "## Run it again",
         "",
         "`lifelore reproduce --verify` runs every stored result again, with its settings and seed, and compares",
-        "the numbers to the last digit; `lifelore reproduce --verify C3.2` does so for one claim. All claims take",
-        f"{minutes(found):.0f} minutes of processor time, which the cores share; {minutes(physics):.0f} of them",
-        f"go to claims that simulate physics ({whose}). What claims share is run once.",
+        "the numbers to the last digit; `lifelore reproduce --verify C3.2` does so for one claim. Results with",
+        "outside data are compared where `LIFELORE_DATA` has these; else their simulated parts run with",
+        "`--full --set real=false`. What claims share is run once, and the cores share the work: all claims take",
+        f"{minutes(found):.0f} minutes of processor time, {minutes(physics):.0f} of them claims that simulate",
+        f"physics ({whose}).",
+        "[How long that is on the clock](../performance.md#reproducing-all-claims).",
         "",
     ]
     if verified:
-        equal = sum(one["equal"] for one in verified)
-        made = {(one["made"]["date"], one["made"]["commit"][:7], one["made"]["processor"]) for one in verified}
-        where = "; ".join(f"{date}, commit {commit}, {processor}" for date, commit, processor in sorted(made))
-        others = [
-            f"{one['claim']} ({one['n_differences']} numbers, verdict {one['verdict']})"
-            for one in verified if not one["equal"]
-        ]  # fmt: skip
-        differ = f" Others differ: {', '.join(others)}." if others else ""
-        lines += [
-            f"[Last run]({figures}/verify.json) ({where}): {equal} of {len(verified)} results were equal to the",
-            f"last digit.{differ}",
-            "",
-        ]
+        lines += [f"[Last run]({figures}/verify.json): {_last_run(found, verified)}", ""]
     return lines
+
+
+def _last_run(found: Sequence[Mapping], verified: Sequence[Mapping]) -> str:
+    """What came of the last runs, and which results were made since."""
+    run = [one for one in verified if one["equal"] is not None]
+    made = {(one["made"]["date"], one["made"]["commit"][:7], one["made"]["processor"]) for one in run}
+    where = "; ".join(f"{date}, commit {commit}, {processor}" for date, commit, processor in sorted(made))
+    words = [f"{sum(one['equal'] for one in run)} of {len(run)} results were equal to the last digit ({where})."]
+    others = [
+        f"{one['claim']} ({one['n_differences']} numbers, verdict {one['verdict']})"
+        for one in run if not one["equal"]
+    ]  # fmt: skip
+    words += [f"Others differ: {', '.join(others)}."] if others else []
+    commit_of = {one["claim"]: one["of"] for one in verified}
+    since = [r["claim"] for r in found if commit_of.get(r["claim"], "") != r.get("made", {}).get("commit")]
+    words += [f"Made since then, and not run again: {', '.join(since)}."] if since else []
+    return " ".join(words)
 
 
 def minutes(results: Sequence[Mapping]) -> float:

@@ -8,6 +8,7 @@ from typing import Any
 
 from lifelore.core.errors import NotFoundError
 from lifelore.core.protocols import Progress
+from lifelore.experiments.engine.provenance import data_hash
 from lifelore.experiments.engine.registry import built_ids, claim_of
 from lifelore.experiments.engine.reproduce import ClaimRun, own_rows, run_plan, stored_result
 
@@ -42,11 +43,14 @@ def verify(
     Returns
     -------
     list of dict
-        For each claim: ``claim``; ``equal``: whether verdict, measures and rows are the same to the last digit;
-        ``n_differences`` and the first of them in ``differences``, ``{"where", "stored", "now"}``; ``changed``,
-        the same for versions, code, processor and data, which may explain them; ``verdict``, ``seconds`` and
-        ``made`` now. Measures of time, whose names begin with ``seconds``, are not compared, nor the rows of a
-        claim that measures time.
+        For each claim: ``claim``; ``equal``: whether verdicts, measures and rows are the same to the last of the
+        six digits that results have, None where it was not run; ``missing``: folders of outside data that the
+        stored result was made with and that are not here, so that it was not run; ``of``: the commit that the
+        stored result was made at; ``n_differences`` and the first of them in ``differences``,
+        ``{"where", "stored", "now"}``; ``changed``, the same for versions, code, processor and data, which may
+        explain them; ``verdict``, ``seconds`` and ``made`` now. Pools of several seeds are not run again, only
+        their first seed. Measures of time, whose names begin with ``seconds``, are not compared, nor the rows of
+        a claim that measures time.
 
     Raises
     ------
@@ -56,10 +60,10 @@ def verify(
         A result is no JSON, or was made with settings that the claim has no more.
     """
     results = [_stored(Path(out), claim_id) for claim_id in dict.fromkeys(ids or _with_results(Path(out)))]
-    plan = [_as_stored(result) for result in results]
+    plan = [_as_stored(result) for result in results if not _missing(result)]
     with TemporaryDirectory() as folder:
-        again = run_plan(plan, jobs, folder, progress, engine, scheduler)
-        return [compared(stored, new) for stored, new in zip(results, again, strict=True)]
+        again = iter(run_plan(plan, jobs, folder, progress, engine, scheduler))
+        return [_not_run(stored) if _missing(stored) else compared(stored, next(again)) for stored in results]
 
 
 def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, Any]:
@@ -69,6 +73,8 @@ def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, A
     return {
         "claim": stored["claim"],
         "equal": not differences,
+        "missing": [],
+        "of": _commit_of(stored),
         "verdict": again["verdict"],
         "seconds": again["seconds"],
         "made": again["made"],
@@ -76,6 +82,22 @@ def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, A
         "differences": differences[:MOST_SHOWN],
         "changed": changed,
     }
+
+
+def _missing(stored: Mapping[str, Any]) -> list[str]:
+    """Outside data that a result was made with and that are not here."""
+    made_with = stored.get("made", {}).get("data", {})
+    return [name for name, key in made_with.items() if key is not None and data_hash(name) is None]
+
+
+def _not_run(stored: Mapping[str, Any]) -> dict[str, Any]:
+    nothing = {"verdict": None, "seconds": 0.0, "made": None, "n_differences": 0, "differences": [], "changed": []}
+    head = {"claim": stored["claim"], "equal": None, "missing": _missing(stored), "of": _commit_of(stored)}
+    return head | nothing
+
+
+def _commit_of(stored: Mapping[str, Any]) -> str | None:
+    return stored.get("made", {}).get("commit")
 
 
 def _with_results(out: Path) -> list[str]:
@@ -99,15 +121,22 @@ def _as_stored(result: Mapping[str, Any]) -> ClaimRun:
 
 
 def _numbers(result: Mapping[str, Any]) -> dict[str, Any]:
-    measured = {name: number for name, number in result["measured"].items() if not name.startswith("seconds")}
-    rows = [] if claim_of(result["claim"]).timed else own_rows(result)
-    return {"verdict": result["verdict"], "measured": measured, "rows": rows}
+    others = [row["other_measures"] for row in result["rows"] if "other_measures" in row]
+    measured = {name: number for found in (result["measured"], *others) for name, number in found.items()}
+    return {
+        "verdict": result["verdict"],
+        "second": (result.get("second") or {}).get("verdict"),
+        "measured": {name: number for name, number in measured.items() if not name.startswith("seconds")},
+        "rows": [] if claim_of(result["claim"]).timed else own_rows(result),
+    }
 
 
 def _circumstances(result: Mapping[str, Any]) -> dict[str, Any]:
     """What may differ without a fault; results before the key ``made`` tell only some versions."""
     made = {
-        name: value for name, value in result.get("made", {}).items() if name in ("source", "processor", "data")
+        name: value
+        for name, value in result.get("made", {}).items()
+        if name in ("source", "processor", "simd", "data")
     }
     return {"versions": result["versions"], **made}
 
