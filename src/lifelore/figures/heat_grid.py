@@ -67,12 +67,49 @@ def draw_heat_grid(
             )  # fmt: skip
     _label(axes, rows, columns)
     if outlined is not None:
-        from matplotlib.patches import Rectangle
-
         first, height = (0, len(rows)) if outlined[0] is None else (outlined[0], 1)
-        frame = Rectangle((outlined[1] - 0.5, first - 0.5), 1, height, fill=False, edgecolor=INK, linewidth=1.6)
-        frame.set(clip_on=False, zorder=3)
-        axes.add_patch(frame)
+        frame_cells(axes, (first, outlined[1]), (height, 1))
+
+
+def frame_cells(axes: "Axes", first: tuple[int, int], shape: tuple[int, int] = (1, 1)) -> None:
+    """Frame the block of cells of a `shape` whose upper left cell is `first`, both as (rows, columns)."""
+    from matplotlib.patches import Rectangle
+
+    corner = first[1] - 0.5, first[0] - 0.5
+    frame = Rectangle(corner, shape[1], shape[0], fill=False, edgecolor=INK, linewidth=1.6)
+    frame.set(clip_on=False, zorder=3)
+    axes.add_patch(frame)
+
+
+def name_groups(axes: "Axes", groups: Sequence[tuple[str, int]], offset: float, *, side: str = "left") -> None:
+    """Write the name of each group of neighbouring rows or columns, with a line between groups.
+
+    Parameters
+    ----------
+    axes : matplotlib axes
+        With a table of `draw_heat_grid`.
+    groups : sequence of (name, number of rows or columns)
+        In the order of the table.
+    offset : float
+        Points from the table to the names, which leaves room for the labels of the rows.
+    side : {"left", "top"}
+        Left of the rows, or above the columns.
+    """
+    left, first = side == "left", 0
+    transform = axes.get_yaxis_transform() if left else axes.get_xaxis_transform()
+    for name, n in groups:
+        middle = first + (n - 1) / 2
+        look: dict[str, Any] = {"ha": "center", "va": "baseline"}
+        if left:
+            look = {"rotation": 90, "ha": "right", "va": "center"}
+        axes.annotate(
+            name, (0, middle) if left else (middle, 1), (-offset, 0) if left else (0, offset),
+            xycoords=transform, textcoords="offset points", fontsize=8, fontweight="bold", linespacing=1.1,
+            multialignment="center", **look,
+        )  # fmt: skip
+        if first:
+            (axes.axhline if left else axes.axvline)(first - 0.5, color=INK, linewidth=1.0, zorder=2)
+        first += n
 
 
 def draw_estimate_grid(

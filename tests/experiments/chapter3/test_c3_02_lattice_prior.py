@@ -267,6 +267,17 @@ def test_every_number_has_its_place():
     assert [tick.get_text() for tick in first.get_yticklabels()] == ["proportion, α⁰ 0.1", "cap 70, α annealed"]
 
 
+def test_the_cells_that_the_verdict_reads_are_framed_and_have_all_runs():
+    drawn = result()
+    annealed = ("annealed_first_eps_qsap", "annealed_to_80_ratio")
+    drawn["measured"] |= dict(zip(annealed, map(number, (9.0, 1.2)), strict=True))
+    drawn["rows"] = [{**row, "max_steps": 60} if "learning_rate" in row else row for row in drawn["rows"]]
+    *_, first, ratio = CLAIM.draw(drawn).axes
+    assert [text.get_text() for text in first.texts][4:] == ["+9.0", "+7.0", "+7.0", "+7.0"]
+    assert [text.get_text() for text in ratio.texts][4:] == ["1.20", "1.50", "1.50", "1.50"]
+    assert [axes.patches[0].get_xy() for axes in (first, ratio)] == [(-0.5, 0.5)] * 2
+
+
 def test_curves_are_drawn_at_the_middle_of_their_blocks():
     curve = CLAIM.draw(result()).axes[0].lines[0]
     assert curve.get_xdata().tolist() == [1.0, (2 * 60) ** 0.5]  # episode 1, and 2 … 60

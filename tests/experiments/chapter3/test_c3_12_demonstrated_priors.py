@@ -122,8 +122,10 @@ def test_rows_and_figure():
     result = {"settings": SETTINGS, "measured": plain(measure(SETTINGS, cells)), "rows": found}
     curves, grid, people = CLAIM.draw(result).axes
     assert len(curves.lines) == 4
-    assert [text.get_text() for text in grid.texts] == ["−0.7", "−0.7"]
-    assert [text.get_text() for text in people.texts] == ["−0.7"] * 3 + ["−10.0"] * 3
+    # 20 and 300 below the self-trained prior, over the optimum's size, 50, and over the distance, 3000.
+    shown, varied = "−0.4 ×\n(−0.7 %)", "−6.0 ×\n(−10.0 %)"
+    assert [text.get_text() for text in grid.texts] == [shown] * 2
+    assert [text.get_text() for text in people.texts] == [shown] * 3 + [varied] * 3
     assert people.get_yticklabels()[1].get_text() == "varied\n(1, 0.9, 0.7, 0.5)"
 
 

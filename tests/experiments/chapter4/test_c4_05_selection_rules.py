@@ -97,8 +97,10 @@ def test_late_regret_on_seen_and_unseen_tasks():
 def test_the_figure_is_drawn_from_rows_alone(cells):
     kept = json.loads(json.dumps(rows(SMALL, cells)))
     figure = CLAIM.draw({"settings": SMALL, "rows": kept})
-    assert len(figure.axes) == 4
-    assert len(figure.axes[0].lines) == len(RULES)
+    assert len(figure.axes) == 6
+    standard, others = figure.axes[:2]
+    assert len(standard.lines) + len(others.lines) == len(RULES)
+    assert len(others.lines) == sum("printed" in name or "κ" in name for name in RULES)
 
 
 def test_settings_that_limits_cannot_describe():

@@ -39,6 +39,8 @@ def draw(result: Mapping):
             for axes in grid[1:, column]:
                 axes.set_ylim(bottom=0)
             grid[2, column].set_xlabel("gap (m)")
+            grid[2, column].set_xscale("log")
+            grid[2, column].xaxis.set_major_formatter("{x:g}")
         handles, names = grid[0, 0].get_legend_handles_labels()
         title = "length of the kernel (line: simulated, median and quartiles; cross: real, median)"
         figure.legend(handles, names, loc="outside upper center", ncols=6, title=title)

@@ -26,6 +26,10 @@ ADVISORS = {
     "uniform only": "better advisor, Uniform its only other model",
 }
 ADVISOR_COLOURS = {"none": GREY, "thesis": VERMILION, "better": BLUE, "uniform only": SKY}
+EXPERTS_IN_WORDS = (
+    "Experts: “walks” to each goal from anywhere; “few” such walks; “trips”, walks that start at other goals; "
+    "“policies”, the best actions of every state."
+)
 
 
 def draw_maze_grid(

@@ -14,6 +14,8 @@ LABELS = {
     "prior": ("ε-QSAP, ties by prior", "eps-QSAP, ties by prior"),
 }
 """Label and style of a learner by its ties."""
+MEASURES = {"first": "annealed_first_eps_qsap", "to_80_ratio": "annealed_to_80_ratio"}
+"""What the tables show, and its name among the measures."""
 
 
 @house_style()
@@ -24,10 +26,12 @@ def draw(result: Mapping) -> Figure:
     draw_return_curves(upper, result, lambda schedule: _methods(result, schedule), bars=0.26, ncols=4)
     _draw_grids(lower, result)
     lower.supxlabel(
-        f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs. Columns: ε, and how "
-        "ties are broken. Bold: the interval excludes 0, or 1. Framed: the default.\n"
+        f"Shaded and thin lines: 95 % interval over {result['settings']['runs']} runs, α constant. Columns: ε, "
+        "and how ties are broken. Bold: the interval excludes 0, or 1.\n"
         "Bars and ratios: runs that never arrive count as all episodes. Last rows: the default's prior under "
-        f"other caps of an episode, and with α annealed ({result['settings']['crossed_runs']} runs).",
+        f"other caps of an episode, and with α annealed ({result['settings']['crossed_runs']} runs).\n"
+        "Framed: the cells that the verdict reads, α annealed as in the thesis "
+        f"({result['settings']['runs']} runs).",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -47,11 +51,16 @@ def _methods(result: Mapping, schedule: Sequence[float]) -> list[MethodCurve]:
 def _draw_grids(figure: SubFigure, result: Mapping) -> None:
     settings, side = result["settings"], ("form", "alpha0", "annealed", "max_steps")
     usual = {"annealed": False, "max_steps": settings["max_steps"]}
-    settings = {**settings, "default": {**settings["default"], **usual}}
     cells = [{**row, **usual} for row in result["rows"] if row.get("form") and "to_50" in row]
     prior = {key: settings["default"][key] for key in ("form", "alpha0")}
     crossed = [row for row in result["rows"] if "learning_rate" in row]
     cells += [{**row, **prior, "annealed": row["learning_rate"][1] < 1} for row in crossed]
+    judged = {**settings["default"], **usual, "annealed": True}
+    at = [place for place, row in enumerate(cells) if all(row[key] == judged[key] for key in judged)]
+    for place in at:
+        of_all_runs = {key: result["measured"][name] for key, name in MEASURES.items()}
+        cells[place] = cells[place] | of_all_runs
+    settings = {**settings, "default": judged if at else {**settings["default"], **usual}}
 
     def name(form: str, alpha0: float | None, annealed: bool, max_steps: int) -> str:
         if annealed or max_steps != usual["max_steps"]:

@@ -1,6 +1,7 @@
 """Figure of C3.5, and of C3.6: reward against the number of prior tasks, and what is gained over the grid."""
 
 from collections.abc import Mapping
+from textwrap import fill
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from lifelore.experiments.chapter3.factory.learning import ENCODINGS
 from lifelore.experiments.chapter3.figures.choice_grid import draw_choice_grid
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_words
 from lifelore.figures.curves import draw_curves
+from lifelore.figures.heat_grid import name_groups
 from lifelore.figures.style import GREY, INK, Axes, Figure, colour_of, house_style, new_figure, width_of
 
 
@@ -16,15 +18,17 @@ def draw(result: Mapping) -> Figure:
     """The figure from the result of C3.5 or C3.6: a panel for each number of components, and the grid."""
     settings = result["settings"]
     numbers = settings["components"]
-    figure = new_figure(4.8 + 3.6 * len(numbers), 5.4)
+    figure = new_figure(5.2 + 3.6 * len(numbers), 5.6)
     *panels, grid = figure.subplots(1, len(numbers) + 1, width_ratios=[*([1.0] * len(numbers)), 1.15])
     for axes, k in zip(panels, numbers, strict=True):
         _draw_series(axes, result, k)
     figure.legend(*panels[0].get_legend_handles_labels(), loc="outside upper left", ncols=4)
     draw_choice_grid(
         grid, settings, [row for row in result["rows"] if "growth" in row], "many", ("encoding", "alpha0"),
-        "{}, α⁰ {:g}".format, neutral=0.0, spread=100.0, scale=100.0, words="{:.0f}".format,
+        lambda _, alpha0: f"α⁰ {alpha0:g}", neutral=0.0, spread=100.0, scale=100.0, words="{:.0f}".format,
     )  # fmt: skip
+    n_each = len({row["alpha0"] for row in result["rows"] if "growth" in row})
+    name_groups(grid, [(fill(ENCODINGS[encoding], 13), n_each) for encoding in settings["encodings"]], 48)
     grid.set_title("Gained of the possible gain (%)")
     figure.supxlabel(_caption(settings), fontsize=8, color=GREY)
     return figure

@@ -6,7 +6,8 @@ import numpy as np
 
 from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
 from lifelore.experiments.chapter3.figures.choice_grid import place_of_default
-from lifelore.figures.heat_grid import draw_heat_grid
+from lifelore.experiments.chapter3.figures.feature_words import features_in_words
+from lifelore.figures.heat_grid import draw_heat_grid, frame_cells
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import GREY, LIGHT, Axes, Figure, colour_of, house_style, new_figure
 
@@ -25,8 +26,9 @@ def draw(result: Mapping) -> Figure:
     for axes in (upper, lower):
         axes.axvline(3.5, color=GREY, linewidth=0.8)
     figure.supxlabel(
-        f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least "
-        "95 % of runs. Framed, at PosUM: the default. Left of the line: N, W, E and S.",
+        f"Lines: 95 % interval over {result['settings']['runs']} runs. Bold: selected by Alg. 5 in at least 95 % "
+        "of runs.\nFramed: the default. N to SE: the cell in that direction of the robot's own. Left of the line: "
+        "φ2.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -37,7 +39,7 @@ def _draw_bars(axes: Axes, increase: Mapping[str, Mapping]) -> None:
     groups = {names[phi]: [of_feature.get(name) for name in FEATURES] for phi, of_feature in increase.items()}
     colours = {name: colour_of(phi) for phi, name in names.items()}
     draw_interval_bars(
-        axes, FEATURES, groups, colours=colours, horizontal=False, words=None,
+        axes, features_in_words(FEATURES), groups, colours=colours, horizontal=False, words=None,
         title="Importance of each feature in the sets that contain it", label="Δ, bits lost without the feature",
     )  # fmt: skip
     axes.axhline(0, color=GREY, linewidth=0.8)
@@ -50,8 +52,10 @@ def _draw_grid(axes: Axes, cells: list[Mapping], at: int) -> None:
     values = [[1000 * row["increase"]["phi4"][f]["value"] for f in FEATURES] for row in cells]
     selected = [[row["selected"][f] >= 0.95 for f in FEATURES] for row in cells]
     sides = [f"{row['policies']} policies, {OVER[row['over']]},\n{ACTIONS[row['actions']]}" for row in cells]
+    most = float(np.max(np.abs(values))) or 1.0
     draw_heat_grid(
-        axes, values, selected, sides, FEATURES, neutral=0.0, spread=float(np.max(np.abs(values))) or 1.0,
-        words="{:.0f}".format, outlined=(at, 0),
+        axes, values, selected, sides, features_in_words(FEATURES), neutral=0.0, spread=most,
+        words="{:.0f}".format,
     )  # fmt: skip
+    frame_cells(axes, (at, 0), (1, len(FEATURES)))
     axes.set_title("Δ in φ4, thousandths of a bit, by what is counted")

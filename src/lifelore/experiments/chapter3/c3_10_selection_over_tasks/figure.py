@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.experiments.chapter3.figures.feature_words import features_in_words
 from lifelore.figures.style import BLUE, GREY, PAPER, Axes, Figure, house_style, new_figure
 
 COLUMNS = 4
@@ -33,7 +34,8 @@ def draw(result: Mapping) -> Figure:
     figure.colorbar(images[0], ax=list(panels), shrink=0.5, pad=0.01, label="share of runs")
     figure.supxlabel(
         f"{settings['runs']} runs. Learnt: {settings['episodes']} episodes a task, longer: "
-        f"{settings['long_episodes']}. Above the line: N, W, E and S, the features of φ2.",
+        f"{settings['long_episodes']}. N to SE: the cell in that direction of the robot's own. "
+        "Above the line: φ2.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -48,7 +50,7 @@ def _draw_series(axes: Axes, row: Mapping):
         interpolation="nearest", extent=(0.5, shares.shape[1] + 0.5, len(FEATURES) - 0.5, -0.5),
     )  # fmt: skip
     axes.axhline(3.5, color=GREY, linewidth=1.0)
-    axes.set_yticks(range(len(FEATURES)), FEATURES)
+    axes.set_yticks(range(len(FEATURES)), features_in_words(FEATURES))
     axes.tick_params(axis="y", length=0)
     axes.set_title(TITLES.get(row["series"]) or str(row["series"]), fontsize=9)
     return image

@@ -18,7 +18,7 @@ def draw(result: Mapping) -> Figure:
     """Constructed worlds by states and by percepts, then worlds as found."""
     settings, default = result["settings"], result["settings"]["default"]
     table = ResultsTable((r for r in result["rows"] if "alike" in r), ("actions", "alike", "alpha0", "tasks"))
-    figure = new_figure(12.0, 4.1)
+    figure = new_figure(12.0, 4.4)
     states, percepts, found = figure.subplots(1, 3, width_ratios=[1, 1, 1.05])
     _draw_cases(states, table.select(alike=1, actions=default["actions"]), "alpha0", "α⁰ = {:g}")
     states.set(title=f"By states, {default['actions']} actions", ylabel="probability of the one action")
@@ -65,4 +65,4 @@ def _draw_found(axes: Axes, worlds: list[Mapping]) -> None:
     axes.set_yticks(range(len(worlds)), [f"{row['kind']}, {row['tasks']}" for row in worlds])
     axes.invert_yaxis()
     axes.tick_params(axis="y", length=0)
-    axes.legend(loc="lower right", markerscale=2)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=2, markerscale=2)

@@ -6,7 +6,12 @@ from itertools import product
 import numpy as np
 
 from lifelore.experiments.chapter3.advice.buildings import other_choices
-from lifelore.experiments.chapter3.advice.figures import ADVISOR_COLOURS, draw_buildings, draw_maze_grid
+from lifelore.experiments.chapter3.advice.figures import (
+    ADVISOR_COLOURS,
+    EXPERTS_IN_WORDS,
+    draw_buildings,
+    draw_maze_grid,
+)
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.chapter3.figures.reward_curves import curve_edges
 from lifelore.experiments.chapter3.learning.schedules import schedule_in_brief, schedule_in_words
@@ -37,7 +42,8 @@ def draw(result: Mapping) -> Figure:
     lower.supxlabel(
         f"Shaded: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} tasks; curves "
         f"at loops {settings['default']['loops']:g}, {schedule_in_words(settings['default']['schedule'])}. "
-        "Framed: the default.\nLast table: learners start where the explorers of C3.15 do.",
+        "Framed: the default.\n"
+        f"{EXPERTS_IN_WORDS}\nLast table: learners start where the explorers of C3.15 do.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure

@@ -4,7 +4,13 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, AGENTS, EXPLORERS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.figures import (
+    AGENT_COLOURS,
+    AGENTS,
+    EXPERTS_IN_WORDS,
+    EXPLORERS,
+    draw_maze_grid,
+)
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures import style
@@ -40,7 +46,7 @@ def draw(result: Mapping) -> Figure:
     lower.supxlabel(
         f"Bars: one standard deviation over {settings['mazes']} mazes of {settings['tasks']} walks of at most "
         f"{settings['max_steps']:,} steps. Curves: loops {default['loops']:g}, experts "
-        f"{default['experts']}. Framed: the default.",
+        f"{default['experts']}. Framed: the default.\n{EXPERTS_IN_WORDS}",
         fontsize=8, color=style.GREY,
     )  # fmt: skip
     return figure

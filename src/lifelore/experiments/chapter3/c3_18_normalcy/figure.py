@@ -4,10 +4,16 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from lifelore.experiments.chapter3.advice.figures import AGENT_COLOURS, EXPLORERS, draw_maze_grid
+from lifelore.experiments.chapter3.advice.figures import (
+    AGENT_COLOURS,
+    EXPERTS_IN_WORDS,
+    EXPLORERS,
+    draw_maze_grid,
+)
 from lifelore.experiments.chapter3.advice.mazes import grid_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
+from lifelore.figures.heat_grid import name_groups
 from lifelore.figures.style import GREY, INK, LIGHT, Axes, Figure, house_style, new_figure, two_rows
 
 STYLES = {"alone": "-", "told": (0, (1.2, 1.2))}
@@ -35,7 +41,8 @@ def draw(result: Mapping) -> Figure:
     lower.supxlabel(
         f"{settings['mazes']} mazes × {settings['tasks']} tasks; curves at loops "
         f"{settings['default']['loops']:g}, experts {settings['default']['experts']}. Bold: the interval over "
-        "mazes excludes 0. Framed: the default.",
+        "mazes excludes 0. Framed: the default.\n"
+        f"{EXPERTS_IN_WORDS}",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -56,12 +63,13 @@ def _draw_lines(axes: Axes, result: Mapping, key: str, top: float) -> None:
 def _draw_grid(axes: Axes, result: Mapping) -> None:
     cells = ResultsTable((row for row in result["rows"] if "gain" in row), ("loops", "experts", "agent"))
     values, certain, sides = [], [], []
-    for reading, words in READINGS.items():
+    for reading in READINGS:
         for agent, name in EXPLORERS.items():
             found = [cells.record(loops=n, experts=e, agent=agent) for n, e in grid_of(result["settings"])]
             values.append([row["gain"][reading] for row in found])
             certain.append([row["certain"][reading] for row in found])
-            sides.append(f"{words}: {name}")
+            sides.append(name)
     title = "What advice adds to an errand's mean P(M₁ | H): H of all steps, of own steps, at unadvised steps"
     look = {"neutral": 0.0, "spread": 0.8, "words": "{:+.2f}".format}
     draw_maze_grid(axes, result, np.array(values, float), certain, sides, title=title, **look)
+    name_groups(axes, [(words.replace(" ", "\n", 1), len(EXPLORERS)) for words in READINGS.values()], 140)

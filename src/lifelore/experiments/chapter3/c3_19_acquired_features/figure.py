@@ -6,18 +6,20 @@ import numpy as np
 
 from lifelore.experiments.chapter3.c3_19_acquired_features.run import NOISE
 from lifelore.experiments.chapter3.factory.modified_tasks import FEATURES
+from lifelore.experiments.chapter3.figures.feature_words import features_in_words
 from lifelore.experiments.engine.results_table import BAND
 from lifelore.figures.curves import draw_curves
+from lifelore.figures.heat_grid import frame_cells
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, PAPER, VERMILION, Axes, Figure, house_style, new_figure
 
 LABELS = {
     "uniform": "no prior",
-    "start": "own cell and Items, at the start",
+    "start": "own cell and items, at the start",
     "acquired": "acquired",
     "all": "all ten",
 }
 COLOURS = {"uniform": GREY, "start": VERMILION, "acquired": BLUE, "all": GREEN}
-START_NAMES = {"phi1": "own cell, Items", "items": "Items", "north": "N, Items"}
+START_NAMES = {"phi1": "own cell, items", "items": "items", "north": "N, items"}
 
 
 @house_style()
@@ -33,10 +35,13 @@ def draw(result: Mapping) -> Figure:
         right, None, series, looks=looks, title="Learning in new factories, by the features of the prior",
         xlabel="episode", ylabel="reward of an episode", logarithmic="x",
     )  # fmt: skip
+    right.xaxis.set_major_formatter("{x:g}")
+    right.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     figure.supxlabel(
         f"{result['settings']['runs']} runs of {result['settings']['tasks']} tasks, then "
         f"{result['settings']['test_tasks']} new ones. Shaded: 95 % intervals. "
-        "Above the line: φ2. ·: known from the start. Framed: the default.",
+        "Framed: the default.\nN to SE: the cell in that direction of the robot's own. Above the line: φ2. "
+        "·: known from the start. ω: least importance of a feature that is acquired.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure
@@ -44,7 +49,6 @@ def draw(result: Mapping) -> Figure:
 
 def _draw_shares(axes: Axes, result: Mapping) -> None:
     from matplotlib.colors import LinearSegmentedColormap
-    from matplotlib.patches import Rectangle
 
     names, default = (*FEATURES, *NOISE), result["settings"]["default"]
     cells = [row for row in result["rows"] if "shares" in row]
@@ -60,8 +64,8 @@ def _draw_shares(axes: Axes, result: Mapping) -> None:
         axes.text(column, row, words, ha="center", va="center", fontsize=7.5, color=PAPER if share > 0.6 else INK)
     axes.axhline(3.5, color=GREY, linewidth=1.0)
     at = next(i for i, row in enumerate(cells) if all(row[key] == default[key] for key in default))
-    axes.add_patch(Rectangle((at - 0.5, -0.5), 1, len(names), fill=False, edgecolor=INK, linewidth=1.4))
-    axes.set_yticks(range(len(names)), names)
+    frame_cells(axes, (0, at), (len(names), 1))
+    axes.set_yticks(range(len(names)), features_in_words(names))
     ticks = [f"{START_NAMES[row['start']]}\nω {row['least']:g}" for row in cells]
     axes.set_xticks(range(len(cells)), ticks, rotation=60, ha="right", rotation_mode="anchor", fontsize=7)
     axes.tick_params(length=0)

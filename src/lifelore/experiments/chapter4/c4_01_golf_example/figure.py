@@ -8,9 +8,23 @@ from lifelore.domains.golf.golf import CLUBS, HOLES
 from lifelore.experiments.chapter4.c4_01_golf_example.measure import PRINTED_ENTROPY
 from lifelore.experiments.chapter4.golf.category_bars import CLUB_COLOURS
 from lifelore.experiments.engine.results_table import ResultsTable
-from lifelore.figures.style import BLUE, GREEN, GREY, INK, ORANGE, PURPLE, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import (
+    BLUE,
+    GREY,
+    INK,
+    LIGHT,
+    ORANGE,
+    SKY,
+    VERMILION,
+    YELLOW,
+    Axes,
+    Figure,
+    house_style,
+    new_figure,
+)
 
-HOLE_COLOURS = (PURPLE, GREEN, ORANGE, BLUE)
+HOLE_COLOURS = (LIGHT, SKY, YELLOW, VERMILION)
+"""Other colours than those of the clubs."""
 
 
 def draw(result: Mapping) -> Figure:
@@ -20,13 +34,13 @@ def draw(result: Mapping) -> Figure:
         figure = new_figure(10.6, 3.9)
         belief, entropies, clubs = figure.subplots(1, 3, width_ratios=[1, 1.15, 1])
         _draw_shares(belief, printed["belief"], [f"{hole:g} yd" for hole in HOLES], HOLE_COLOURS)
-        belief.set(title="Belief along the printed shots", xlabel="before shot")
+        belief.set(title="Belief along the printed shots", xlabel="before shot", ylabel="probability of each hole")
         _draw_entropies(entropies, printed["entropy"], table.select(part="learnt").records)
         _draw_shares(clubs, np.array(played["clubs"]) / settings["rounds"], CLUBS, CLUB_COLOURS)
         for shot, error in enumerate(played["error"], 1):
             clubs.text(shot, 1.02, f"{error:.0f}", ha="center", va="bottom", fontsize=8, color=GREY)
         clubs.text(0.3, 1.02, "yd", ha="right", va="bottom", fontsize=8, color=GREY)
-        clubs.set_xlabel("shot")
+        clubs.set(xlabel="shot", ylabel="share of rounds")
         clubs.set_title("Clubs played, mean error above", pad=18)
         words = f"A hole {settings['distance']:g} yards away, unknown to the golfer; greedy selection"
         figure.suptitle(words, x=0.01, ha="left")
@@ -46,11 +60,13 @@ def _draw_shares(axes: Axes, shares: Sequence, names: Sequence[str], colours: Se
 def _draw_entropies(axes: Axes, exact: Sequence[float], learnt: Sequence[Mapping]) -> None:
     """After one and two shots: print, exact models, and the middle half and 95 % of learnt models."""
     ticks, n = {}, len(learnt)
+    sizes = list(dict.fromkeys(row["samples"] for row in learnt))
     for k in (1, 2):
         left = (k - 1) * (n + 2.2)
         axes.plot([left - 0.6, left + n + 0.6], [PRINTED_ENTROPY[k]] * 2, color=INK, lw=1.1, ls="--")
         axes.plot(left, exact[k], "D", color=INK, ms=6)
-        ticks |= {left: "exact"} | {left + place: str(row["samples"]) for place, row in enumerate(learnt, 1)}
+        places = {size: [at for at, row in enumerate(learnt, 1) if row["samples"] == size] for size in sizes}
+        ticks |= {left: "exact"} | {left + float(np.mean(at)): f"{size}" for size, at in places.items()}
         for place, row in enumerate(learnt, 1):
             low, quarter, middle, third, high = row["entropy_quantiles"][k - 1]
             x, colour = left + place, BLUE if row["pseudo_count"] else ORANGE
@@ -59,9 +75,10 @@ def _draw_entropies(axes: Axes, exact: Sequence[float], learnt: Sequence[Mapping
             wide = third - quarter > 0.03  # otherwise the mark would hide the bar
             axes.plot(x, middle, "_" if wide else "o", color="white" if wide else colour, ms=6)
         below = axes.get_xaxis_transform()
-        axes.text(left + n / 2, -0.24, f"after shot {k}", ha="center", va="top", fontsize=9, transform=below)
-    axes.set_xticks(list(ticks), list(ticks.values()), rotation=45)
-    axes.set(title="Entropy of the belief, nats", ylim=(-0.02, None))
+        axes.text(left + n / 2, -0.1, f"after shot {k}", ha="center", va="top", fontsize=9, transform=below)
+    axes.set_xticks(list(ticks), list(ticks.values()))
+    axes.set(title="Entropy of the belief", ylabel="nats", ylim=(-0.02, None))
+    axes.set_xlabel("models: exact, or learnt from so many shots a pair", labelpad=18)
     axes.plot([], [], color=INK, lw=1.1, ls="--", label="printed")
     for pseudo in dict.fromkeys(row["pseudo_count"] for row in learnt):
         axes.plot([], [], color=BLUE if pseudo else ORANGE, lw=5, label=f"learnt, pseudo-count {pseudo:g}")

@@ -1,26 +1,30 @@
 """Ways to select among 68 policies: regret and entropy by episode, and when regret ends (Figure 4.10)."""
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 
 import numpy as np
 
-from lifelore.experiments.chapter4.reuse.looks import draw_regret, lines_of, look_of
+from lifelore.experiments.chapter4.reuse.looks import SOLID, draw_regret, lines_of, look_of
 from lifelore.experiments.chapter4.surveillance.runs import DEFAULT_WORLD
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, INK, LIGHT, VERMILION, Axes, Figure, house_style, new_figure
 
 PANELS = {"headline": "Learnt models, half the tasks unseen", "exact": "Exact models, at targets"}
+FORMS = {False: "standard forms", True: "as printed, and κ 30"}
 
 
 def draw(result: Mapping) -> Figure:
     rows, settings = result["rows"], result["settings"]
     default = [row for row in rows if "curve" in row]
     with house_style():
-        figure = new_figure(11.6, 8.6)
-        top, bottom = figure.subplots(2, 2, height_ratios=[1.1, 1])
-        for axes, (case, words) in zip(top, PANELS.items(), strict=True):
-            draw_regret(axes, [row for row in default if row["case"] == case], words)
-        top[0].set_ylabel("expected regret")
+        figure = new_figure(11.6, 11.8)
+        *tops, bottom = figure.subplots(3, 2, height_ratios=[1.1, 1.1, 1.2])
+        for top, (case, words) in zip(tops, PANELS.items(), strict=True):
+            for axes, (as_printed, forms) in zip(top, FORMS.items(), strict=True):
+                own = [row for row in default if row["case"] == case]
+                draw_regret(axes, [row for row in own if _is_other(row) == as_printed], f"{words}: {forms}")
+            top[0].set_ylabel("expected regret")
         entropy = {row["method"]: {"mean": row["entropy"]} for row in default if row["case"] == "exact"}
         title = "Entropy of the belief, exact models (nats)"
         after, looks = range(settings["episodes"] + 1), lines_of(entropy, linewidth=1.5)
@@ -28,11 +32,18 @@ def draw(result: Mapping) -> Figure:
         bottom[0].set(xlim=(0, None), ylim=(0, None))
         bottom[0].grid(axis="y", color=LIGHT)
         _draw_grid(bottom[1], [row for row in rows if row["case"] == "exact"], list(entropy), settings["episodes"])
-        figure.legend(*top[0].get_legend_handles_labels(), loc="outside lower center", ncols=7)
+        shown = (axes.get_legend_handles_labels() for axes in tops[0])
+        handles, labels = (list(chain(*both)) for both in zip(*shown, strict=True))
+        figure.legend(handles, labels, loc="outside lower center", ncols=7)
         n = settings["tasks"] * settings["groups"]
         words = f"Surveillance, layout X, 68 types and policies, {n} tasks: mean regret, band 95 %"
         figure.suptitle(words, x=0.01, ha="left")
     return figure
+
+
+def _is_other(row: Mapping) -> bool:
+    """Whether a row's rule is a form as printed or with another κ."""
+    return look_of(row["method"])[1] != SOLID
 
 
 def _draw_grid(axes: Axes, rows: Sequence[Mapping], methods: Sequence[str], episodes: int) -> None:

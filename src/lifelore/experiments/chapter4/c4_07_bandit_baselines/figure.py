@@ -51,8 +51,10 @@ def _draw_sums(axes: Axes, table: ResultsTable, others: Sequence[Mapping], episo
         axes.text(1.04 * most, k, row["given"] + (f" ({tuned})" if tuned else ""), va="center", fontsize=7.5)
     n = len({tuple(row[key] for key in DEFAULT_WORLD) for row in others})
     axes.set(xlim=(0, 2.35 * most), ylim=(len(exact) - 0.4, -1.2))
-    axes.set_xlabel(f"rings: {n} other reserves" if n else "")
+    axes.set_xlabel("summed regret")
     axes.xaxis.set_label_coords(0.21, -0.06)
+    if n:
+        axes.figure.supxlabel(f"Rings: the same, exact models, in {n} other reserves.", fontsize=8, color=GREY)
     axes.set_xticks([t for t in range(0, 12_001, 2000) if t <= 1.02 * most])
     axes.text(1.04 * most, -0.85, "given beforehand", fontsize=8, color=GREY, va="center")
     axes.set_title(f"Regret summed over {episodes} episodes: exact (dark) and learnt models (pale)")

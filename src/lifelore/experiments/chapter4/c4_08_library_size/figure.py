@@ -28,7 +28,7 @@ def draw(result: Mapping) -> Figure:
     looks = {n: {"color": shade, "marker": "o", "ms": 4} for n, shade in shades}
     n_rows = -(-len(panels) // 2)
     with house_style():
-        figure = new_figure(10.4, 3.7 * n_rows)
+        figure = new_figure(10.4, 3.7 * n_rows + 0.5)
         every = figure.subplots(n_rows, 2, sharey=True, squeeze=False).ravel()
         for axes in every[len(panels) :]:
             axes.axis("off")
@@ -42,6 +42,9 @@ def draw(result: Mapping) -> Figure:
             axes.set_ylim(0, None)
             axes.grid(axis="y", color=LIGHT)
         every[0].set_ylabel("mean regret of an episode")
-        every[0].legend(title="episodes", ncols=2, loc="upper right")
+        figure.legend(
+            *every[0].get_legend_handles_labels(), title="number of episodes (band: 95 %)", ncols=len(episodes),
+            loc="outside lower center",
+        )  # fmt: skip
         figure.suptitle(f"BPR-EI in the reserve, {settings['trials']} trials a point", x=0.01, ha="left")
     return figure

@@ -5,16 +5,16 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.domains.ball_game.ball_game import SIZES, SPEEDS
-from lifelore.experiments.chapter4.reuse.looks import size_lines
+from lifelore.experiments.chapter4.reuse.looks import GAMES_IN_WORDS, size_lines
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, INK, LIGHT, PAPER, Axes, Figure, house_style, new_figure
 
 
 def draw(result: Mapping) -> Figure:
     rows = result["rows"]
     with house_style():
-        figure = new_figure(9.6, 0.25 * len(rows) + 1.8)
+        figure = new_figure(9.6, 0.25 * len(rows) + 2.2)
         left, right = figure.subplots(1, 2, width_ratios=[1.15, 1])
         _draw_losses(left, rows[0])
         names = [f"{row['words']} {'●' if row['transition'] else '○'}" for row in rows]
@@ -23,6 +23,7 @@ def draw(result: Mapping) -> Figure:
         certain = np.zeros(best.shape, bool)
         draw_heat_grid(right, best, certain, names, sizes, neutral=50, spread=35, words="{:.0f}".format)
         right.set_title("best speed (● a transition for certain)", loc="right")
+        figure.supxlabel(GAMES_IN_WORDS, fontsize=8, color=GREY)
     return figure
 
 

@@ -1,33 +1,46 @@
-"""Loss by the diversity of the population, and BEAT's loss as a ratio to the others' (Figure 4.16)."""
+"""Loss by the diversity of the population, and the loss of BEAT as printed over the others' (Figure 4.16)."""
 
 from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from lifelore.experiments.chapter4.ball_game.methods import BEAT, PRINTED_EXP3, STATIC, TUNED_EXP3
-from lifelore.experiments.chapter4.reuse.looks import draw_ratio_grid, legend_below, lines_of
+from lifelore.experiments.chapter4.ball_game.methods import BEAT, BEAT_PRINTED, PRINTED_EXP3, STATIC, TUNED_EXP3
+from lifelore.experiments.chapter4.c4_12_user_diversity.measure import FEW, MANY
+from lifelore.experiments.chapter4.reuse.looks import GAMES_IN_WORDS, draw_ratio_grid, legend_below, lines_of
 from lifelore.experiments.engine.results_table import ResultsTable
 from lifelore.figures.curves import draw_curves
-from lifelore.figures.style import Axes, Figure, house_style, new_figure
+from lifelore.figures.heat_grid import frame_cells
+from lifelore.figures.style import GREY, Axes, Figure, house_style, new_figure
 
-WITH_BAND = (PRINTED_EXP3, STATIC, "BEAT, ε as printed", BEAT)
+WITH_BAND = (PRINTED_EXP3, STATIC, BEAT_PRINTED, BEAT)
 SHOWN = (
-    PRINTED_EXP3, TUNED_EXP3, STATIC, "BEAT, ε as printed", "BEAT, ε = 1/n", BEAT, "BEAT, told the population",
+    PRINTED_EXP3, TUNED_EXP3, STATIC, BEAT_PRINTED, "BEAT, ε = 1/n", BEAT, "BEAT, told the population",
     "best speed of each type",
 )  # fmt: skip
-COLUMNS = ["EXP-3\nprinted", "EXP-3\ntuned", *(f"static\nof {x}" for x in (1, 3, 6))]
+COLUMNS = {
+    "EXP-3 as\nprinted": (PRINTED_EXP3, (*FEW, *MANY)),
+    "static,\n1–3 types": (STATIC, FEW),
+    "static,\n4–6 types": (STATIC, MANY),
+    "EXP-3\ntuned": (TUNED_EXP3, (*FEW, *MANY)),
+}
+"""By head of a column the other method, and the numbers of types in the populations."""
 
 
 def draw(result: Mapping) -> Figure:
     table = ResultsTable(result["rows"], ("words", "diversity"))
     games = table.distinct("words")
     with house_style():
-        figure = new_figure(10.4, max(3.8, 0.3 * len(games) + 1.6))
+        figure = new_figure(10.4, max(4.4, 0.3 * len(games) + 2.2))
         left, right = figure.subplots(1, 2, width_ratios=[1.25, 1])
         _draw_losses(left, games[0], table.select(words=games[0]).records)
         values = np.array([_ratios(table.select(words=game)) for game in games])
-        draw_ratio_grid(right, values, games, COLUMNS)
-        right.set_title("loss of BEAT (ε = 0) as a share of that of")
+        draw_ratio_grid(right, values, games, list(COLUMNS))
+        frame_cells(right, (0, 0), (1, 3))
+        right.set_title("loss of BEAT, ε as printed,\ndivided by the loss of the other method", loc="right")
+        words = (
+            f"{GAMES_IN_WORDS}\nStatic: the best static speed of the population. Framed: what the verdict reads."
+        )
+        figure.supxlabel(words, fontsize=8, color=GREY)
     return figure
 
 
@@ -43,9 +56,13 @@ def _draw_losses(axes: Axes, game: str, rows: Sequence[Mapping]) -> None:
 
 
 def _ratios(table: ResultsTable) -> list[float]:
-    """BEAT's loss to EXP-3's, as printed and tuned, and to the static speed's at three diversities."""
-    weights = [row["n"] for row in table.records]
-    means = {m: np.average([row["loss"][m] for row in table.records], weights=weights) for m in SHOWN}
-    static = [table.record(diversity=x)["loss"] for x in (1, 3, 6)]
-    exp3 = [float(means[BEAT] / means[other]) for other in (PRINTED_EXP3, TUNED_EXP3)]
-    return exp3 + [loss[BEAT] / loss[STATIC] for loss in static]
+    """The loss of BEAT as printed over that of each column's method, all populations weighed alike."""
+    ratios = []
+    for other, diversities in COLUMNS.values():
+        rows = [row for row in table.records if row["diversity"] in diversities]
+        weights = [row["populations"] for row in rows]
+        mine, others = (
+            np.average([row["loss"][m] for row in rows], weights=weights) for m in (BEAT_PRINTED, other)
+        )
+        ratios.append(float(mine / others))
+    return ratios

@@ -8,13 +8,13 @@ from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.experiments.chapter4.reuse.looks import size_lines
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
-from lifelore.figures.style import GREY, LIGHT, PAPER, Axes, Figure, house_style, new_figure
+from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_figure
 
 
 def draw(result: Mapping) -> Figure:
     row = result["rows"][0]
     with house_style():
-        figure = new_figure(11.4, 3.7)
+        figure = new_figure(11.4, 4.1)
         right, ratio, matrix = figure.subplots(1, 3, width_ratios=[1.1, 1.1, 1])
         _draw_steps(right, row, "right", "the right type", "share named right", 0.85)
         right.set_ylim(0, 1.02)
@@ -22,8 +22,10 @@ def draw(result: Mapping) -> Figure:
         ratio.set_yscale("log")
         ratio.set_yticks([0.25, 0.5, 1, 2, 4, 8], ["¼", "½", "1", "2", "4", "8"])
         ratio.minorticks_off()
-        ratio.set_ylim(0.25, 22)
-        ratio.legend(title="true size", ncols=3, loc="upper left", frameon=True, framealpha=1, edgecolor=PAPER)
+        ratio.set_ylim(0.25, 8)
+        figure.legend(*ratio.get_legend_handles_labels(), title="true size", ncols=6, loc="outside upper left")
+        words = "Vertical line: half-way through the median first episode. Dotted: 85 %, and the true size."
+        figure.supxlabel(words, fontsize=8, color=GREY)
         counts, names = np.array(row["half"]), [str(b) for b in SIZES]
         percent = 100 * counts / counts.sum(axis=1, keepdims=True)
         percent = np.where(percent < 0.5, np.nan, percent)

@@ -15,7 +15,7 @@ def draw(result: Mapping) -> Figure:
     row = result["rows"][0]  # people come first
     sizes = [one["size"] for one in row["named"]]
     with house_style():
-        figure = new_figure(11.4, 3.9)
+        figure = new_figure(11.4, 4.3)
         left, middle, right = figure.subplots(1, 3)
         _draw_losses(left, row, sizes)
         diversity = [one["types"] for one in row["diversity"]]
@@ -39,7 +39,7 @@ def draw(result: Mapping) -> Figure:
         _plain_ticks(right, [0.5, 1, 2, 5])
         right.axhline(1, color=GREY, linestyle=(0, (1, 2)), linewidth=1)
         right.set(xlabel="move of a round with BEAT", ylabel="most likely / true size (mean)")
-        right.legend(ncols=2, fontsize=7.5)
+        figure.legend(*right.get_legend_handles_labels(), title="ball size", ncols=6, loc="outside lower center")
         for axes in (left, middle, right):
             axes.grid(axis="y", color=LIGHT)
         figure.suptitle(f"{row['sessions']} {TITLES[row['player']]}", fontsize=10)
@@ -61,7 +61,6 @@ def _draw_losses(axes: Axes, row: Mapping, sizes: list[int]) -> None:
     )
     _plain_ticks(axes, [0.1, 0.2, 0.5, 1, 2])
     axes.set(xlabel="speed (units a move)", ylabel="mean loss of a round, band 95 %", xticks=speeds)
-    axes.legend(ncols=3, fontsize=7.5)
 
 
 def _plain_ticks(axes: Axes, ticks: list[float]) -> None:

@@ -7,7 +7,13 @@ import numpy as np
 from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.experiments.chapter4.ball_game.methods import BEAT, BEAT_PRINTED, STATIC
 from lifelore.experiments.chapter4.c4_15_safety.measure import asked_of_every_game, sentence
-from lifelore.experiments.chapter4.reuse.looks import draw_ratio_grid, legend_below, lines_of, size_lines
+from lifelore.experiments.chapter4.reuse.looks import (
+    GAMES_IN_WORDS,
+    draw_ratio_grid,
+    legend_below,
+    lines_of,
+    size_lines,
+)
 from lifelore.experiments.engine.predicate import Condition
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
@@ -15,7 +21,7 @@ from lifelore.figures.style import GREY, LIGHT, Axes, Figure, house_style, new_f
 
 SHOWN = ("EXP-3 as printed", "EXP-3 tuned", STATIC, BEAT_PRINTED, BEAT, "best speed of each type")
 
-MAPS = {BEAT: "BEAT / best static speed", BEAT_PRINTED: "BEAT, ε as printed / static"}
+MAPS = {BEAT_PRINTED: "BEAT, ε as printed", BEAT: "BEAT, ε = 0"}
 """Methods whose losses are mapped by type and episode, as shares of those of the best static speed."""
 
 
@@ -24,19 +30,23 @@ def draw(result: Mapping) -> Figure:
     episodes = range(1, losses[BEAT].shape[1] + 1)
     with house_style():
         games = [row for row in result["rows"] if "met" in row]
-        figure = new_figure(13.6, 4.9 + 0.25 * len(games))
+        figure = new_figure(13.6, 5.5 + 0.25 * len(games))
+        figure.get_layout_engine().set(w_pad=0.12)  # pyright: ignore[reportOptionalMemberAccess, reportCallIssue]
         places = figure.add_gridspec(2, 4, height_ratios=[3.9, 1.0 + 0.25 * len(games)])
         by_episode, *by_type, naming = (figure.add_subplot(places[0, column]) for column in range(4))
         series = {method: {"mean": losses[method].mean(axis=0)} for method in SHOWN}
         draw_curves(by_episode, None, series, looks=lines_of(SHOWN, marker="o", ms=3), legend=False)
-        by_episode.set(title="efficiency", xlabel="episode", ylabel="mean loss, six types", xticks=episodes)
+        by_episode.set(
+            title="efficiency: loss by episode", xlabel="episode", ylabel="mean loss, six types", xticks=episodes
+        )
         legend_below(by_episode, 0.75)
         for axes, (method, words) in zip(by_type, MAPS.items(), strict=True):
             ratios = losses[method] / losses[STATIC]
             draw_ratio_grid(axes, ratios, [f"b = {b}" for b in SIZES], [str(episode) for episode in episodes])
-            axes.set(xlabel="episode", title=f"safety: {words}")
+            axes.set(xlabel="episode", title=f"safety: loss / best static's,\n{words}")
         _draw_naming(naming, result["rows"][-1])
         _draw_games(figure.add_subplot(places[1, :]), games)
+        figure.supxlabel(GAMES_IN_WORDS, fontsize=8, color=GREY)
     return figure
 
 
@@ -62,10 +72,12 @@ def _of_bound(value: float, condition: Condition) -> float:
 
 
 def _draw_naming(axes: Axes, row: Mapping) -> None:
-    looks = size_lines(SIZES)
+    looks = size_lines(SIZES, linewidth=2.8)
     series = {name: {"mean": shares} for name, shares in zip(looks, row["named_printed"], strict=True)}
     draw_curves(axes, row["steps"], series, looks=looks, logarithmic="x", legend=False)
-    axes.set(title="speed, ε as printed", xlabel="steps played", ylabel="share named right for good")
+    axes.set(
+        title="speed of naming the type,\nε as printed", xlabel="steps played", ylabel="share named right for good"
+    )
     axes.axvline(row["length_printed"], color=GREY, linewidth=1)
     axes.annotate(
         "end of the\nfirst episode", (row["length_printed"], 1.05), xytext=(-4, 0), textcoords="offset points",
@@ -75,4 +87,4 @@ def _draw_naming(axes: Axes, row: Mapping) -> None:
     axes.set_xticks([1, 10, 100, 500], ["1", "10", "100", "500"])
     axes.minorticks_off()
     axes.grid(axis="y", color=LIGHT)
-    axes.legend(loc="upper left", bbox_to_anchor=(0, 0.9))
+    axes.legend(loc="center left", bbox_to_anchor=(1, 0.5))

@@ -14,7 +14,7 @@ SMALLEST = 745.0
 def draw(result: Mapping) -> Figure:
     rows = result["rows"]
     with house_style():
-        figure = new_figure(9.2, 2.9)
+        figure = new_figure(10.0, 3.0)
         left, middle, right = figure.subplots(1, 3, width_ratios=[1.15, 1, 1])
         for place, name in enumerate(EPSILONS):
             mine = [row for row in rows if row["epsilon"] == name]
@@ -27,11 +27,17 @@ def draw(result: Mapping) -> Figure:
         spread = np.array([x for row in rows for x in row["spread"]])
         middle.hist(spread, bins=24, color=ORANGE)
         middle.axvline(SMALLEST, color=INK, linestyle=(0, (4, 2)), linewidth=1.2)
-        middle.set(xlabel="log belief, best less worst (nats)", ylabel="sessions", title="after five episodes")
+        middle.annotate(
+            "smallest\npositive\nfloat64", (SMALLEST, 1), (4, -2), xycoords=("data", "axes fraction"),
+            textcoords="offset points", va="top", fontsize=7.5, color=INK,
+        )  # fmt: skip
+        middle.set(
+            xlabel="log belief, best less worst (nats)", ylabel="sessions", title="log beliefs after five episodes"
+        )
         gone = np.array([x for row in rows for x in row["vanished"] if x])
         if gone.size:
             right.hist(gone, bins=24, color=VERMILION)
-        right.set(xlabel="step at which every type has 0", ylabel="sessions", title="never normalised")
+        right.set(xlabel="step at which every type has 0", ylabel="sessions", title="beliefs never normalised")
         for axes in (middle, right):
             axes.grid(axis="y", color=LIGHT)
     return figure

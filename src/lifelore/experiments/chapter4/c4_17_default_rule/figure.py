@@ -43,14 +43,17 @@ def draw(result: Mapping) -> Figure:
             colours={"most": ORANGE},
             level=100 * MOST_STUCK,
             title="most stuck (%)",
+            words="{:.1f}".format,
         )
+        for text in line[2].texts:
+            text.get_bbox_patch().set_alpha(1.0)  # the dotted line does not cross a number
         for axes in line[1:]:
             axes.set_yticklabels([])
             axes.margins(x=0.3)
     n = settings["groups"] * settings["tasks"]
     words = (
         f"{n} tasks of {settings['episodes']} episodes a world. Stuck: share above that of the least stuck rule; "
-        f"bold where above {100 * MOST_STUCK:.0f} %"
+        f"bold where above {100 * MOST_STUCK:.0f} %, the dotted line"
     )
     figure.suptitle(words, x=0.01, ha="left")
     return figure

@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 
 from lifelore.core.errors import NotFoundError
+from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.heat_grid import draw_heat_grid
 from lifelore.figures.style import BLUE, GREEN, GREY, INK, LIGHT, ORANGE, PURPLE, SKY, VERMILION, YELLOW, Axes
@@ -35,6 +36,18 @@ _COLOURS: dict[Any, dict[str, str]] = {
 LOOKS = {name: (colour, style) for style, named in _COLOURS.items() for name, colour in named.items()}
 """Colour and line style by name."""
 
+_SIZE_LOOKS = (
+    (PURPLE, SOLID), (BLUE, DASHES), (SKY, (0, (3, 1, 1, 1))),
+    (GREEN, SOLID), (ORANGE, DASHES), (VERMILION, SOLID),
+)  # fmt: skip
+"""Colour and line style of each of `SIZES`."""
+GAMES_IN_WORDS = (
+    "Games: layout and ball's radius r. “careless”: the player does not keep away from obstacles; “stays”: a "
+    "blocked ball stays\ninstead of sliding along; “by maxima”: time and collisions are divided by the largest "
+    "seen, instead of by fixed numbers."
+)
+"""What the names of the games mean."""
+
 
 def look_of(name: str) -> tuple[str, Any]:
     """Colour and line style of a rule, peer, signal or learner."""
@@ -49,11 +62,12 @@ def lines_of(names: Iterable[str], **properties: Any) -> dict[str, dict[str, Any
 
 
 def size_lines(sizes: Sequence[int], **properties: Any) -> dict[str, dict[str, Any]]:
-    """Line properties of the ball sizes, ``b = 2`` and so on, dark for small balls and bright for large ones."""
-    from matplotlib import colormaps
-
-    shades = colormaps["viridis"](np.linspace(0.0, 0.9, len(sizes)))
-    return {f"b = {b}": {"color": shade, **properties} for b, shade in zip(sizes, shades, strict=True)}
+    """Line properties of the ball sizes, ``b = 2`` and so on, cold for small balls and warm for large ones."""
+    looks = (_SIZE_LOOKS[SIZES.index(b)] for b in sizes)
+    return {
+        f"b = {b}": {"color": colour, "linestyle": style, **properties}
+        for b, (colour, style) in zip(sizes, looks, strict=True)
+    }
 
 
 def draw_regret(axes: Axes, rows: Sequence[Mapping], title: str) -> None:

@@ -37,7 +37,8 @@ def draw_words(figure, result: Mapping) -> None:
     """F1 of each word after all numbers of lessons, from the other side, and by the rule."""
     scores = {(row["word"], row["lessons"]): row["f1"] for row in result["rows"] if "word" in row}
     *fewer, most = map(str, result["settings"]["lessons"])
-    marks = {n: ("o", 3.5, BLUE, 0.45, f"learnt from {n} scenes") for n in fewer} | {
+    small = zip(fewer, ("x", "s", "^", "v"), strict=False)
+    marks = {n: (marker, 4.5, BLUE, 0.8, f"learnt from {n} scenes") for n, marker in small} | {
         most: ("o", 7, BLUE, 1.0, f"learnt from {most} scenes"),
         OTHER_SIDE: ("D", 4.5, ORANGE, 1.0, "from the other side"),
         RULE: ("|", 11, INK, 1.0, "the rule on visible points"),
