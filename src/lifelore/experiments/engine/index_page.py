@@ -44,9 +44,10 @@ after the first reading's result was known.
 - **undecided**: an interval spans its bound.
 - **does not hold**: otherwise. Our own extras are shown apart and never count.
 
-Where a verdict would turn if one number moved by its interval's width, three more seeds are run at full size and
-pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their values, with the interval of a mean of
-independent numbers. The pool decides, and the claim's section says where single seeds disagree.
+Where a verdict would turn if one number moved by its interval's width, or a share of the choices by one choice,
+three more seeds are run at full size and pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their
+values, with the interval of a mean of independent numbers. The pool decides, and the claim's section says where
+single seeds disagree.
 """
 
 
@@ -120,8 +121,8 @@ def _without_answer(found: Sequence[Mapping]) -> list[str]:
         ),
         (
             near,
-            "These verdicts would turn if one number moved by its interval's width; three more seeds have"
-            " not run yet",
+            "These verdicts would turn if one number moved by its interval's width, or a share of the choices by"
+            " one choice; three more seeds have not run yet",
         ),
     ):
         if ids:
