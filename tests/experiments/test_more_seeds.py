@@ -94,6 +94,47 @@ def test_a_verdict_that_no_number_can_turn_by_its_width_needs_no_more_seeds(toy,
     assert deciding_conditions(toy, far["measured"]) == []
 
 
+@pytest.mark.parametrize(
+    ("yes", "deciding"),
+    [
+        # Of 7 cells: more than half are 4. Of headlines that hold: in part below, holds above.
+        (2, []),
+        (3, ["most"]),
+        (4, ["most"]),
+        (5, []),
+        (7, []),
+    ],
+)
+def test_a_share_of_a_grid_moves_by_one_cell(yes, deciding):
+    share = {
+        "name": "most", "measure": "share", "op": ">", "bound": 0.5, "words": "x is positive in most cells",
+        "exact": True,
+    }  # fmt: skip
+    conditions = [{"role": "headline", "first": "up"}, {"role": "grid", **share}]
+    second = SecondReading.from_data({"why": "with a grid", "conditions": conditions}, FIRST)
+    claim = toy_claim({"n": 6}, run_cell, FIRST, second=second)
+    measured = {"x": {"value": 9.0, "ci95": [8.5, 9.5], "n": 6}}
+    measured["share"] = {"value": round(yes / 7, 6), "ci95": None, "n": 7}
+    assert deciding_conditions(claim, measured) == deciding
+    # As our own extra, it decides nothing.
+    own = SecondReading.from_data({"why": "", "conditions": [conditions[0], {"role": "own", **share}]}, FIRST)
+    assert deciding_conditions(replace(claim, second=own), measured) == []
+
+
+def test_a_share_of_a_grid_moves_by_one_cell_about_the_minority():
+    share = {
+        "name": "most", "measure": "share", "op": ">", "bound": 0.5, "words": "x is positive in most cells",
+        "exact": True, "role": "grid",
+    }  # fmt: skip
+    data = {"why": "with a grid", "conditions": [{"role": "headline", "first": "up"}, share], "minority": 0.25}
+    claim = toy_claim({"n": 6}, run_cell, FIRST, second=SecondReading.from_data(data, FIRST))
+    low = {"value": -9.0, "ci95": [-9.5, -8.5], "n": 6}
+    # A headline that fails holds in part above 0.25 of 8 cells, which are 3.
+    for yes, deciding in ((0, []), (1, []), (2, ["most"]), (3, ["most"]), (4, [])):
+        measured = {"x": low, "share": {"value": yes / 8, "ci95": None, "n": 8}}
+        assert deciding_conditions(claim, measured) == deciding
+
+
 def test_the_page_shows_the_pool_and_that_it_depends_on_the_seed(toy, tmp_path, monkeypatch):
     from lifelore.experiments.engine import claim_section as page
 

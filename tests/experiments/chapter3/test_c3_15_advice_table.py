@@ -103,19 +103,38 @@ def test_shares_of_the_grid_by_hand():
 
 def test_buildings_beside_the_default_by_hand():
     found = measure(SETTINGS, made_up())
-    assert found["one_start_explorers_raised"].value == 4
+    # Each explorer gains 300, 400 and 500 in the three mazes.
+    gains = [found[f"one_start_{agent}_gain"] for agent in ("random", "avoid", "left", "bug")]
+    assert [gain.value for gain in gains] == [400] * 4
+    assert all(300 <= gain.ci95[0] < gain.ci95[1] <= 500 for gain in gains)
     assert (found["one_start_random_none"].value, found["one_start_random_thesis"].value) == (100, 500)
     assert found["one_start_q-learning_gain"].value == 400
     assert (found["default_walls"].value, found["open_walls"].value) == (0.25, 0.5)
     assert found["open_random_gain"].value == 400
     # Two of four cells of the grid and the open building; not the default with α⁰ 0.1, where the bug stays.
     assert (found["crossed_all_raised"].value, found["crossed_all_raised"].n) == (0.5, 6)
+    # Q-learning gains 950, 900 and 850 in the whole grid, and 300 to 500 beside it.
+    assert (found["crossed_learning_raised"].value, found["crossed_learning_raised"].n) == (1.0, 6)
+
+
+def test_an_open_gain_leaves_the_verdict_open():
+    second = CLAIM.second
+    measured = {name: number.to_dict() for name, number in measure(SETTINGS, made_up()).items()}
+    assert second.answers(measured, "headline") == ["yes"] * 5
+    measured["one_start_random_gain"] |= {"value": -40.6, "ci95": [-116.0, 28.0]}
+    assert second.answers(measured, "headline") == ["open", *["yes"] * 4]
+    assert second.verdict(measured) == "undecided"
 
 
 def test_rows_hold_the_whole_grid():
     found = rows(SETTINGS, made_up())
     by_building = [row for row in found if "building" in row]
     assert len(by_building) == (2 + 1 + 2) * (len(AGENTS) + 1)
+    walked = {(row["building"]["name"], row["alpha0"], row["walker"]): row for row in by_building}
+    assert walked["open", 0.0, "bug"]["gain"] == 400.0
+    still = walked["default", 0.1, "bug"]
+    assert (still["reward"], still["gain"], still["gain_is_certain"]) == (100.0, 0.0, False)
+    assert all(("gain" in row) == (row["alpha0"] is not None) for row in by_building)
     found = [row for row in found if "way" in row]
     assert len(found) == 4 * (4 * len(AGENTS) + 2)
     first = next(r for r in found if r["way"] == "thesis" and r["agent"] == "avoid")

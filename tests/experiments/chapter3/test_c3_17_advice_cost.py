@@ -46,6 +46,7 @@ def test_headline_by_hand():
     assert found["advice_at_zero"].value == 100.0
     assert found["agents_falling"].value == 1.0
     assert found["largest_rise"].value == 0.0
+    assert found["largest_rise_over_mazes"].ci95 == (0.0, 0.0)
     assert (found["early_minus_random"].value, found["early_minus_random"].ci95) == (0.0, (0.0, 0.0))
     assert found["late_minus_optimal"].value == 3.0
     assert (found["grid_falling"].value, found["grid_falling"].n) == (1.0, 4)
@@ -54,8 +55,18 @@ def test_headline_by_hand():
 def test_advice_that_rises_between_any_two_kappas_counts():
     found = measure(SETTINGS, made_up({"bug": [60, 20, 33]}))
     assert found["largest_rise"].value == 13.0
+    assert found["largest_rise_over_mazes"].ci95 == (13.0, 13.0)
     assert found["agents_falling"].value == 1.0
     assert found["grid_falling"].value == 0.0
+
+
+def test_the_largest_rise_has_an_interval_over_mazes():
+    # Advice to the bug rises by 5, to random motion by 10, 9 and 8 in the three mazes.
+    rise = measure(SETTINGS, made_up({"bug": [60, 20, 25], "random": [80, 40, 50]}))["largest_rise_over_mazes"]
+    assert rise.value == 9.0
+    assert 8.0 <= rise.ci95[0] < rise.ci95[1] <= 10.0
+    # The rise is counted from the lowest mean before it, wherever that is.
+    assert measure(SETTINGS, made_up({"bug": [20, 60, 0]}))["largest_rise_over_mazes"].value == 40.0
 
 
 def test_an_agent_that_is_told_as_often_at_the_end_does_not_fall():

@@ -57,6 +57,18 @@ def test_explorers_raised_by_hand():
     assert found["grid_all_raised_own"].value == 0.0
 
 
+def test_each_explorers_gain_is_a_headline():
+    found = measure(SETTINGS, made_up())
+    # 0.40, 0.41 and 0.42 in the three mazes.
+    gains = [found[f"gain_{agent}"] for agent in EXPLORERS]
+    assert [gain.value for gain in gains] == pytest.approx([0.41] * 4)
+    assert all(0.40 <= gain.ci95[0] < gain.ci95[1] <= 0.42 for gain in gains)
+    measured = {name: number.to_dict() for name, number in found.items()}
+    assert CLAIM.second.answers(measured, "headline") == ["yes"] * 4
+    measured["gain_left"] |= {"value": 0.1, "ci95": [-0.1, 0.3]}
+    assert CLAIM.second.verdict(measured) == "undecided"
+
+
 def test_where_all_was_advised_nothing_is_said_of_untold_steps():
     found = measure(SETTINGS, made_up(unadvised=None))
     assert found["explorers_raised_unadvised"].value == 0

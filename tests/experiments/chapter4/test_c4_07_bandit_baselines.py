@@ -51,7 +51,7 @@ def test_comparisons_by_hand():
     assert found["EI_over_eps_greedy_on_means_exact"].value == pytest.approx(102.5 / 402.5)
     assert found["interval_estimation_minus_EI_learnt"].value == pytest.approx(300)
     # The default reserve with exact models, and two cases of learnt ones; noise is none, so no interval is either.
-    assert found["grid_EI_below_all"].n == 3
+    assert (found["grid_sentence"].value, found["grid_sentence"].n) == (0.0, 3)
     # In the first episode it has more, from the second on less.
     assert found["first_episode_below_for_good_exact"].value == 2
     assert measure(SMALL, made_up(first=1.0))["first_episode_below_for_good_exact"].value == 1
@@ -59,6 +59,19 @@ def test_comparisons_by_hand():
     assert found["EI_doubting_over_best_GP_UCB_unseen"].value == pytest.approx(103 / 203)
     assert found["IDS_doubting_over_best_GP_UCB_unseen"].value == pytest.approx(403 / 203)
     assert found["cumulative_first_4_tasks_EI_exact"].value == pytest.approx(101.5)
+
+
+def test_the_grid_asks_for_the_whole_sentence():
+    results = made_up()
+    for result in results:  # 1 % more a task, so that differences vary and have intervals
+        result["sums"] = [result["sums"][0] * (1 + 0.01 * task) for task in range(6)]
+    assert measure(SMALL, results)["grid_sentence"].value == 1.0
+    # In one of three cases GP-UCB has more regret than UCB1, in another interval estimation less than reuse.
+    for method, case, sum_ in (("GP-UCB", "learnt", 600.0), ("interval estimation", "headline", 50.0)):
+        for result in results:
+            if (result["method"], result["case"]) == (method, case):
+                result["sums"] = [sum_ * (1 + 0.01 * task) for task in range(6)]
+    assert measure(SMALL, results)["grid_sentence"].value == pytest.approx(1 / 3)
 
 
 def test_a_tiny_run():

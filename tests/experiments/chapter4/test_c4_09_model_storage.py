@@ -12,7 +12,7 @@ from lifelore.experiments.chapter4.c4_09_model_storage.applications import (
     with_returns,
 )
 from lifelore.experiments.chapter4.c4_09_model_storage.measure import measure
-from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import stored
+from lifelore.experiments.chapter4.c4_09_model_storage.stored_models import array_bytes, stored
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.interaction.library.storage_cost import StorageSizes
 
@@ -43,7 +43,24 @@ def test_entries_by_hand():
     # Returns 1 and 3; (0, 0) paid 1 and 2, (1, 0) paid 0; there and back.
     assert found["filled"] == {"performance": 2, "reward": 3, "state-action-state": 2}
     assert len(found["built"]) == 3
-    assert min(found["bytes"].values()) > 500
+
+
+def test_bytes_are_those_of_the_arrays_whatever_numbers_they_hold():
+    # Performance: 3 counts, 4 borders and the pseudo-count of 8 bytes, and a flag of 1. Rewards: 6 logarithms,
+    # 2 totals, 2 places and 3 rewards. Transitions: 4 logarithms, 2 totals and 2 places.
+    size = {"performance": 8 * 8 + 1, "reward": 8 * 13, "state-action-state": 8 * 8}
+    assert stored(by_hand())["bytes"] == size
+
+    # A compressed file is longer where the numbers are less alike.
+    class Noise:
+        def to_arrays(self):
+            return {"a": np.random.default_rng(0).normal(size=100)}
+
+    class Zeros:
+        def to_arrays(self):
+            return {"a": np.zeros(100)}
+
+    assert array_bytes(Noise()) == array_bytes(Zeros()) == 800
 
 
 def test_rewards_that_are_a_function_of_the_step_fill_no_more_than_the_steps():

@@ -15,8 +15,11 @@ CLAIM = claim_of("C4.15")
 GAMES = (["s-maze 160", 0.5, 3.0, "fixed", "slides"], ["s-maze 160", 0.5, 3.0, "maxima", "slides"])
 
 
-def made(n=30, game=GAMES[0]):
-    """BEAT 10 % above the best in the first episode, at it later; the static speed 20 % above it, EXP-3 40 %."""
+def made(n=30, game=GAMES[0], second=1.0):
+    """BEAT 10 % above the best in the first episode, at it later; the static speed 20 % above it, EXP-3 40 %.
+
+    BEAT as printed names the smallest right half-way for no player, the next for a share `second`, others for all.
+    """
     generator = np.random.default_rng(0)
     best = 0.5 + generator.normal(0, 0.02, (6, n, 5))
     factor = {ORACLE: 1.0, STATIC: 1.2, PRINTED_EXP3: 1.4, TUNED_EXP3: 1.3}
@@ -32,13 +35,12 @@ def made(n=30, game=GAMES[0]):
         "half": [[True] * n] * 6,
         "needed_printed": [[20] * n] * 6,
         "lengths_printed": [[80] * n] * 6,
-        # The smallest is named right by no player, the next by two of three, the others by all.
-        "half_printed": [[False] * n, [True] * (2 * n // 3) + [False] * (n // 3), *[[True] * n] * 4],
+        "half_printed": [[False] * n, [i < second * n for i in range(n)], *[[True] * n] * 4],
     }
 
 
 def test_measures_by_hand():
-    found = measure({}, [made()])
+    found = measure({}, [made(second=2 / 3)])
     assert found["to_static_first"].value == pytest.approx(1.1 / 1.2)
     assert found["to_static_last"].value == pytest.approx(1 / 1.2)
     assert found["to_exp3_last"].value == pytest.approx(1 / 1.4)
@@ -84,6 +86,18 @@ def test_every_game_is_asked_the_conditions_of_the_default():
     assert (
         CLAIM.predicate.verdict({name: {"value": e.value, "ci95": e.ci95} for name, e in found.items()}) == IN_PART
     )
+
+
+def test_a_size_that_is_often_missed_breaks_the_sentence_and_nothing_of_the_first_reading():
+    right, missed = measure({}, [made()]), measure({}, [made(second=2 / 3)])
+    # Of 30 players all, and 20: the exact intervals are [0.88, 1] and [0.47, 0.83]; 0.85 is asked.
+    assert [found["grid_sentence"].value for found in (right, missed)] == [1.0, 0.0]
+    answers = [
+        CLAIM.second.answers({name: number.to_dict() for name, number in found.items()}, "headline")
+        for found in (right, missed)
+    ]
+    assert answers == [["yes"] * 5, [*["yes"] * 4, "no"]]
+    assert {c.measure for c in asked_of_every_game()} & {"least_right_half_but_smallest_printed"} == set()
 
 
 def test_cells_are_all_games_under_both_normalisations():

@@ -5,7 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from lifelore.experiments.chapter4.c4_17_default_rule.measure import decided_rule, key_of, measure, rows
+from lifelore.experiments.chapter4.c4_17_default_rule.measure import (
+    _largest_excess,
+    decided_rule,
+    key_of,
+    measure,
+    rows,
+)
 from lifelore.experiments.chapter4.c4_17_default_rule.run import CANDIDATES, RULES, cells, run_cell
 from lifelore.experiments.chapter4.c4_17_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
 from lifelore.experiments.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
@@ -69,6 +75,21 @@ def test_measures_by_hand():
     assert found["stuck_IDS_exact"].value == 0.02
     assert found["stuck_above_least_KG"].value == pytest.approx(0.08)
     assert rows({}, [first])[0]["regret"]["IDS"] == 1.5
+
+
+def stuck_by_group(shares):
+    return {"rules": {name: {"stuck": shares.get(name, [0.5, 0.5, 0.5])} for name in RULES}, "model": EXACT}
+
+
+def test_the_largest_excess_of_stuck_tasks_by_hand():
+    ids, least = [0.3, 0.2, 0.4], [0.2, 0.1, 0.1]
+    small = stuck_by_group({"IDS": [0.2, 0.1, 0.1], "KG": [0.2, 0.0, 0.1]})
+    found = _largest_excess([small, stuck_by_group({"IDS": ids, "greedy": least})], "IDS")
+    # Above greedy selection by 0.1, 0.1 and 0.3 in the second world.
+    assert found.value == pytest.approx(0.5 / 3)
+    assert found.ci95 is not None
+    assert 0.1 - 1e-9 <= found.ci95[0] < found.ci95[1] <= 0.3 + 1e-9
+    assert _largest_excess([small], "KG").ci95 == (0.0, 0.0)
 
 
 def test_measures_of_uncertain_models_by_hand():

@@ -46,9 +46,10 @@ rules of its own. The *second reading*, which is told here, has one meaning of e
 filed after the first result was known. [Both readings](#both-readings) of every claim stand below, and in the
 folded part of its section.
 
-Where a verdict would turn if one number moved by its interval's width, three more seeds are run at full size and
-pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their values, with the interval of a mean of
-independent numbers. The pool decides, and the claim's section says where single seeds disagree.
+Where a verdict would turn if one number moved by its interval's width, or a share of the grid by one choice,
+three more seeds are run at full size and pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their
+values, with the interval of a mean of independent numbers. The pool decides, and the claim's section says where
+single seeds disagree.
 """
 
 
@@ -129,8 +130,8 @@ def _without_answer(found: Sequence[Mapping]) -> list[str]:
         ),
         (
             near,
-            "These verdicts would turn if one number moved by its interval's width; three more seeds have"
-            " not run yet",
+            "These verdicts would turn if one number moved by its interval's width, or a share of the choices by"
+            " one choice; three more seeds have not run yet",
         ),
     ):
         if ids:

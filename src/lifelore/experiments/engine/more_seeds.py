@@ -25,6 +25,7 @@ from lifelore.experiments.engine.condition_table import COUNTED
 from lifelore.experiments.engine.predicate import Measured
 from lifelore.experiments.engine.registry import claim_of
 from lifelore.experiments.engine.reproduce import ClaimRun, result_folder, rounded, run_plan, stored_result
+from lifelore.experiments.engine.second_reading import GRID, ReadCondition
 
 FILE = "seeds.json"
 
@@ -140,20 +141,40 @@ def pooled(numbers: Sequence[Mapping]) -> dict[str, Any]:
 
 
 def deciding_conditions(claim: Claim, measured: Measured) -> list[str]:
-    """Names of the conditions whose number would turn the verdict if it moved by its interval's width."""
-    found: list[str] = []
+    """Names of the conditions whose number would turn the verdict if it moved by its interval's width.
+
+    A share of a grid has no interval: it moves by one cell.
+    """
     if claim.second is None:
-        return found
-    for one in claim.second.conditions:
-        number = measured.get(one.condition.measure)
-        if one.role not in COUNTED or one.exact or not number or not number["ci95"] or None in number["ci95"]:
-            continue
-        width = number["ci95"][1] - number["ci95"][0]
-        moved = [
-            {**number, "value": number["value"] + by, "ci95": [end + by for end in number["ci95"]]}
-            for by in (-width, width)
-        ]
-        verdicts = {claim.second.verdict({**measured, one.condition.measure: other}) for other in moved}
-        if verdicts != {claim.second.verdict(measured)}:
-            found.append(one.condition.name)
-    return found
+        return []
+    verdict = claim.second.verdict(measured)
+    return [
+        one.condition.name
+        for one in claim.second.conditions
+        if any(
+            claim.second.verdict({**measured, one.condition.measure: other}) != verdict
+            for other in _moved(one, measured.get(one.condition.measure))
+        )
+    ]
+
+
+def _moved(one: ReadCondition, number: Mapping[str, Any] | None) -> list[dict[str, Any]]:
+    """The number of a counted condition, moved down and up as far as chance may move it; empty if it is exact."""
+    if one.role not in COUNTED or not number or number["value"] is None:
+        return []
+    ends = number["ci95"]
+    if ends is None:
+        return _by_a_cell(number) if one.role == GRID and one.exact else []
+    if one.exact or None in ends:
+        return []
+    width = ends[1] - ends[0]
+    return [
+        {**number, "value": number["value"] + by, "ci95": [end + by for end in ends]} for by in (-width, width)
+    ]
+
+
+def _by_a_cell(share: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """A share of a grid with a cell less and a cell more."""
+    n = share["n"]
+    yes = round(share["value"] * n)
+    return [{**share, "value": some / n} for some in (yes - 1, yes + 1) if 0 <= some <= n]

@@ -65,6 +65,29 @@ class Rewards:
         return maze_estimate(self.learning(THESIS) - self.learning(NONE))
 
 
+class BuildingRewards:
+    """Rewards by building, α⁰ of the advice (None: without advice) and agent, maze by maze, of 1000."""
+
+    def __init__(self, results: Sequence[Mapping]) -> None:
+        self.table = ResultsTable.nested(results, "rewards", ("alpha0", "agent"), ("building", "maze"))
+        self.results = results
+
+    def of(self, building: int, alpha0: float | None, agent: str) -> np.ndarray:
+        return self.table.values("reward", building=building, alpha0=alpha0, agent=agent)
+
+    def gain(self, building: int, alpha0: float, agent: str) -> Estimate:
+        """Reward that advice adds."""
+        return maze_estimate(self.of(building, alpha0, agent) - self.of(building, None, agent))
+
+    def raised(self, building: int, alpha0: float) -> int:
+        """Explorers whose reward the advice raises for certain."""
+        return sum(is_above(self.gain(building, alpha0, agent), 0.0) for agent in EXPLORERS)
+
+    def walls(self, building: int) -> list[float]:
+        """Share of wall cells in each maze."""
+        return [result["walls"] for result in self.results if result["building"] == building]
+
+
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """Rewards at the default by agent and advisor, Q-learning's, the share of the grid, and of other buildings."""
     results, beside = _read_first(results)
@@ -81,10 +104,9 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         found[f"{agent}_goal_unknown"] = maze_estimate(at_default.of(GOAL_UNKNOWN, agent))
     most = [at_default.advised(BETTER, agent) for agent in EXPLORERS]
     found["better_most_advised"] = exact_value(np.max(most), len(most[0]))
-    all_raised = [Rewards(results, *cell).raised() == len(EXPLORERS) for cell in grid_of(settings)]
-    of_buildings, others_raised = _of_buildings(settings, beside)
-    crossed = {"crossed_all_raised": grid_share([*all_raised, *others_raised])}
-    return found | {"grid_all_raised": grid_share(all_raised)} | of_buildings | crossed
+    grid, buildings = [Rewards(results, *cell) for cell in grid_of(settings)], BuildingRewards(beside)
+    found["grid_all_raised"] = grid_share([cell.raised() == len(EXPLORERS) for cell in grid])
+    return found | _of_buildings(settings, buildings) | _crossed(settings, grid, buildings)
 
 
 def _read_first(results: Sequence[Mapping]) -> tuple[list[Mapping], list[Mapping]]:
@@ -92,30 +114,28 @@ def _read_first(results: Sequence[Mapping]) -> tuple[list[Mapping], list[Mapping
     return [r for r in results if "walks" in r], [r for r in results if "rewards" in r]
 
 
-def _of_buildings(settings: Mapping, results: Sequence[Mapping]) -> tuple[dict[str, Estimate], list[bool]]:
-    """Table 3.1 where all start alike, other buildings' numbers, and where else all four explorers are raised."""
-    table = ResultsTable.nested(results, "rewards", ("alpha0", "agent"), ("building", "maze"))
-
-    def rewards(building: int, alpha0: float | None, agent: str) -> np.ndarray:
-        return table.values("reward", building=building, alpha0=alpha0, agent=agent)
-
-    def gain(building: int, alpha0: float, agent: str) -> Estimate:
-        return maze_estimate(rewards(building, alpha0, agent) - rewards(building, None, agent))
-
-    def raised(building: int, alpha0: float) -> int:
-        return sum(is_above(gain(building, alpha0, agent), 0.0) for agent in EXPLORERS)
-
-    found = {"one_start_explorers_raised": exact_value(raised(0, 0.0), len(EXPLORERS))}
-    found["one_start_q-learning_gain"] = gain(0, 0.0, LEARNER)
+def _of_buildings(settings: Mapping, beside: BuildingRewards) -> dict[str, Estimate]:
+    """Table 3.1 where all agents start alike, and what random motion receives in the other buildings."""
+    found = {f"one_start_{agent}_gain": beside.gain(0, 0.0, agent) for agent in (*EXPLORERS, LEARNER)}
     for agent in (*AGENTS, LEARNER):
         for way, alpha0 in ((NONE, None), (THESIS, 0.0)):
-            found[f"one_start_{agent}_{way}"] = maze_estimate(rewards(0, alpha0, agent))
+            found[f"one_start_{agent}_{way}"] = maze_estimate(beside.of(0, alpha0, agent))
     for place, building in enumerate(settings["buildings"]):
-        walls = [result["walls"] for result in results if result["building"] == place]
-        found[f"{name_of(building)}_walls"] = maze_estimate(walls)
-        found[f"{name_of(building)}_random_none"] = maze_estimate(rewards(place, None, "random"))
-        found[f"{name_of(building)}_random_gain"] = gain(place, 0.0, "random")
-    return found, [raised(*choice) == len(EXPLORERS) for choice in other_choices(settings)]
+        found[f"{name_of(building)}_walls"] = maze_estimate(beside.walls(place))
+        found[f"{name_of(building)}_random_none"] = maze_estimate(beside.of(place, None, "random"))
+        found[f"{name_of(building)}_random_gain"] = beside.gain(place, 0.0, "random")
+    return found
+
+
+def _crossed(settings: Mapping, grid: Sequence[Rewards], beside: BuildingRewards) -> dict[str, Estimate]:
+    """Shares of the mazes and of the choices beside the default in which advice raises rewards for certain."""
+    others = other_choices(settings)
+    explorers = [cell.raised() for cell in grid] + [beside.raised(*choice) for choice in others]
+    learners = [cell.learning_gain() for cell in grid] + [beside.gain(*choice, LEARNER) for choice in others]
+    return {
+        "crossed_all_raised": grid_share([number == len(EXPLORERS) for number in explorers]),
+        "crossed_learning_raised": grid_share([is_above(gain, 0.0) for gain in learners]),
+    }
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
@@ -140,16 +160,13 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
 
 def _building_rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """A row for each building, α⁰ of the advice (None: without advice) and agent."""
-    table = ResultsTable.nested(results, "rewards", ("alpha0", "agent"), ("building", "maze"))
-    found = []
-    for place, alpha0 in [(place, None) for place in range(len(settings["buildings"]))] + [
-        (0, 0.0),
-        *other_choices(settings),
-    ]:
+    rewards, found = BuildingRewards(results), []
+    alone = [(place, None) for place in range(len(settings["buildings"]))]
+    for place, alpha0 in [*alone, (0, 0.0), *other_choices(settings)]:
         for agent in (*AGENTS, LEARNER):
-            reward = maze_estimate(table.values("reward", building=place, alpha0=alpha0, agent=agent))
+            gain = None if alpha0 is None else rewards.gain(place, alpha0, agent)
             row = {"building": settings["buildings"][place], "alpha0": alpha0, "walker": agent}
-            found.append(row | _numbers(reward, None))
+            found.append(row | _numbers(maze_estimate(rewards.of(place, alpha0, agent)), gain))
     return found
 
 

@@ -39,11 +39,13 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     at_zero = min(_per_100(table, default, agent, "known")[:, 0].mean() for agent in agents)
     early, late = (f"q {settings['snapshots'][i]}" for i in (0, -1))
     first, last, random, optimal = (amounts[a][:, at_kappa] for a in (early, late, "random", "optimal"))
+    steepest = max((_steepest_rise(amount) for amount in amounts.values()), key=np.mean)
     above = [row["above"] for row in ceilings.records]
     return {
         "advice_at_zero": exact_value(at_zero, len(agents)),
         "agents_falling": grid_share([_falls(amount) for amount in amounts.values()]),
         "largest_rise": exact_value(max(map(_rise, amounts.values())), len(agents)),
+        "largest_rise_over_mazes": maze_estimate(steepest),
         "early_minus_random": maze_estimate(first - random),
         "late_minus_optimal": maze_estimate(last - optimal),
         "gains_above_ceiling": exact_value(sum(above), len(above)),
@@ -60,6 +62,14 @@ def _rise(amounts: np.ndarray) -> float:
     """The most by which the mean rises from any κ to a greater one; 0 where it never does."""
     mean = amounts.mean(axis=0)
     return float((mean - np.minimum.accumulate(mean)).max())
+
+
+def _steepest_rise(amounts: np.ndarray) -> np.ndarray:
+    """Each maze's rise between the two κ where the mean rises most, (n_mazes,); 0 where it never does."""
+    mean = amounts.mean(axis=0)
+    last = int((mean - np.minimum.accumulate(mean)).argmax())
+    first = int(mean[: last + 1].argmin())
+    return amounts[:, last] - amounts[:, first]
 
 
 def _grid_answers(settings: Mapping, table: ResultsTable) -> list[bool]:

@@ -19,11 +19,12 @@ def _table(results: Sequence[Mapping]) -> ResultsTable:
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """How many explorers' P(M₁ | H) advice raises at the default, by every reading; and the share of the grid."""
-    table, found = _table(results), {}
+    """Each explorer's gain in P(M₁ | H) at the default; by reading, how many are raised, and the grid."""
+    table, default = _table(results), settings["default"]
+    found = {f"gain_{agent}": _gain(table.select(**default, agent=agent), "told") for agent in EXPLORERS}
     for reading, ending in READINGS.items():
         raised = [_raised(table, reading, *cell) for cell in grid_of(settings)]
-        at_default = _raised(table, reading, **settings["default"])
+        at_default = _raised(table, reading, **default)
         found[f"explorers_raised{ending}"] = exact_value(at_default, len(EXPLORERS))
         found[f"grid_all_raised{ending}"] = grid_share([number == len(EXPLORERS) for number in raised])
     return found

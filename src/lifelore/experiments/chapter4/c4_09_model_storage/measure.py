@@ -31,8 +31,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         for of in settings["rewards_of"]:
             filled = [_in_order(s["filled"]) for cell, s in own if cell.get("rewards_of") == of]
             answers[f"printed_order_of_filled_entries_rewards_of_{of}"] = filled
-        in_files = (s["bytes"] for _, s in own if None not in s["bytes"].values())
-        answers["printed_order_of_file_bytes"] = [_in_order(size) for size in in_files]
+        in_bytes = (s["bytes"] for _, s in own if None not in s["bytes"].values())
+        answers["printed_order_of_array_bytes"] = [_in_order(size) for size in in_bytes]
         measured |= {
             f"{key}_{name}": mean_estimate(np.array(some, float)) for key, some in answers.items() if some
         }
@@ -60,7 +60,7 @@ def _agrees(found: Mapping, variant: str, bound: bool = False) -> float:
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Each application: its sizes, and mean entries and bytes of the three models."""
+    """Each application: its sizes, and mean entries and bytes of arrays of the three models."""
     found = []
     for result in results:
         draws, first = result["stored"], result["stored"][0]

@@ -1,4 +1,4 @@
-"""C4.9: entries and bytes of the observation models of §4.7.6, once learnt. Thesis: §4.7.6."""
+"""C4.9: entries, and bytes of arrays, of the observation models of §4.7.6, once learnt. Thesis: §4.7.6."""
 
 from collections.abc import Mapping
 

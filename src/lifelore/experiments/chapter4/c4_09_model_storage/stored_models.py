@@ -2,13 +2,16 @@
 
 From the same episodes three models are learnt: of the return (a histogram with as many bins as there are rewards,
 as §4.7.6 counts), of (s, a, r) and of (s, a, s′), each with a table for every type and policy. Counted are the
-entries of the tables, those that any episode filled, and the bytes of the library's file.
+entries of the tables, those that any episode filled, and the bytes of each model's arrays. A compressed file would
+also depend on the last bits of numbers, which differ between processors.
 """
 
+from typing import Any, Protocol
+
 import numpy as np
+from numpy.typing import NDArray
 
 from lifelore.experiments.chapter4.c4_09_model_storage.applications import Application
-from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.histogram_outcomes import HistogramOutcomes
 from lifelore.interaction.outcomes.outcome_model import rows_of_samples
 from lifelore.interaction.signals.step_reward_signal import StepRewardSignal
@@ -19,12 +22,17 @@ MOST_ENTRIES = 4_000_000
 """Tables of more entries are not built; their number follows from the sizes, as for those that are built."""
 
 
+class StoredModel(Protocol):
+    """A model that can be written into a file."""
+
+    def to_arrays(self) -> dict[str, NDArray[Any]]: ...
+
+
 def stored(found: Application) -> dict:
     """Entries and bytes of the three learnt models of an application.
 
     ``table``: numbers in the model's table; ``filled``: cells of it that an episode filled, of the performance
-    different returns; ``bytes``: of the library's file with this signal, None where the table is too large to
-    build.
+    different returns; ``bytes``: of the model's arrays, None where the table is too large to build.
     """
     sizes, returns = found.sizes, found.runs.outcomes
     pairs, steps = sizes.n_types * sizes.n_policies, sizes.n_states * sizes.n_actions
@@ -36,9 +44,7 @@ def stored(found: Application) -> dict:
     performance = HistogramOutcomes.from_rows(rows_of_samples(returns), sizes.n_rewards)
     signals = {name: _learnt(found, name) for name in (REWARD, TRANSITION) if table[name] <= MOST_ENTRIES}
     table |= {PERFORMANCE: performance.counts.size} | {name: model.n_entries for name, model in signals.items()}
-    libraries = {PERFORMANCE: PolicyLibrary(performance)}
-    libraries |= {name: PolicyLibrary.from_samples(returns, signal=model) for name, model in signals.items()}
-    size = {name: len(library.to_bytes()) for name, library in libraries.items()}
+    size = {name: array_bytes(model) for name, model in {PERFORMANCE: performance, **signals}.items()}
     return {
         "states": sizes.n_states,
         "rewards": sizes.n_rewards,
@@ -49,6 +55,11 @@ def stored(found: Application) -> dict:
         "bytes": {name: size.get(name) for name in SIGNALS},
         "built": list(size),
     }
+
+
+def array_bytes(model: StoredModel) -> int:
+    """Bytes of a model's arrays, not compressed."""
+    return sum(array.nbytes for array in model.to_arrays().values())
 
 
 def _learnt(found: Application, name: str) -> StepRewardSignal | TransitionSignal:

@@ -1,6 +1,7 @@
 """C4.17: regret of each rule relative to the best rule of each world, shares of stuck tasks, and the decision."""
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -50,6 +51,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
             found[f"regret_{key}_{part}"] = mean_estimate(relative[name][which].mean(axis=0))
         found[f"stuck_{key}_exact"] = exact_value(stuck[name][exact].max(), int(exact.sum()))
         found[f"stuck_above_least_{key}"] = exact_value(above[name].max(), len(results))
+    found["stuck_above_least_IDS_over_groups"] = _largest_excess(results, "IDS")
     means = {name: values.mean(axis=0) for name, values in relative.items()}
     for name in ("EI, pay", "EI, outcome", "KG"):
         found[f"regret_IDS_minus_{key_of(name)}"] = difference_estimate(means["IDS"], means[name])
@@ -58,6 +60,20 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     worse = (relative[name][unequal].mean(axis=0) for name in ("EI, outcome", "greedy"))
     found["regret_EI_outcome_over_greedy_unequal"] = ratio_estimate(*worse)
     return found | _uncertain(results)
+
+
+def _largest_excess(results: Sequence[Mapping], rule: str) -> Estimate:
+    """Share of stuck tasks above that of the least stuck rule, in the world where it is the largest; over groups.
+
+    The interval is of that world alone. As the world is the worst of all, the number is rather too high.
+    """
+    stuck = {name: _shares(results, name) for name in RULES}
+    world = int((stuck[rule] - np.min(list(stuck.values()), axis=0)).argmax())
+    least = min(RULES, key=lambda name: stuck[name][world])
+    mine, others = (results[world]["rules"][name]["stuck"] for name in (rule, least))
+    found = difference_estimate(mine, others)
+    certain = found.ci95 is None and len(mine) >= 3  # the same in every group
+    return replace(found, ci95=(found.value, found.value)) if certain else found
 
 
 def _uncertain(results: Sequence[Mapping]) -> dict[str, Estimate]:
