@@ -4,17 +4,20 @@ import numpy as np
 import pytest
 
 from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
+from lifelore.core.streams import stream
 from lifelore.experiments.chapter2.c2_02_label_components import measure as c2_2
 from lifelore.experiments.chapter2.c2_02_label_components.figure import PRINTED
 from lifelore.experiments.chapter2.c2_02_label_components.measure import (
     COMPONENTS,
     component_answers,
     measure,
+    right_of_all,
     rows,
     split_answers,
 )
 from lifelore.experiments.chapter2.scenes.tabletop_pairs import KERNELS, STANDARD, kernel_name
-from lifelore.experiments.chapter2.scoring.pair_validation import DROPS, Reading, Votes
+from lifelore.experiments.chapter2.scoring.pair_validation import AS_PRINTED, DROPS, Reading, Votes
+from lifelore.experiments.engine.estimates import exact_share
 from lifelore.experiments.engine.registry import claim_of
 
 CLAIM = claim_of("C2.2")
@@ -171,22 +174,81 @@ def test_rows_are_by_data_set_then_by_reading():
     assert {key: found[4][key] for key in fewer[2]} == fewer[2]
 
 
-def test_the_printed_rule_and_the_grid_by_hand():
-    def weak(row):  # its only contacts have six support vectors, but for one kernel
-        contacts = {
-            side: [[*place[:3], 6] for place in places] for side, places in row["contacts"][STANDARD].items()
-        }
-        return row | {"contacts": dict.fromkeys(NAMES, contacts) | {NAMES[0]: row["contacts"][NAMES[0]]}}
+def weak(row) -> dict:
+    """The same row, but its contacts have six support vectors, but for one kernel."""
+    contacts = {side: [[*place[:3], 6] for place in places] for side, places in row["contacts"][STANDARD].items()}
+    return row | {"contacts": dict.fromkeys(NAMES, contacts) | {NAMES[0]: row["contacts"][NAMES[0]]}}
 
+
+def drawn(scenes, n_test, splits, name) -> list[set]:
+    """The test scenes of each split."""
+    return [set(stream(k, "C2.2", name).choice(sorted(scenes), n_test, replace=False)) for k in range(splits)]
+
+
+def test_a_pair_without_a_contact_is_one_wrong_relationship():
+    # Six *on* without a strong contact, six *adjacent* of two contacts each: told, and right, are the latter.
+    lost = [weak(at(f"a{n}", ON, n)) for n in range(6)]
+    left = [at(f"b{n}", ADJACENT, 100 + n, 110 + n) for n in range(6)]
+    found = right_of_all(SETTINGS, lost + left, AS_PRINTED, 20, "0")
+    tested = drawn([row["scene"] for row in lost + left], 3, 20, "0")
+    told = [sum(scene.startswith("b") for scene in scenes) for scenes in tested]
+    # Of three pairs k are told: 2 k relationships of 2 k + (3 - k).
+    by_hand = np.mean([2 * k / (3 + k) for k in told])
+    assert (min(told), max(told)) == (0, 3)
+    assert found == pytest.approx({"on": by_hand, "adjacent": by_hand})
+    # With the strongest contact left all are told, and right.
+    assert right_of_all(SETTINGS, lost + left, Reading(), 20, "0") == {"on": 1, "adjacent": 1}
+
+
+def test_of_all_is_of_what_is_told_where_every_pair_has_a_contact():
+    mixed = [at(f"s{n}", BOTH if n % 2 else ON, n) for n in range(12)]
+    found = right_of_all(SETTINGS, mixed, AS_PRINTED, 20, "0")
+    told = split_answers(SETTINGS, mixed, AS_PRINTED, 20, "0")
+    assert found == pytest.approx({name: told[f"{name}_right"] for name in COMPONENTS})
+
+
+def test_real_scenes_take_no_part_in_what_is_right_of_all():
+    found, without = measure(SETTINGS, RESULTS), measure(SETTINGS, RESULTS[:2])
+    for name in COMPONENTS:
+        assert found[f"{name}_right_of_all_as_printed"] == without[f"{name}_right_of_all_as_printed"]
+        assert found[f"{name}_right_of_all_as_printed"].value == 1
+
+
+def test_the_printed_rule_and_the_grid_by_hand():
     # Six data sets, as an interval of a mean needs several; they differ in their names, and so in their splits.
     results = [{"set": number, "rows": [weak(row) for row in apart(f"{number}-")]} for number in range(6)]
     found = measure(SETTINGS, results)
     assert found["on_right"].value == found["adjacent_right"].value == 1
     assert found["on_right_as_printed"].n == 0
     assert np.isnan(found["on_right_as_printed"].value)
+    # Of all relationships none is told then, so none is right.
+    assert [found[f"{name}_right_of_all_as_printed"].value for name in COMPONENTS] == [0, 0]
+    assert found["on_right_of_all_as_printed"].n == 6
     # Strongest contacts kept: six kernels. All weak ones dropped: the one kernel in which none is weak.
     share = found["readings_in_which_both_beat_their_majority"]
     assert (share.value, share.ci95, share.n) == (7 / 12, None, 12)
+
+
+def test_agreement_is_asked_of_the_exact_intervals_of_28_and_18_of_49():
+    asked = {one.condition.name: one for one in CLAIM.second.conditions}
+    for name, (_, agreed) in PRINTED.items():
+        low, high = exact_share([True] * agreed + [False] * (49 - agreed)).ci95
+        one = asked[f"{name} agrees as printed"]
+        assert one.role == "printed"
+        assert (one.condition.measure, one.condition.op) == (f"{name}_agreement", "between")
+        assert one.condition.bound == (round(low, 3), round(high, 3))
+
+
+def test_a_missed_printed_number_makes_it_in_part():
+    counted = [one.condition for one in CLAIM.second.conditions if one.role in ("headline", "printed", "grid")]
+    inside = {c.measure: 0.5 if c.measure.endswith("_agreement") else 0.9 for c in counted}
+    measured = {n: {"value": x, "ci95": [x, x + 0.01]} for n, x in inside.items()}
+    measured["adjacent_agreement"] = {"value": 0.4, "ci95": [0.39, 0.41]}
+    assert CLAIM.second.verdict(measured) == "holds"
+    # Agreement with far more neighbours than printed, or a share of all relationships below the printed one.
+    for name, low in (("on_agreement", 0.9), ("adjacent_agreement", 0.8), ("on_right_of_all_as_printed", 0.6)):
+        missed = measured | {name: {"value": low, "ci95": [low, low + 0.01]}}
+        assert CLAIM.second.verdict(missed) == "holds in part"
 
 
 def test_what_is_printed_is_of_49():

@@ -10,7 +10,7 @@ from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.experiments.chapter3.c3_04_factory_priors.run import ADVICE, stages_of
 from lifelore.experiments.chapter3.factory.learning import KEYS, LEARNT, PLAIN, grid_of
 from lifelore.experiments.engine.curve_blocks import block_edges
-from lifelore.experiments.engine.estimates import interval_or_value, share_of
+from lifelore.experiments.engine.estimates import exact_share, interval_or_value, share_of
 from lifelore.experiments.engine.results_table import BAND, ResultsTable
 
 INVARIANCES = {
@@ -54,24 +54,31 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
         measured[f"greedy_{prior}_of_optimal"] = ratio_estimate(greedy[prior], optimal)
     for encoding, states in product(settings["encodings"], ("all", "way")):
         measured[f"unseen_{states}_{encoding}"] = mean_estimate([r["unseen"][encoding][states] for r in results])
-    measured |= _learnt_on(settings, results, reward, optimal)
+    measured |= _learnt_on(results, reward, optimal)
     return measured | _invariances(settings, results) | _grid_shares(settings, table, reward)
 
 
-def learnt_by(stages: Sequence[int], greedy: ArrayLike, optimal: float) -> int:
-    """The first stage from which on the greedy return stays within 5 % of the optimum; the last one if none."""
-    short = np.flatnonzero(np.asarray(greedy) < (1 + MARGIN) * optimal)
-    return stages[min(short[-1] + 1, len(stages) - 1) if short.size else 0]
+def stays_near(greedy: ArrayLike, optimal: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Whether greedy returns (n_runs, n_stages) are within 5 % of the optimum (n_runs,) from each stage on."""
+    near = np.asarray(greedy) >= (1 + MARGIN) * optimal[:, None]
+    return np.logical_and.accumulate(near[:, ::-1], axis=1)[:, ::-1]
 
 
-def _learnt_on(settings: Mapping, results: Sequence[Mapping], reward: NDArray, optimal: NDArray) -> dict:
-    """Each prior learnt on until the slowest has learnt: when it has, and what is earned at the end."""
-    stages, found = stages_of(settings), {}
+def share_learnt(greedy: ArrayLike, optimal: NDArray[np.float64]) -> Estimate:
+    """The share of runs that stay within 5 % of the optimum from a stage before the last one on."""
+    return exact_share(stays_near(greedy, optimal)[:, -2])
+
+
+def _learnt_on(results: Sequence[Mapping], reward: NDArray, optimal: NDArray) -> dict[str, Estimate]:
+    """Each prior learnt on: the share of runs that have learnt by the end, and what is earned there.
+
+    The optimistic learner has the incorrect prior, and a Q that starts above every return.
+    """
+    found = {"share_learnt_optimistic": share_learnt([r["optimistic"] for r in results], optimal)}
     last = {prior: np.array([r["long"][prior]["last"] for r in results]) for prior in PRIORS}
     for prior in PRIORS:
         greedy = [r["long"][prior]["greedy"] for r in results]
-        by = [learnt_by(stages, of_run, best) for of_run, best in zip(greedy, optimal, strict=True)]
-        found[f"learnt_by_{prior}"] = mean_estimate(by)
+        found[f"share_learnt_{prior}"] = share_learnt(greedy, optimal)
         found[f"long_greedy_{prior}_of_optimal"] = ratio_estimate([of_run[-1] for of_run in greedy], optimal)
     difference = ratio_estimate(last["incorrect"] - last[PLAIN], reward)
     return found | {"long_incorrect_minus_uniform_of_optimal": difference}
@@ -124,14 +131,22 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
         where = grid.where(prior, cell, "prior")
         curve = table.curve("curve", parts=BAND, **where)
         found.append({"curve_of": prior, "encoding": where["encoding"], **curve})
-    stages = stages_of(settings)
-    for prior in PRIORS:
-        rewards, greedy = (np.array([r["long"][prior][name] for r in results]) for name in ("rewards", "greedy"))
-        share = (greedy.mean(axis=0) / _column(results, "optimal_return").mean()).round(4).tolist()
-        row = {"learnt_on": prior, "stages": stages, "rewards": rewards.mean(axis=0).round(2).tolist()}
-        found.append({**row, "greedy_of_optimal": share})
+    found += [_stages_row(settings, results, prior) for prior in PRIORS]
     for prior, name in product(results[0]["masses"], INVARIANCES):
         masses = [r["masses"][prior][name] for r in results if name in r["masses"][prior]]
         if masses:
             found.append({"mass_on": name, "of": prior, "mass": mean_estimate(masses).to_dict()})
     return found + [{"drawn": r["drawn"]} for r in results if "drawn" in r]
+
+
+def _stages_row(settings: Mapping, results: Sequence[Mapping], prior: str) -> dict:
+    """A prior learnt on, by stage: rewards, the policy's return, and the share of runs that have learnt."""
+    rewards, greedy = (np.array([r["long"][prior][name] for r in results]) for name in ("rewards", "greedy"))
+    optimal = _column(results, "optimal_return")
+    return {
+        "learnt_on": prior,
+        "stages": stages_of(settings),
+        "rewards": rewards.mean(axis=0).round(2).tolist(),
+        "greedy_of_optimal": (greedy.mean(axis=0) / optimal.mean()).round(4).tolist(),
+        "share_learnt": stays_near(greedy, optimal).mean(axis=0).round(4).tolist(),
+    }

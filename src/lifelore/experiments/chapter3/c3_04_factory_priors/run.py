@@ -40,6 +40,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         "seen": components in training,
         "methods": list(_methods(settings, problem, priors)),
         "long": {name: _learnt_on(settings, problem, priors, name) for name in (PLAIN, *ADVICE, LEARNT)},
+        "optimistic": _learnt_on(settings, problem, priors, "incorrect", most_earned(problem))["greedy"],
         "masses": _masses(problem, at_default),
         "unseen": {name: _unseen(problem, at_default[name], name) for name in settings["encodings"]},
     }
@@ -85,7 +86,16 @@ def stages_of(settings: Mapping) -> list[int]:
     return np.unique(np.rint(np.linspace(0, settings["long_episodes"], STAGES + 1)[1:])).astype(int).tolist()
 
 
-def _learnt_on(settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior], name: str) -> dict:
+def most_earned(problem: Problem) -> float:
+    """A bound on the return of any state: every component procured, assembled and completed at once."""
+    task = problem.solved.task
+    rewards = task.factory.rewards
+    return rewards.completion + 2 * len(task.components) * rewards.use
+
+
+def _learnt_on(
+    settings: Mapping, problem: Problem, priors: Mapping[str, ActionPrior], name: str, first_q: float = 0.0
+) -> dict:
     """The default's use of a prior over ``long_episodes``: rewards at the end and by stage, and greedy returns."""
     default, rows = settings["default"], None
     if name != PLAIN:
@@ -94,7 +104,7 @@ def _learnt_on(settings: Mapping, problem: Problem, priors: Mapping[str, ActionP
         rows = learning.rows_of(problem, prior, encoding, default["ties"])
     schedule = schedule_of({**settings, "episodes": settings["long_episodes"]}, default["schedule"])
     stages = stages_of(settings)
-    curve, greedy = learning.learn_in_stages(problem, rows, schedule, stages)
+    curve, greedy = learning.learn_in_stages(problem, rows, schedule, stages, first_q)
     by_stage = [float(part.mean()) for part in np.split(curve.rewards, stages[:-1])]
     return {"last": float(curve.rewards[-settings["last"] :].mean()), "greedy": greedy, "rewards": by_stage}
 

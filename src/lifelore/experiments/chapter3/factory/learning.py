@@ -155,11 +155,15 @@ def learn_task(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple
 
 
 def learn_in_stages(
-    problem: Problem, rows: Rows | None, schedule: Schedule, stages: Iterable[int]
+    problem: Problem, rows: Rows | None, schedule: Schedule, stages: Iterable[int], first_q: float = 0.0
 ) -> tuple[Curve, list[float]]:
-    """The curve of a task learnt to the end, and the greedy policy's return after each of `stages` episodes."""
+    """The curve of a task learnt to the end, and the greedy policy's return after each of `stages` episodes.
+
+    Every value of Q starts at `first_q`.
+    """
     tables, own, world = problem.tables, stream(*problem.stream, "learner"), stream(*problem.stream, "world")
     learner = new_learner(tables.n_states, tables.n_actions, world, own)
+    learner.q.fill(first_q)
     curve, greedy = new_curve(schedule.epsilon.size), []
     for stage in stages:
         so_far = schedule._replace(epsilon=schedule.epsilon[:stage], alpha=schedule.alpha[:stage])
