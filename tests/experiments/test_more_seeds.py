@@ -88,6 +88,16 @@ def test_seeds_decide_what_one_leaves_open(toy, tmp_path):
     assert len(RAN) == 24
 
 
+def test_a_stored_result_without_a_counted_measure_is_run_again(toy, tmp_path):
+    reproduce.reproduce(["C3.1"], "full", jobs=1, out=tmp_path)
+    path = tmp_path / "C3.1" / "result.json"
+    stored = json.loads(path.read_text())
+    stored["measured"]["before"] = stored["measured"].pop("x")
+    path.write_text(json.dumps(stored))
+    (pool,) = run_seeds(["C3.1"], 2, "full", jobs=1, out=tmp_path)
+    assert [one["measured"]["x"]["n"] for one in pool["by_seed"]] == [6, 6]
+
+
 def test_a_verdict_that_no_number_can_turn_by_its_width_needs_no_more_seeds(toy, tmp_path):
     (far,) = reproduce.reproduce(["C3.1"], "full", {"shift": 5.0}, jobs=1, out=tmp_path)
     assert far["second"]["verdict"] == "holds"

@@ -86,16 +86,22 @@ def _after(ready: int, progress: Progress) -> Progress:
 
 
 def _stored(claim: Claim, out: Path, mode: str, settings: Mapping, seed: int) -> list[dict]:
-    """The stored result of a seed, if it has these settings and a second reading; else nothing."""
+    """The stored result of a seed, if it has these settings and all that the reading counts; else nothing."""
     kept = stored_result(result_folder(out / claim.id, mode), claim.id)
-    if kept is None or not kept.get("second"):
+    if kept is None or not kept.get("second") or not set(_counted(claim)) <= kept["measured"].keys():
         return []
     return [kept] if (kept["mode"], kept["settings"], kept["seed"]) == (mode, settings, seed) else []
 
 
+def _counted(claim: Claim) -> list[str]:
+    """The measures that the second reading counts, sorted."""
+    assert claim.second is not None, "run_seeds has looked"
+    return sorted({one.condition.measure for one in claim.second.conditions if one.role in COUNTED})
+
+
 def _pool(claim: Claim, results: Sequence[Mapping]) -> dict:
     assert claim.second is not None, "run_seeds has looked"
-    read = sorted({one.condition.measure for one in claim.second.conditions if one.role in COUNTED})
+    read = _counted(claim)
     missing = {"value": None, "ci95": None, "n": 0}
     measured = {name: [result["measured"].get(name, missing) for result in results] for name in read}
     pool = {name: rounded(pooled(numbers)) for name, numbers in measured.items()}
