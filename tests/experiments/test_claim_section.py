@@ -50,7 +50,9 @@ class TestEverySection:
         rows = counted_rows(claim, result)
         missed = [row.number for row in rows if row.answer != YES]
         (why,) = [
-            line for line in seen.splitlines() if re.match(rf"\*\*{verdict_now(result)}(\.|:|, but)", line, re.I)
+            line
+            for line in seen.splitlines()
+            if re.match(rf"\*\*{verdict_now(result)}(\.\*\*|\*\*:|\*\*, but)", line, re.I)
         ]
         named = re.findall(r"(?:not met|bound|measured): ([\d, ]+)\.", why, flags=re.I)
         assert sorted(int(n) for numbers in named for n in numbers.split(", ")) == missed
