@@ -40,8 +40,10 @@ OUT = Path("results/segmentation")
 BANDS = (0.0, 0.5, 0.8, 0.95, 1.01)
 """Of confidence."""
 NO_REAL_SCENES = (
-    f"The goals are of real scenes, which need {VARIABLE}: set it to a folder with osd/relations.csv and its clouds."
+    f"The goals are of real scenes, which need {VARIABLE}: "
+    "set it to a folder with osd/relations.csv and its clouds."
 )
+"""The note of a run without the real scenes."""
 Found = dict[str, list[FoundScene]]
 """The scenes as each method finds them."""
 
