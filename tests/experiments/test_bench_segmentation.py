@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from lifelore.app import bench_command
 from lifelore.core.relations import PairLabel
 from lifelore.experiments.bench.perception import segmentation
 from lifelore.experiments.bench.perception.segmentation_scenes import METHODS, TrueScene
@@ -59,6 +60,7 @@ def test_rows_goals_and_picture(by_hand, tmp_path):
     bands = [row for row in result["rows"] if "cut confidence" in row["name"] and row["name"].endswith("right")]
     assert sum(row["n"] for row in bands) == 4
     assert [goal["met"] for goal in result["goals"]].count(None) == 0
+    assert "notes" not in result
     assert told[-1][:2] == (2, 2)
     assert 0 < (tmp_path / "segmentation.png").stat().st_size <= 300_000
 
@@ -70,6 +72,15 @@ def test_without_real_scenes_the_goals_stay_open(by_hand, monkeypatch, tmp_path)
     assert {goal["met"] for goal in result["goals"]} == {None}
     assert not any(", real" in row["name"] for row in result["rows"])
     assert not list(tmp_path.iterdir())
+    assert [note for note in result["notes"] if "LIFELORE_DATA" in note] == result["notes"] != []
+
+
+def test_console_says_why_goals_on_real_scenes_stay_open(monkeypatch, capsys):
+    goals = segmentation._goals({})
+    document = {"bench": "segmentation", "rows": [], "goals": goals, "notes": [segmentation.NO_REAL_SCENES]}
+    monkeypatch.setattr("lifelore.experiments.bench.bench", lambda *_, **__: document)
+    bench_command.bench("segmentation", repeats=1)
+    assert "real scenes, which need LIFELORE_DATA" in " ".join(capsys.readouterr().out.split())
 
 
 def test_segments_are_coloured_as_the_objects_that_they_find():

@@ -26,6 +26,12 @@ def test_entries_are_numbered_and_name_tests_that_exist():
         assert f"def {name}(" in (ROOT / path).read_text(encoding="utf-8"), name
 
 
+def test_paths_that_entries_name_exist():
+    paths = set(re.findall(r"`((?:tests|src|docs|results|examples)/[^`:\s]+)", PAGE))
+    assert "tests/perception/reasoning/test_geometric_relations.py" in paths
+    assert [path for path in sorted(paths) if not (ROOT / path).exists()] == []
+
+
 def test_e1_printed_shares_need_nineteen_cells_or_thirty_eight():
     def shares(n_cells):
         return {f"{100 * k / (4 * n_cells):.2f}" for k in range(4 * n_cells + 1)}

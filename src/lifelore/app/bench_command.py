@@ -54,6 +54,8 @@ def _print(result: dict) -> None:
         goals.add_row(goal["name"], str(goal["goal"]), _number(goal["measured"]), met)
     console.print(rows)
     console.print(goals)
+    for note in result.get("notes", ()):
+        console.print(note)
 
 
 def _number(value) -> str:

@@ -177,6 +177,14 @@ def test_the_thesiss_rules_on_what_is_true():
     assert (found["true"], found["thesis"]) == ([], [["in", 3, 2]])
 
 
+def test_between_needs_no_adjacent():
+    """Erratum: the middle one of a row is between its neighbours without touching them, and the rule misses it."""
+    none = [PairLabel(2, 3, "none"), PairLabel(4, 3, "none"), PairLabel(2, 4, "none")]
+    apart = made([at(-0.09, 0), at(0, 0), at(0.09, 0)], [*ON_TABLE, *none])
+    found = compound_facts(apart)  # type: ignore[arg-type]
+    assert (found["true"], found["thesis"]) == ([["between", 3, 2, 4]], [])
+
+
 def test_the_other_side_of_the_table():
     pytest.importorskip("mujoco")
     from lifelore.domains.tabletop.physics import Tabletop

@@ -88,6 +88,7 @@ def bench(name: str, *, repeats: int = 7, map: str | None = None, progress: Prog
     dict
         ``{"bench", "rows": [{"name", "value", "unit", "ratio_to", "ratio"}], "goals": [{"name", "goal",
         "measured", "met"}]}``; `value`, `ratio`, `measured` and `met` are None where nothing could be measured.
+        Sometimes also ``"notes"``, sentences that say why.
 
     Raises
     ------

@@ -27,6 +27,7 @@ from lifelore.experiments.bench.perception.segmentation_scenes import (
     true_labels,
 )
 from lifelore.experiments.bench.rounds import at_least, at_most, estimated_row, row
+from lifelore.experiments.chapter2.scenes.real_scenes import VARIABLE
 from lifelore.experiments.chapter2.scoring.segmentation_scoring import segmentation_score
 from lifelore.perception.relations.relation_classifier import shipped_model
 
@@ -38,6 +39,11 @@ DRAWN = ("learn18", "learn38", "test49", "test53")
 OUT = Path("results/segmentation")
 BANDS = (0.0, 0.5, 0.8, 0.95, 1.01)
 """Of confidence."""
+NO_REAL_SCENES = (
+    f"The goals are of real scenes, which need {VARIABLE}: "
+    "set it to a folder with osd/relations.csv and its clouds."
+)
+"""The note of a run without the real scenes."""
 Found = dict[str, list[FoundScene]]
 """The scenes as each method finds them."""
 
@@ -46,7 +52,7 @@ def bench_segmentation(repeats: int, progress: Progress, out: Path = OUT) -> dic
     """Rows and goals; see `lifelore.experiments.bench.bench`. Each round adds simulated scenes; all count
     together.
 
-    Without the real scenes nothing is drawn and the goals stay open.
+    Without the real scenes nothing is drawn, the goals stay open, and a note says why.
     """
     real, model = real_true_scenes(), shipped_model()
     total, done = len(real) + SCENES * repeats, 0
@@ -69,7 +75,8 @@ def bench_segmentation(repeats: int, progress: Progress, out: Path = OUT) -> dic
         for name, results in by_method.items()
         for line in _rows(f"{name}, {where}", results)
     ]
-    return {"rows": rows, "goals": _goals({line["name"]: line["value"] for line in rows})}
+    goals = _goals({line["name"]: line["value"] for line in rows})
+    return {"rows": rows, "goals": goals} | ({} if real else {"notes": [NO_REAL_SCENES]})
 
 
 def _rows(name: str, results: Sequence[FoundScene]) -> list[dict]:
