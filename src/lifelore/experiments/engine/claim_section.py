@@ -25,7 +25,7 @@ from lifelore.experiments.engine.second_reading import GRID, MISSING, NO, OPEN, 
 
 MOST_WORDS = 250
 """Visible words of a claim, its heading and table included, its figure not."""
-NO_GRID = "Every condition is met; no choice was varied."
+NO_GRID = "Every condition is met; the verdict asks no grid of choices."
 PRIVATE = "Real scenes and labels are not public (`LIFELORE_DATA`); `--set real=false` runs the simulated part."
 
 

@@ -92,7 +92,7 @@ def _sentence(result: Mapping) -> str:
     """A line of the list: the claim's sentence, and the reason for its verdict."""
     claim = claim_of(result["claim"])
     reason = reason_in_words(claim, result)
-    how = "But" if verdict_now(result) == HOLDS else "Measured"
+    how = {HOLDS: "But", UNTESTED: "Why"}.get(verdict_now(result), "Measured")
     words = f" {how}: {reason}." if reason else ""
     return f"- {_link(claim.id)}{'' if result.get('second') else '¹'} {claim.sentence}{words}"
 
