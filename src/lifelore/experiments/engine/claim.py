@@ -37,7 +37,7 @@ MODES = ("quick", "full")
 MODULES = ("run", "measure", "figure")
 FUNCTIONS = ("cells", "run_cell", "measure", "rows", "draw")
 REQUIRED = {"title", "thesis", "where", "ran", "settings", "conditions", "rules"}
-OPTIONAL = {"limits", "named", "timed", "data", "second", "sentence", "reason", "more"}
+OPTIONAL = {"limits", "named", "timed", "data", "second", "sentence", "reason", "more", "refiled"}
 """Keys of ``claim.toml``."""
 
 Settings = Mapping[str, Any]
@@ -89,6 +89,8 @@ class Claim:
         Words for pages by condition, where the filed ones cannot be understood alone; they ask the same.
     more : str
         What else was run, and choices; folded on the page.
+    refiled : str
+        What was filed anew of the second reading after a run of it, and why; folded on the page.
     shared : tuple of str, optional
         The settings that `run_cell` reads, if claims with the same `run_cell` share their finished cells.
     """
@@ -117,6 +119,7 @@ class Claim:
     reason: str = ""
     plain: Mapping[str, str] = field(default_factory=dict)
     more: str = ""
+    refiled: str = ""
     shared: tuple[str, ...] | None = None
 
     @classmethod
@@ -174,6 +177,7 @@ class Claim:
             reason=data.get("reason", ""),
             plain={name: c["plain"] for name, c in explained if "plain" in c},
             more=data.get("more", ""),
+            refiled=data.get("refiled", ""),
             second=SecondReading.from_data(data["second"], predicate) if "second" in data else None,
             **{name: functions[0] for name, functions in found.items() if functions},
         )

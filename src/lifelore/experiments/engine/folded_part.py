@@ -36,6 +36,7 @@ def _second_reading(claim: Claim, result: Mapping) -> list[str]:
     rows = second_rows(claim, result["measured"])
     return [
         f"**Second reading: {result['second']['verdict']}.** {claim.second.why}", "",
+        *([f"**Filed again.** {claim.refiled}", ""] if claim.refiled else []),
         *condition_table(rows, {row: claim.words_of(row.condition) for row in rows}, result["measured"], n=True),
     ]  # fmt: skip
 
