@@ -22,7 +22,11 @@ QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/test_h
 gc.set_threshold(100_000)
 
 # On a busy machine, or where a kernel is compiled on its first call, an example takes as long as it takes.
-settings.register_profile("patient", deadline=None, suppress_health_check=[HealthCheck.too_slow])
+PATIENT = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
+# A rare example that fails must not stop a change that has nothing to do with it: each run draws the same ones.
+settings.register_profile("patient", PATIENT, derandomize=True)
+# New examples at every run, and more of them: --hypothesis-profile search.
+settings.register_profile("search", PATIENT, max_examples=1000)
 settings.load_profile("patient")
 
 

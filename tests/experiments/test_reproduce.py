@@ -55,15 +55,17 @@ def test_ctrl_c_keeps_what_is_finished_and_the_next_run_goes_on(toy, tmp_path):
         if done == 2:
             raise KeyboardInterrupt
 
+    # Many cells: these take microseconds, and more are finished before the run has stopped.
+    many = {"n": 300}
     with pytest.raises(KeyboardInterrupt):
-        reproduce(["C3.1"], out=tmp_path, jobs=1, progress=stop)
+        reproduce(["C3.1"], overrides=many, out=tmp_path, jobs=1, progress=stop)
     before = len(RAN)
     kept = len(list((tmp_path / "C3.1" / "cells").glob("*.json")))
-    assert 2 <= kept == before < 6
+    assert 2 <= kept == before < 300
     assert not (tmp_path / "C3.1" / "result.json").exists()
-    resumed = reproduce(["C3.1"], out=tmp_path, jobs=1)[0]
-    assert sorted(RAN) == [0, 1, 2, 3, 4, 5]
-    fresh = reproduce(["C3.1"], out=tmp_path / "fresh")[0]
+    resumed = reproduce(["C3.1"], overrides=many, out=tmp_path, jobs=1)[0]
+    assert sorted(RAN) == list(range(300))
+    fresh = reproduce(["C3.1"], overrides=many, out=tmp_path / "fresh")[0]
     assert {**resumed, "seconds": 0} == {**fresh, "seconds": 0}
 
 

@@ -238,7 +238,7 @@ def test_live_serves_the_pages_as_long_as_it_lives(where: Path, open_page: Opene
 
 @pytest.mark.parametrize("domain", [FACTORY, "lattice"])
 def test_the_service_of_a_life_that_is_killed_ends(where: Path, domain: str):
-    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", domain, "--tasks", "200"]
+    command = [sys.executable, "-m", "lifelore.app.command_line", "live", "--domain", domain, "--tasks", "100000"]
     options = ["--memory", str(where), "--robot", "bo", "--serve", "--port", "0"]
     with subprocess.Popen([*command, *options], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as life:
         assert life.stderr is not None

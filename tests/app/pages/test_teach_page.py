@@ -101,7 +101,9 @@ def test_a_whole_lesson_by_keyboard(serve_pages: Callable[..., str], open_page: 
         teach(page, 2, number)
         assert page.inner_text("#items").count("assembled") == 2
         page.wait_for_selector("#next:focus")
-        page.wait_for_function("() => document.getElementById('curves').dataset.episodes === '100'")
+        page.wait_for_function(
+            "() => document.getElementById('curves').dataset.episodes === '100'", timeout=120_000
+        )
         words = f"with a prior from {number + 1} demonstration"
         page.wait_for_function(
             "words => document.getElementById('learning-status').textContent.includes(words)", arg=words

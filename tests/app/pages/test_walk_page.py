@@ -74,6 +74,11 @@ def moves_down(building: WalkBuilding, state: int, distance: NDArray[np.int32]) 
     return moves
 
 
+def same_errand(page: Page) -> None:
+    """Let all walks of the page, which is not open yet, have one name, whose start is beside a wall."""
+    page.add_init_script("crypto.getRandomValues = (numbers) => numbers.fill(8)")
+
+
 def closed_move(page: Page) -> str:
     words = page.locator("#seen").inner_text().split(".")[0]
     return next(move for move in MOVE_NAMES if move not in words)
@@ -82,7 +87,9 @@ def closed_move(page: Page) -> str:
 def test_a_person_gets_lost_is_advised_and_finds_the_place(
     serve_pages: Callable[..., str], open_page: Callable[..., Page], tmp_path: Path
 ):
-    page = open_page(serve_pages() + "/walk")
+    page = open_page(address := serve_pages())
+    same_errand(page)
+    page.goto(address + "/walk")
     walker = Walker(page)
     walker.begin(MAZE)
     expect(page.locator("#map")).to_be_focused()
@@ -226,7 +233,9 @@ def test_two_tabs_of_one_walk_agree(serve_pages: Callable[..., str], open_page: 
 def test_without_advice_there_are_no_arrows_and_the_curve_goes_on(
     serve_pages: Callable[..., str], open_page: Callable[..., Page]
 ):
-    page = open_page(serve_pages() + "/walk", PHONE)
+    page = open_page(address := serve_pages(), PHONE)
+    same_errand(page)
+    page.goto(address + "/walk")
     walker = Walker(page)
     page.get_by_label("Advice when I seem lost").uncheck()
     walker.begin(MAZE)

@@ -53,3 +53,14 @@ def test_bad_values_are_refused():
         CategoricalOutcomes([1.0, 1.0], [[[0.5, 0.5]]])
     with pytest.raises(InputError, match="count must be positive"):
         CategoricalOutcomes([1.0, 2.0], [[[0.5, 0.5]]], count=0)
+
+
+def test_a_chain_of_near_values_keeps_its_ends_apart():
+    # Each value is the same as its neighbour, but the first and the third differ: no sample is without a value.
+    model = CategoricalOutcomes.from_samples([[[0, 9e-10]], [[1.8e-9, 5]]])
+    assert model.values.tolist() == [0, 1.8e-9, 5]
+    # Far from 0 the larger of two sizes counts, on both sides of 0.
+    for sign in (1.0, -1.0):
+        model = CategoricalOutcomes.from_samples([[[sign * 1e6, sign * (1e6 + 9e-4)]], [[sign * 5, sign * 5]]])
+        assert model.cell_of(sign * (1e6 + 9e-4)) == model.cell_of(sign * 1e6)
+        assert model.cells_of(np.array([sign * (1e6 + 9e-4)])).tolist() == [model.cell_of(sign * 1e6)]

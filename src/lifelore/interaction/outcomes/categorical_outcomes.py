@@ -112,14 +112,16 @@ class CategoricalOutcomes(CountedOutcomes):
         below = max(above - 1, 0)
         to_below, to_above = abs(value - float(self.values[below])), abs(value - float(self.values[above]))
         nearest, apart = (below, to_below) if to_below < to_above else (above, to_above)
-        return nearest if apart <= SAME * max(1.0, abs(value)) else None
+        return nearest if apart <= SAME * max(1.0, abs(value), abs(float(self.values[nearest]))) else None
 
     def _cells(self, values: Array) -> NDArray[np.int64]:
         above = np.minimum(np.searchsorted(self.values, values), self.values.size - 1)
         below = np.maximum(above - 1, 0)
         nearer = np.abs(values - self.values[below]) < np.abs(values - self.values[above])
         nearest = np.where(nearer, below, above)
-        return np.where(np.abs(values - self.values[nearest]) <= _tolerance(values), nearest, -1)
+        known = self.values[nearest]
+        tolerance = np.maximum(_tolerance(values), _tolerance(known))
+        return np.where(np.abs(values - known) <= tolerance, nearest, -1)
 
     def _sizes(self) -> Array:
         return np.ones_like(self.values)
@@ -142,5 +144,16 @@ def _tolerance(values: Array) -> Array:
 
 
 def _distinct(values: Array) -> Array:
+    """The values in rising order, each that is the same as the one kept before it left out.
+
+    In a chain of near values the ends may differ: each is compared with the last that is kept, not with its
+    neighbour.
+    """
     found = np.unique(values)
-    return found[np.concatenate([[True], np.diff(found) > _tolerance(found[:-1])])]
+    if (np.diff(found) > _tolerance(found[:-1])).all():
+        return found
+    kept: list[float] = []
+    for value in found.tolist():
+        if not kept or value - kept[-1] > SAME * max(1.0, abs(kept[-1])):
+            kept.append(value)
+    return np.array(kept)
