@@ -142,7 +142,7 @@ def test_pages_of_a_quick_run(tmp_path):
     assert f"- [C3.1](chapter3.md#c3-1) {claim_of('C3.1').sentence}" in index
     assert "- C3.2: built, its full run has not been made yet." in index
     for condition in claim_of("C3.1").predicate.conditions:
-        assert f"| {condition.words} | " in page
+        assert f"| {claim_of('C3.1').words_of(condition)} | " in page
         assert number_in_words(result["measured"][condition.measure]) in page
 
 
