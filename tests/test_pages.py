@@ -22,7 +22,7 @@ EXPECTED = {
         "Relation(a=3, b=4, relation='on'",
         "stands_on",
     ],
-    "start/learning": ["what the thesis reports", "first reading", "a quick run, no evidence"],
+    "start/learning": ["what the thesis reports", "; measured ", "results/C3.2/figure.png"],
     "start/personalisation": ["3 types found", "probability", "uplift"],
     "nav2": ["11:15 dock 4.975,12.525: lore"],
     "perception": [
