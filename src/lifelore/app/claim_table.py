@@ -7,6 +7,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from lifelore.experiments.engine.claim import Claim
 from lifelore.experiments.engine.claim_section import verdict_now
 from lifelore.experiments.engine.condition_table import counted_rows, measured_in_words, measured_now
 from lifelore.experiments.engine.registry import claim_of
@@ -22,7 +23,7 @@ def print_claims(results: Sequence[Mapping], out: str) -> None:
         heading = Text.assemble(
             f"{claim.id} {claim.title}: ", (verdict_now(result), "bold"), f" ({_beside(result)})"
         )
-        console.print(heading, _conditions(result), highlight=False)
+        console.print(heading, _conditions(claim, result), highlight=False)
         figure = result_folder(Path(out) / claim.id, result["mode"]) / "figure.png"
         console.print(f"{figure}\n", soft_wrap=True, highlight=False)
 
@@ -33,12 +34,12 @@ def _beside(result: Mapping) -> str:
     return first + ("; a quick run, no evidence" if result["mode"] == "quick" else "")
 
 
-def _conditions(result: Mapping) -> Table:
+def _conditions(claim: Claim, result: Mapping) -> Table:
     measured, lines = measured_now(result), Table.grid(padding=(0, 2))
-    for row in sorted(counted_rows(claim_of(result["claim"]), result), key=lambda row: row.answer == YES):
+    for row in sorted(counted_rows(claim, result), key=lambda row: row.answer == YES):
         number = measured_in_words(row.condition, measured)
         lines.add_row(
             Text(f"  {row.answer}", "bold" if row.answer != YES else ""),
-            Text(f"{row.condition.words}\nasked {row.asked}; measured {number}"),
+            Text(f"{claim.words_of(row.condition)}\nasked {row.asked}; measured {number}"),
         )
     return lines

@@ -88,10 +88,9 @@ def test_a_frame_comes_every_thirtieth_of_a_second(client):
         for _ in range(46):
             assert socket.receive_json()["kind"] == "frame"
             arrivals.append(time.perf_counter())
-    # Deadlines are absolute: 45 gaps take 1.5 s whatever each frame costs. On a loaded machine the first frame may
-    # arrive late, and others later still.
-    assert 1.2 < arrivals[-1] - arrivals[0] < 4.5
-    assert 0.02 < np.median(np.diff(arrivals)) < 0.1
+    # Deadlines are absolute: 45 gaps take 1.5 s whatever each frame costs; a loaded machine may be later.
+    assert 1.45 < arrivals[-1] - arrivals[0] < 2.5
+    assert 0.028 < np.median(np.diff(arrivals)) < 0.045
 
 
 def test_a_free_round_shows_its_belief_on_request_and_stores_nothing(client):

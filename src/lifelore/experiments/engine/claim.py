@@ -183,7 +183,7 @@ class Claim:
         )
 
     def words_of(self, condition: Condition) -> str:
-        """The words of a condition on pages."""
+        """The words of a condition for people to read."""
         return self.plain.get(condition.name, condition.words)
 
     def causes_in_words(self) -> dict[str, str]:

@@ -42,9 +42,9 @@ READINGS = f"""## What a verdict means
 
 The conditions of each verdict were filed, as data, before the run that it judges; a test compares the commits.
 Ratios and differences are paired. Each claim also has a *first reading*, filed before its first full run, with
-rules of its own. The *second reading*, which is told here, has one meaning of each verdict for all claims; it was
-filed after the first result was known. A reading that was filed again after a run says so in its section.
-[Both readings](#both-readings) of every claim stand below, and in the folded part of its section.
+rules of its own. The verdicts here are those of the *second reading*, which has one meaning of each verdict for
+all claims; it was filed after the first result was known. A reading that was filed again after a run says so in
+its section. [Both readings](#both-readings) of every claim stand below, and in the folded part of its section.
 
 Where a verdict would turn if one number moved by its interval's width, or a share of the grid by one choice,
 three more seeds are run at full size and pooled (`lifelore reproduce --full --seeds 4 C3.17`): the mean of their

@@ -128,6 +128,8 @@ def run_plan(
     jobs = usable_cores() if jobs is None else jobs
     if jobs < 1:
         raise InputError(f"jobs must be at least 1, got {jobs}")
+    if not plan:
+        return
 
     asked = [_cell_runs(run, Path(out)) for run in plan]
     places = [[one.store.path(one.cell) for one in own] for own in asked]

@@ -60,10 +60,12 @@ def verify(
         A result is no JSON, or was made with settings that the claim has no more.
     """
     results = [_stored(Path(out), claim_id) for claim_id in dict.fromkeys(ids or _with_results(Path(out)))]
-    plan = [_as_stored(result) for result in results if not _missing(result)]
+    missing = {result["claim"]: _missing(result) for result in results}
+    ready = [result for result in results if not missing[result["claim"]]]
     with TemporaryDirectory() as folder:
-        again = iter(run_plan(plan, jobs, folder, progress, engine, scheduler))
-        return [_not_run(stored) if _missing(stored) else compared(stored, next(again)) for stored in results]
+        again = run_plan([_as_stored(result) for result in ready], jobs, folder, progress, engine, scheduler)
+        found = {stored["claim"]: compared(stored, new) for stored, new in zip(ready, again, strict=True)}
+    return [found.get(result["claim"]) or _not_run(result, missing[result["claim"]]) for result in results]
 
 
 def compared(stored: Mapping[str, Any], again: Mapping[str, Any]) -> dict[str, Any]:
@@ -90,9 +92,10 @@ def _missing(stored: Mapping[str, Any]) -> list[str]:
     return [name for name, key in made_with.items() if key is not None and data_hash(name) is None]
 
 
-def _not_run(stored: Mapping[str, Any]) -> dict[str, Any]:
+def _not_run(stored: Mapping[str, Any], missing: list[str]) -> dict[str, Any]:
+    """What `verify` gives for a claim whose outside data are not here."""
+    head = {"claim": stored["claim"], "equal": None, "missing": missing, "of": _commit_of(stored)}
     nothing = {"verdict": None, "seconds": 0.0, "made": None, "n_differences": 0, "differences": [], "changed": []}
-    head = {"claim": stored["claim"], "equal": None, "missing": _missing(stored), "of": _commit_of(stored)}
     return head | nothing
 
 
