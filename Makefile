@@ -21,7 +21,7 @@ DEEP_TESTS = $(shell grep -rl --include='*.py' 'mark\.deep' tests)
 # So has CUDA: numba-cuda redirects numba.cuda, and its compiler takes half a gigabyte. No test needs a GPU.
 CUDA := .venv-cuda
 
-PYTHON_FILES := src tests examples docs/conf.py
+PYTHON_FILES := src reproduction benchmarks tests examples docs/conf.py docs/pictures
 
 .PHONY: help setup setup-test demo test test-fast test-deep test-cluster test-cuda coverage check format bench soak docs reproduction-pages \
 	wheel-test reproduce clean
@@ -69,7 +69,7 @@ $(DEEP)/.ready: pyproject.toml constraints.txt constraints-deep.txt
 test-cluster: setup-test ## The tests of the extra cluster (dask.distributed), in .venv
 	$(PIP) --editable '.[cluster]'
 	$(BIN)/python -c "import distributed"
-	$(BIN)/python -m pytest tests/experiments/test_cluster.py
+	$(BIN)/python -m pytest tests/reproduction/test_cluster.py
 
 test-cuda: $(CUDA)/.ready ## The tests of the extra cuda (numba-cuda; a GPU is used if there is one), in .venv-cuda
 	$(CUDA)/bin/python -c "import numba_cuda"
@@ -91,15 +91,15 @@ format: setup-test ## Mend formatting and what lint can mend
 	$(BIN)/ruff format $(PYTHON_FILES)
 	$(BIN)/ruff check --fix $(PYTHON_FILES)
 
-bench: setup-test ## Speed beside peers, side by side in one process
-	$(BIN)/lifelore bench kernels
+bench: setup-test ## Speed beside peers, side by side in one process: make bench NAME=kernels
+	$(BIN)/python -m benchmarks $(NAME)
 
 soak: setup-test ## Long runs: 200 kills of lives, 50 of the service under load, 100,000 hostile clouds
 	$(BIN)/python -m pytest -m soak
 
 reproduction-pages: setup-test ## The pages of docs/reproduction and the gallery from the committed results
-	$(BIN)/python -m lifelore.experiments.engine.report
-	$(BIN)/python -m lifelore.experiments.engine.gallery
+	$(BIN)/python -m reproduction.engine.report
+	$(BIN)/python -m reproduction.engine.gallery
 
 docs: reproduction-pages $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
 	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs

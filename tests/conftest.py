@@ -13,9 +13,9 @@ import pytest
 from hypothesis import HealthCheck, settings
 
 Places = Callable[[str], str]
-SLOW = ("experiments", "app", "figures")
+SLOW = ("reproduction", "benchmarks", "app", "figures")
 """Folders whose tests run claims and processes or draw pictures: `make test-fast` leaves them out."""
-QUICK = ("experiments/test_predicate.py", "app/test_console.py", "figures/test_heat_grid.py")
+QUICK = ("reproduction/test_predicate.py", "app/test_console.py", "figures/test_heat_grid.py")
 """Quick files of these folders, a file a room."""
 
 # As the program itself does: imported modules and collected tests all stay, so the collector finds little garbage.
@@ -53,7 +53,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def scope_of(nodeid: str) -> str:
     """The claim of a test of the registry, else the file: tests of a scope share a worker and so a fixture."""
     file = nodeid.partition("::")[0]
-    claim = re.search(r"\[(C\d+\.\d+)\]$", nodeid) if file.endswith("experiments/test_registry.py") else None
+    claim = re.search(r"\[(C\d+\.\d+)\]$", nodeid) if file.endswith("reproduction/test_registry.py") else None
     return claim[1] if claim else file
 
 

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from lifelore.experiments.bench.agent import changing_customers as case
+from benchmarks.agent import changing_customers as case
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "long_lived.md").read_text(encoding="utf-8")

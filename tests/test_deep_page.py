@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.action.deep_worlds import GUIDED, SEVEN, UNIFORM
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.prior_file import load_prior, save_prior
-from lifelore.experiments.bench.action.deep_worlds import GUIDED, SEVEN, UNIFORM
 
 ROOT = Path(__file__).parents[1]
 PAGE = (ROOT / "docs" / "deep_rl.md").read_text(encoding="utf-8")

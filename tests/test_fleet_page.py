@@ -102,7 +102,7 @@ def test_the_page_shows_its_results(part):
 
 
 def test_the_settings_are_those_of_the_benchmark():
-    from lifelore.experiments.bench.fleet import customer_fleet, fleet
+    from benchmarks.fleet import customer_fleet, fleet
     from lifelore.memory import leases, sqlite_file
 
     assert f"`lifelore bench fleet --repeats {len(result('fleet')['rounds_to_competence']['1'])}`" in PAGE

@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.interaction.reuse import EI
 from lifelore.app.command_line import run as run_command
-from lifelore.experiments.bench.interaction.reuse import EI
-from lifelore.experiments.engine.claim_section import verdict_now
-from lifelore.experiments.engine.report import read_results
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.outcomes.categorical_outcomes import CategoricalOutcomes
 from lifelore.interaction.selection import RULES, ExpectedImprovement, Greedy
+from reproduction.engine.claim_section import verdict_now
+from reproduction.engine.report import read_results
 
 RESULTS = Path(__file__).parents[1] / "results"
 PAGE = (Path(__file__).parents[1] / "docs" / "policy_reuse.md").read_text(encoding="utf-8")

@@ -10,9 +10,9 @@ import pytest
 import typer
 
 import lifelore
+from benchmarks import BENCHES
 from lifelore.app import command_line
 from lifelore.domains.worlds import domain_names
-from lifelore.experiments.bench import BENCHES
 
 HEAVY = ("numba", "sklearn", "matplotlib", "sqlite3", "scipy", "gymnasium", "numpy")
 TOLD_WHAT_IT_IMPORTED = """

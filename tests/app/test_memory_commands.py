@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from lifelore.app.memory_table import print_memory
-from lifelore.experiments.engine.condition_table import counted_rows
-from lifelore.experiments.engine.registry import claim_of
 from lifelore.memory import open_memory
+from reproduction.engine.condition_table import counted_rows
+from reproduction.engine.registry import claim_of
 
 OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
 REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}

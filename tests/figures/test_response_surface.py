@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 from matplotlib.patches import Circle, Rectangle
 
+from docs.pictures.figure_graph_models import draw_interaction_model
+from docs.pictures.figure_response_surface import draw_response_surface
 from lifelore.core.errors import InputError
-from lifelore.experiments.pictures.figure_graph_models import draw_interaction_model
-from lifelore.experiments.pictures.figure_response_surface import draw_response_surface
 from lifelore.figures.style import save_figure
 
 MEAN = np.array([[1.0, 3.0, 2.0], [0.0, 2.0, 2.5], [-1.0, 0.5, 4.0]])

@@ -3,21 +3,21 @@
 import numpy as np
 import pytest
 
+from docs.pictures.figure_graph_models import draw_type_model
+from docs.pictures.figure_performance_curves import draw_performance_curves
+from docs.pictures.figure_reserve_map import draw_reserve_maps
 from lifelore.core.errors import NotFoundError
 from lifelore.domains.golf.golf import CLUBS, EDGES, HOLES, Golf
 from lifelore.domains.surveillance.surveillance import BASE, SIDE, Surveillance
 from lifelore.domains.telephone.telephone import ANGRY, HUNG_UP, OPEN, STATES, SUCCESS, reward
-from lifelore.experiments.chapter4.c4_03_telephone_signals.figure import EDGES as CALL_EDGES
-from lifelore.experiments.chapter4.c4_03_telephone_signals.figure import PLACES, draw_call_graph
-from lifelore.experiments.chapter4.c4_03_telephone_signals.run import SIGNAL_OF_PATH
-from lifelore.experiments.chapter4.golf.category_bars import draw_category_bars
-from lifelore.experiments.chapter4.reuse.looks import LOOKS, look_of
-from lifelore.experiments.chapter4.reuse.rules import NEAR_GREEDY, RULES_SHOWN
-from lifelore.experiments.chapter4.surveillance.peers import PEERS
-from lifelore.experiments.pictures.figure_graph_models import draw_type_model
-from lifelore.experiments.pictures.figure_performance_curves import draw_performance_curves
-from lifelore.experiments.pictures.figure_reserve_map import draw_reserve_maps
 from lifelore.figures.style import new_figure
+from reproduction.chapter4.c4_03_telephone_signals.figure import EDGES as CALL_EDGES
+from reproduction.chapter4.c4_03_telephone_signals.figure import PLACES, draw_call_graph
+from reproduction.chapter4.c4_03_telephone_signals.run import SIGNAL_OF_PATH
+from reproduction.chapter4.golf.category_bars import draw_category_bars
+from reproduction.chapter4.reuse.looks import LOOKS, look_of
+from reproduction.chapter4.reuse.rules import NEAR_GREEDY, RULES_SHOWN
+from reproduction.chapter4.surveillance.peers import PEERS
 
 
 def test_category_bars_show_the_tables():

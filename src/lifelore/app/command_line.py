@@ -32,7 +32,6 @@ app = typer.Typer(
 def _register() -> None:
     from lifelore.app import (
         advise_command,
-        bench_command,
         doctor_command,
         learn_from_command,
         learn_relations_command,
@@ -62,8 +61,7 @@ def _register() -> None:
     app.add_typer(reuse_command.reuse, name="reuse")
     app.add_typer(memory_commands.memory, name="memory")
     app.command("serve")(serve_command.serve)
-    app.command("reproduce")(reproduce_command.reproduce)
-    app.command("bench")(bench_command.bench)
+    app.command("reproduce")(reproduce_command.reproduce_verb())
     app.command("doctor")(doctor_command.doctor)
 
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from tests.agent.long_lived.doors import Doors, DoorTask, N
 
 from lifelore.agent.long_lived.changing_recognition import ChangingRecognition
 from lifelore.agent.long_lived.knowledge import Knowledge
@@ -11,6 +10,7 @@ from lifelore.agent.long_lived.recognition import Recognition
 from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.core.errors import InputError
 from lifelore.domains.task_stream import DrawnTask, TaskStream
+from tests.agent.long_lived.doors import Doors, DoorTask, N
 
 FULL = AGENTS["full"]
 CHANGE, UNKNOWN = 0.1, 0.05

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from tests.agent.long_lived.doors import Doors
 
 from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts, curious_types
 from lifelore.agent.long_lived.explanation import explained, task_document
@@ -12,6 +11,7 @@ from lifelore.agent.long_lived.task_family import AGENTS
 from lifelore.core.errors import InputError
 from lifelore.core.protocols import Record
 from lifelore.domains.task_stream import TaskStream
+from tests.agent.long_lived.doors import Doors
 
 LIVING = LivingSettings(n_episodes=6)
 

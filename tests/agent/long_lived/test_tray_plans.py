@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from tests.agent.long_lived.test_tray_features import TARGET, box
 
 from lifelore.agent.long_lived.families.outcome_planning import OutcomeModel, OutcomePlanner
 from lifelore.agent.long_lived.families.tray_features import PerceivedTray
@@ -37,6 +36,7 @@ from lifelore.agent.long_lived.families.tray_states import (
 )
 from lifelore.domains.tabletop_job.events import Events
 from lifelore.domains.tabletop_job.job import PICK
+from tests.agent.long_lived.test_tray_features import TARGET, box
 
 CUBE = box((0, 0), (0.02, 0.02, 0.02), 0.05)
 BESIDE = box((0.052, 0.0), (0.06, 0.04, 0.05))

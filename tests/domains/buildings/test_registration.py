@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from benchmarks.lives.recognition import recognised
+from benchmarks.lives.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
 from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, OccupancyMap
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import (
@@ -12,8 +14,6 @@ from lifelore.domains.buildings.registration import (
     register,
     register_near,
 )
-from lifelore.experiments.bench.lives.recognition import recognised
-from lifelore.experiments.bench.lives.resaved_maps import cropped, noisy, padded, refurnished, shifted, turned
 
 OFFICE = office_map(1, 20.0, 14.0)
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.patches import FancyArrowPatch, Polygon
 
+from docs.pictures.scene_layers import draw_layers, predicate
 from lifelore.core.labelled_cloud import LabelledCloud
-from lifelore.experiments.pictures.scene_layers import draw_layers, predicate
 from lifelore.figures.gallery import draw_gallery
 from lifelore.figures.scenes import scene_picture
 from lifelore.figures.scenes.scene_document import Bond

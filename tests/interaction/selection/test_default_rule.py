@@ -9,8 +9,6 @@ import pytest
 from lifelore.agent.reuse.fit import FitSettings
 from lifelore.agent.reuse.study import Study
 from lifelore.app import reuse_command
-from lifelore.experiments.chapter4.c4_17_default_rule.measure import CANDIDATES, decided_rule
-from lifelore.experiments.chapter4.c4_17_default_rule.run import RULES as COMPARED
 from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
 from lifelore.interaction.reuse.user_beliefs import UserBeliefs
@@ -19,6 +17,8 @@ from lifelore.interaction.signals.category_signal import CategorySignal
 from lifelore.interaction.signals.joint_signal import JointSignal
 from lifelore.interaction.signals.likelihood_signal import LikelihoodSignal
 from lifelore.interaction.signals.return_signal import ReturnSignal
+from reproduction.chapter4.c4_17_default_rule.measure import CANDIDATES, decided_rule
+from reproduction.chapter4.c4_17_default_rule.run import RULES as COMPARED
 
 RESULT = Path(__file__).parents[3] / "results" / "C4.17" / "result.json"
 

@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.experiments.chapter2.scoring.segmentation_scoring import overlaps, segmentation_score
 from lifelore.perception.clouds.cloud_file import read_cloud
 from lifelore.perception.clouds.point_cloud import PointCloud
 from lifelore.perception.segmentation.convexity_segmentation import convex_objects
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
 from lifelore.perception.segmentation.surface_voxels import surface_voxels
 from lifelore.perception.segmentation.table_frame import to_scene
+from reproduction.chapter2.scoring.segmentation_scoring import overlaps, segmentation_score
 
 CAMERA = np.array([0.3, -0.9, 0.7])
 STEP, NOISE = 0.002, 0.0005

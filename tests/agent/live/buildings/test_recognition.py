@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from benchmarks.lives.resaved_maps import cropped, noisy, padded, shifted, turned
 from lifelore.agent.live.buildings.building_memory import buildings_in, forget_building
 from lifelore.agent.live.buildings.building_record import (
     Building,
@@ -21,7 +22,6 @@ from lifelore.domains.buildings.occupancy_map import FREE, OCCUPIED, UNKNOWN, Oc
 from lifelore.domains.buildings.office import office_map
 from lifelore.domains.buildings.registration import IDENTITY
 from lifelore.domains.worlds import WorldSettings
-from lifelore.experiments.bench.lives.resaved_maps import cropped, noisy, padded, shifted, turned
 from lifelore.memory import open_memory
 
 OFFICE = office_map(1, 14.0, 12.0)

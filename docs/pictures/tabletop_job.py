@@ -1,0 +1,52 @@
+"""A tabletop job done in the best way, and done carelessly, as the depth camera sees it.
+
+``python -m docs.pictures.tabletop_job`` draws ``docs/pictures/tabletop_job.png``; it needs the
+extra ``sim``.
+"""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT
+from lifelore.domains.tabletop_job.best_return import OutcomeTree
+from lifelore.domains.tabletop_job.job import HAND_OVER_GENTLY, PICK, PUSH_APART, VERBS, TabletopJob
+from lifelore.domains.tabletop_job.job_types import job_type_named
+from lifelore.domains.tabletop_job.tray import Tray, sample_tray
+from lifelore.figures.scenes.cloud_sequence import draw_cloud_sequence
+from lifelore.figures.style import save_figure
+
+PATH = Path("docs/pictures/tabletop_job.png")
+TRAY = 7
+"""Of seed 0: a bar lies across the target and its neighbour."""
+BAR = 3
+TYPE = job_type_named("patient/firm")
+
+
+def draw_tabletop_job():
+    """The best sequence above, and below a push at the bar before the target is picked."""
+    tray = sample_tray(0, TRAY)
+    n, target = len(tray.shapes), tray.target
+    best = OutcomeTree(tray, TYPE.gripper).best(TYPE.user).actions
+    careless = [PUSH_APART * n + BAR, PICK * n + target, HAND_OVER_GENTLY * n + target]
+    pictures = [*_follow(tray, best, "best possible"), *_follow(tray, careless, "careless")]
+    clouds, captions = zip(*pictures, strict=True)
+    return draw_cloud_sequence(clouds, captions, target + FIRST_OBJECT, columns=len(best) + 1)
+
+
+def _follow(tray: Tray, actions: Sequence[int], title: str) -> list[tuple[LabelledCloud, str]]:
+    """The clouds before and after each action, with captions."""
+    job = TabletopJob(tray, TYPE)
+    pictures = [(job.look(labelled=True), title)]
+    for action in actions:
+        verb, number = divmod(action, job.n_objects)
+        observation, reward, _ = job.step(action)
+        assert observation.last is not None
+        spilled = f", {len(observation.last.spilled)} spilled" if observation.last.spilled else ""
+        caption = f"{VERBS[verb]} {number + FIRST_OBJECT}\n{reward:+.1f} points{spilled}"
+        pictures.append((job.look(labelled=True), caption))
+    return pictures
+
+
+if __name__ == "__main__":
+    save_figure(draw_tabletop_job(), PATH)

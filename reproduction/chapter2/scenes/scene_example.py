@@ -1,0 +1,86 @@
+"""A perceived scene as a row of a result, small enough to be committed, and the picture of such rows."""
+
+import base64
+import zlib
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.figures.gallery import PictureOfScene, draw_gallery
+from lifelore.perception.clouds.voxel import voxelised
+from lifelore.perception.scene import Scene
+from lifelore.perception.scene_json import scene_document
+from reproduction.chapter2.scenes.perturbation import part_of
+
+MOST_POINTS = 5000
+_STEP = 0.0005
+"""Metres: places are stored to half a millimetre."""
+_AROUND = 0.05
+"""Metres of table stored around the objects."""
+
+
+def scene_row(scene: Scene, caption: str) -> dict:
+    """``{"example": caption, "camera", "cloud", "document"}``, plain data of some 30 kB."""
+    cloud, whole = _thinned(_trimmed(scene.cloud)), scene_document(scene)
+    document: dict[str, Any] = {
+        "objects": [
+            {
+                "id": item["id"],
+                "contact_points": [{"xyz": _short(node["xyz"])} for node in item["contact_points"]],
+                "edges": item["edges"],
+            }
+            for item in whole["objects"]
+        ],
+        "relations": whole["relations"],
+        "holes": [{"outline": [_short(place) for place in hole["outline"]]} for hole in whole["holes"]],
+        "contact_edges": whole["contact_edges"],
+    }
+    camera = None if cloud.camera is None else _short(cloud.camera)
+    return {"example": caption, "camera": camera, "cloud": _packed(cloud), "document": document}
+
+
+def scene_of_row(row: Mapping) -> PictureOfScene:
+    """(cloud, document, caption), as `figures.gallery` takes them."""
+    table = np.frombuffer(zlib.decompress(base64.b64decode(row["cloud"])), np.int16).reshape(4, -1)
+    camera = None if row["camera"] is None else np.array(row["camera"], float)
+    cloud = LabelledCloud(np.asarray(table[:3].T * _STEP, np.float64), table[3].astype(np.int64), None, camera)
+    return cloud, row["document"], row["example"]
+
+
+def examples_of(result: Mapping, captions: Mapping[str, str] | None = None) -> list[PictureOfScene]:
+    """The examples of a result as a gallery takes them; `captions` replaces the captions that it names."""
+    found = [scene_of_row(row) for row in result["rows"] if "example" in row]
+    return [(cloud, document, (captions or {}).get(caption, caption)) for cloud, document, caption in found]
+
+
+def draw_examples(result: Mapping, *, columns: int = 3, captions: Mapping[str, str] | None = None):
+    """The gallery of a result's examples, clouds with networks."""
+    return draw_gallery(examples_of(result, captions), columns=columns, layers=("cloud", "networks"))
+
+
+def _packed(cloud: LabelledCloud) -> str:
+    places = np.round(cloud.points / _STEP)
+    order = np.lexsort((*places.T, cloud.labels))
+    table = np.column_stack([places, cloud.labels])[order].T.astype(np.int16)
+    return base64.b64encode(zlib.compress(np.ascontiguousarray(table).tobytes(), 9)).decode()
+
+
+def _trimmed(cloud: LabelledCloud) -> LabelledCloud:
+    """The objects and the table near them."""
+    objects = cloud.points[cloud.labels > TABLE][:, :2]
+    low, high = objects.min(axis=0) - _AROUND, objects.max(axis=0) + _AROUND
+    inside = ((cloud.points[:, :2] >= low) & (cloud.points[:, :2] <= high)).all(axis=1)
+    return part_of(cloud, (cloud.labels > TABLE) | ((cloud.labels == TABLE) & inside))
+
+
+def _thinned(cloud: LabelledCloud) -> LabelledCloud:
+    size = 0.002
+    while len(cloud.points) > MOST_POINTS:
+        cloud, size = voxelised(cloud, size).cloud, size * 1.15
+    return cloud
+
+
+def _short(values) -> list[float]:
+    return [round(float(value), 4) for value in values]

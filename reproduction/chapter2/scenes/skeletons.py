@@ -1,0 +1,88 @@
+"""Skeletons of perceived scenes: the contacts of all near pairs, of related pairs, or of pairs that support.
+
+Perception gives every near pair contact points, also pairs whose relation is then *none* (a stack's top and the
+table far below it). The thesis's pictures show no such contacts, and no table: its background is taken off before
+(§2.3.2), so the ground's contacts take part only where `ground` is set.
+"""
+
+import hashlib
+from collections.abc import Collection, Iterator
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ADJACENT, BOTH, NONE, ON, PairLabel
+from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.relations import relation_model_file
+from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.scene import Scene
+from reproduction.chapter2.scenes.perturbation import only
+from reproduction.chapter2.scenes.real_scenes import real_scenes
+
+NEAR = (ON, BOTH, ADJACENT, NONE)
+RELATED = (ON, BOTH, ADJACENT)
+SUPPORT = (ON, BOTH)
+_model = cache(shipped_model)
+
+
+@cache
+def shipped_model_digest() -> str:
+    """Identifies the model that ships with the package."""
+    folder = Path(relation_model_file.__file__).with_name("models")
+    content = b"".join(path.read_bytes() for path in sorted(folder.glob("*.npz")))
+    return hashlib.sha256(content).hexdigest()[:16]
+
+
+def perceived(cloud: LabelledCloud) -> Scene:
+    """The scene as `lifelore perceive` sees it, with the model that ships with the package."""
+    return perceived_scene(cloud, _model())
+
+
+def reading(scene: Scene, words: Collection[str] = RELATED, *, ground: bool = False) -> Scene:
+    """The same scene with only the contacts of pairs whose predicate is among `words`, such as `RELATED`.
+
+    The table's contacts take part only where `ground` is set.
+    """
+    relation = {frozenset((r.a, r.b)): r.relation for r in scene.relations}
+
+    def kept(a: int, b: int) -> bool:
+        return (ground or TABLE not in (a, b)) and relation.get(frozenset((a, b)), NONE) in words
+
+    contacts = tuple(pair for pair in scene.interfaces if kept(pair.a, pair.b))
+    # A reader may leave out pairs whose relation is none, so a skeleton of all near pairs has no relations.
+    relations = () if NONE in words else tuple(r for r in scene.relations if kept(r.a, r.b))
+    return Scene(scene.cloud, contacts, relations)
+
+
+def predicates(scene: Scene) -> set[tuple[str, int, int]]:
+    """``(relation, a, b)`` of every pair whose perceived relation is not *none*."""
+    return {(r.relation, r.a, r.b) for r in scene.relations if r.relation != NONE}
+
+
+class Three(NamedTuple):
+    """A cloud and the labels of three of its objects: the lowest, the middle and the highest of a stack."""
+
+    cloud: LabelledCloud
+    below: int
+    middle: int
+    above: int
+
+
+def real_stacks() -> Iterator[Three]:
+    """Every c on b on a of the real scenes, by the hand-made labels; other objects are removed."""
+    for scene in real_scenes():
+        on = carried_pairs(scene.truth)
+        for above, middle in sorted(on):
+            for below in sorted(b for a, b in on if a == middle):
+                yield Three(only(scene.cloud, (below, middle, above)), below, middle, above)
+
+
+def carried_pairs(truth: tuple[PairLabel, ...]) -> set[tuple[int, int]]:
+    """(upper, lower) of all objects on objects whose labels are not in doubt."""
+    return {(t.a, t.b) for t in truth if t.relation == ON and t.b != TABLE and t.confidence >= 2}
+
+
+def standing(truth: tuple[PairLabel, ...]) -> set[int]:
+    """Labels of objects on the table."""
+    return {label.a for label in truth if label.relation == ON and label.b == TABLE}

@@ -1,0 +1,237 @@
+"""Accuracy of perceived relations: exact with direction, by component and by class, each with an interval.
+
+The thesis's label of a pair is a vector (on, adjacent); *both* has both components, *none* has neither (§2.4.1).
+Here the direction counts as well: ``on(a, b)`` predicted for ``on(b, a)`` is wrong, also in its `on` component.
+Pairs of one scene share its camera, its noise and its neighbours, so intervals resample scenes, not pairs.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.metrics import Estimate, ratio_estimate
+from lifelore.core.relations import ADJACENT, ADJACENT_GAP, BOTH, CORE_RELATIONS, NONE, ON, SYMMETRIC, PairLabel
+from lifelore.core.streams import stream
+from lifelore.perception.relations.relation import Relation
+from reproduction.engine.estimates import UNMEASURED
+
+BORDER = 0.005
+"""Metres. A noisy camera may see a gap so near `ADJACENT_GAP` on either side of it."""
+HIDDEN = 0.03
+"""Metres. A contact whose visible gap is larger lies on hidden faces."""
+RESAMPLES = 1000
+CARRIED, BESIDE = frozenset({ON, BOTH}), frozenset({ADJACENT, BOTH})
+
+
+@dataclass(frozen=True)
+class JudgedPair:
+    """A labelled pair, its predicted relation (None counts as *none*) and its visible gap, metres or infinite."""
+
+    scene: str
+    truth: PairLabel
+    predicted: Relation | None
+    gap: float
+
+    @property
+    def relation(self) -> str:
+        """The predicted relation."""
+        return self.predicted.relation if self.predicted else NONE
+
+    @property
+    def same_way(self) -> bool:
+        """Whether the prediction names the pair in the truth's order, or has no order."""
+        return self.relation in SYMMETRIC or self.predicted is None or self.predicted.a == self.truth.a
+
+    @property
+    def exact(self) -> bool:
+        """The relation and its direction are right."""
+        return self.relation == self.truth.relation and self.same_way
+
+    @property
+    def on_right(self) -> bool:
+        """The component `on` is right, direction included."""
+        carried = self.truth.relation in CARRIED
+        return carried == (self.relation in CARRIED) and (not carried or self.same_way)
+
+    @property
+    def adjacent_right(self) -> bool:
+        """The component `adjacent` is right."""
+        return (self.truth.relation in BESIDE) == (self.relation in BESIDE)
+
+    @property
+    def with_table(self) -> bool:
+        """Whether one of the two is the table."""
+        return TABLE in (self.truth.a, self.truth.b)
+
+    @property
+    def border(self) -> bool:
+        """Whether a gap near the limit alone decides between *adjacent* and *none*."""
+        return self.truth.relation in SYMMETRIC and abs(self.gap - ADJACENT_GAP) <= BORDER
+
+    @property
+    def hidden(self) -> bool:
+        """Whether the pair is near or in contact although its visible gap is large."""
+        return self.truth.relation != NONE and HIDDEN < self.gap < np.inf
+
+
+@dataclass(frozen=True)
+class RelationScore:
+    """Shares in [0, 1] with 95 % intervals; `recall` by class, `n` of each Estimate counts pairs.
+
+    `macro_f1` is the mean over the classes that occur in the truth.
+    """
+
+    pairs: int
+    scenes: int
+    exact: Estimate
+    on: Estimate
+    adjacent: Estimate
+    macro_f1: Estimate
+    recall: dict[str, Estimate]
+
+
+def judged_scene(
+    scene: str,
+    truth: Sequence[PairLabel],
+    predicted: Sequence[Relation],
+    gaps: Mapping[frozenset[int], float] | None = None,
+    least_confidence: int = 2,
+) -> list[JudgedPair]:
+    """Each labelled pair of a scene beside its predicted relation; labels below a confidence are left out.
+
+    `gaps` are the visible gaps of ``{a, b}``, metres, where better known than by `predicted`.
+    """
+    by_pair = {frozenset((relation.a, relation.b)): relation for relation in predicted}
+    judged = []
+    for label in truth:
+        pair = frozenset((label.a, label.b))
+        if label.confidence >= least_confidence:
+            relation = by_pair.get(pair)
+            gap = (gaps or {}).get(pair, relation.gap if relation else np.inf)
+            judged.append(JudgedPair(scene, label, relation, gap))
+    return judged
+
+
+def score(judged: Sequence[JudgedPair]) -> RelationScore | None:
+    """The score of some pairs; None of none."""
+    if not judged:
+        return None
+    true = {pair.truth.relation for pair in judged}
+    classes = [name for name in CORE_RELATIONS if name in true] + sorted(true - set(CORE_RELATIONS))
+    of_class = {name: [pair for pair in judged if pair.truth.relation == name] for name in classes}
+    return RelationScore(
+        pairs=len(judged),
+        scenes=len({pair.scene for pair in judged}),
+        exact=share(judged, lambda pair: pair.exact),
+        on=share(judged, lambda pair: pair.on_right),
+        adjacent=share(judged, lambda pair: pair.adjacent_right),
+        macro_f1=_macro_f1(judged, classes),
+        recall={name: share(own, lambda pair: pair.exact) for name, own in of_class.items()},
+    )
+
+
+def share(judged: Sequence[JudgedPair], right: Callable[[JudgedPair], bool]) -> Estimate:
+    """Share of pairs that are right; scenes resampled (BCa), or Wilson's interval where all scenes agree."""
+    by_scene: dict[str, list[bool]] = {}
+    for pair in judged:
+        by_scene.setdefault(pair.scene, []).append(right(pair))
+    counts = np.array([(sum(answers), len(answers)) for answers in by_scene.values()], float)
+    return share_over_scenes(counts[:, 0], counts[:, 1])
+
+
+def share_over_scenes(
+    right: ArrayLike,
+    asked: ArrayLike,
+    interval_where_all_agree: Callable[[int, int], tuple[float, float]] | None = None,
+) -> Estimate:
+    """Share of right answers, scenes resampled (BCa); `UNMEASURED` of none.
+
+    `right` and `asked` ``(n,)`` count the right answers and all answers of each scene. Where all answers agree, no
+    resample differs, and ``interval_where_all_agree(right, n)`` is the interval; default: Wilson's.
+    """
+    right, asked = np.asarray(right, float), np.asarray(asked, float)
+    n_right, n = int(right.sum()), int(asked.sum())
+    if not n:
+        return UNMEASURED
+    found = ratio_estimate(right, asked)
+    interval = found.ci95 if 0 < n_right < n else None
+    return Estimate(found.value, found.median, interval or (interval_where_all_agree or wilson)(n_right, n), n)
+
+
+def less_rate(share: Estimate, rate: float) -> Estimate:
+    """A share less a known rate."""
+    ends = (share.ci95[0] - rate, share.ci95[1] - rate) if share.ci95 else None
+    return Estimate(share.value - rate, share.median - rate, ends, share.n)
+
+
+def score_row(scored: RelationScore, keys: Sequence[str] = ("exact", "on", "adjacent", "macro_f1")) -> dict:
+    """Estimates of a score as plain data, and its recalls."""
+    recall = {name: number.to_dict() for name, number in scored.recall.items()}
+    return {**{key: getattr(scored, key).to_dict() for key in keys}, "recall": recall}
+
+
+def wilson(right: int, n: int, z: float = 1.959964) -> tuple[float, float]:
+    """Wilson's 95 % score interval of a share, within [0, 1]; n ≥ 1."""
+    p = right / n
+    middle = (p + z * z / (2 * n)) / (1 + z * z / n)
+    half = z / (1 + z * z / n) * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
+    return float(max(middle - half, 0.0)), float(min(middle + half, 1.0))
+
+
+def difference(
+    first: Sequence[JudgedPair],
+    second: Sequence[JudgedPair],
+    right: Callable[[JudgedPair], bool] = lambda pair: pair.exact,
+) -> Estimate:
+    """Share of right answers of `first` less that of `second`, on the same pairs; scenes resampled (percentiles).
+
+    Both hold the same labelled pairs in the same order.
+    """
+    differences = [(float(right(a)) - float(right(b)), 1.0) for a, b in zip(first, second, strict=True)]
+    sums = _sums_by_scene(first, differences)
+    drawn = _draws(len(sums)) @ sums
+    value = float(sums[:, 0].sum() / sums[:, 1].sum())
+    return Estimate(value, value, _percentiles(drawn[:, 0] / drawn[:, 1]), len(first))
+
+
+def _macro_f1(judged: Sequence[JudgedPair], classes: Sequence[str]) -> Estimate:
+    # Of each scene and class: right, predicted, true.
+    answers = [
+        [
+            ((pair.truth.relation == name) and pair.exact, pair.relation == name, pair.truth.relation == name)
+            for name in classes
+        ]
+        for pair in judged
+    ]
+    counts = _sums_by_scene(judged, answers)
+    value = float(_mean_f1(counts.sum(axis=0)[None])[0])
+    resampled = _mean_f1(np.tensordot(_draws(len(counts)), counts, axes=1))
+    return Estimate(value, value, _percentiles(resampled), len(judged))
+
+
+def _mean_f1(counts: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean over classes of 2 right / (predicted + true), from counts (n, classes, 3); 0 for an absent class."""
+    right, predicted, true = np.moveaxis(counts, -1, 0)
+    return (2 * right / np.maximum(predicted + true, 1)).mean(axis=1)
+
+
+def _sums_by_scene(judged: Sequence[JudgedPair], numbers: ArrayLike) -> NDArray[np.float64]:
+    """Sums of the numbers of pairs ``(pairs, …)`` over the pairs of each scene ``(scenes, …)``, scenes by name."""
+    names, at = np.unique([pair.scene for pair in judged], return_inverse=True)
+    each = np.asarray(numbers, float)
+    sums = np.zeros((len(names), *each.shape[1:]))
+    np.add.at(sums, at, each)
+    return sums
+
+
+def _draws(n: int) -> NDArray[np.float64]:
+    """How often each of `n` scenes is drawn in each resample, ``(RESAMPLES, n)``; the same for the same n."""
+    return stream(n, "scenes resampled").multinomial(n, np.full(n, 1 / n), size=RESAMPLES).astype(float)
+
+
+def _percentiles(values: NDArray[np.float64]) -> tuple[float, float]:
+    low, high = np.quantile(values, [0.025, 0.975])
+    return float(low), float(high)

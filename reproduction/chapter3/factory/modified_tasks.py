@@ -1,0 +1,118 @@
+"""Tasks of the modified factory, each with a layout of its own, solved and as learners meet them.
+
+All methods meet a task with the same layout, list and random numbers, so that differences between methods are
+paired. Thesis: §3.4.4.
+"""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lifelore.action.features.feature_set import FeatureSet
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.action.priors.exploration import prior_rows
+from lifelore.core.learning.curve import Curve
+from lifelore.core.learning.q_learning import QLearner, Rows, Schedule
+from lifelore.core.mdp import Tables
+from lifelore.core.planning.planning import best_actions
+from lifelore.core.streams import stream
+from lifelore.domains.factory import contexts
+from lifelore.domains.factory.contexts import FEATURE_NAMES, FEATURE_SIZES, PHI
+from lifelore.domains.factory.factory import ACTION_NAMES, FactoryTask
+from lifelore.domains.factory.modified_factory import INNER_WALLS, modified_factory
+from reproduction.chapter3.factory.learning import optimal_way
+from reproduction.engine.learning_run import learnt
+
+N_ACTIONS = len(ACTION_NAMES)
+FULL_SET = FeatureSet(FEATURE_NAMES, FEATURE_SIZES)
+"""φ4: the ten features of the modified factory."""
+CARDINALS = PHI["phi2"]
+"""N, W, E and S of the robot's cell: the features that the thesis selects."""
+DIAGONALS = ("PosUL", "PosUR", "PosDL", "PosDR")
+OWN_CELL, ITEMS = "PosMM", "Items"
+FEATURES = (*CARDINALS, OWN_CELL, *DIAGONALS, ITEMS)
+"""All ten: first the four that the thesis finds to matter, then the others."""
+
+
+class Problem(NamedTuple):
+    """A task, its exact solution, and the names of its streams.
+
+    best : (n_states, 6) bool, best and tied-best actions; completed rows empty, nothing is chosen there
+    seen : (n_states, 10) int8, values of the features of `FULL_SET`
+    way : (n_steps,) int, states in which an optimal policy acts, from the start to the end
+    optimal : summed reward of an episode of that policy
+    """
+
+    task: FactoryTask
+    tables: Tables
+    best: NDArray[np.bool_]
+    seen: NDArray[np.int8]
+    way: NDArray[np.int64]
+    optimal: float
+    stream: tuple
+
+
+def problem_of(settings: Mapping, names: tuple, walls: Sequence[int] = INNER_WALLS) -> Problem:
+    """The problem that the streams of `names` draw: a layout, then a list of ``components`` components.
+
+    `walls` are the least and the most inner walls of a zone.
+    """
+    random = stream(*names, "factory")
+    factory = modified_factory(random, settings["discount"], inner_walls=(walls[0], walls[1]))
+    task = factory.task(factory.draw_components(random, settings["components"]))
+    tables = task.tables()
+    q = task.optimal_q(tables)
+    best = best_actions(q)
+    best[task.completed] = False
+    way, optimal = optimal_way(tables, best)
+    return Problem(task, tables, best, contexts.features(task), way, optimal, names)
+
+
+def contexts_of(problem: Problem, conditioned_on: str) -> NDArray[np.int64]:
+    """Codes of all states, (n_states,): by a set φ of `PHI`, or by ``state`` and an encoding: ``state global``."""
+    if conditioned_on in PHI:
+        return contexts.feature_codes(problem.seen, conditioned_on)
+    return contexts.state_contexts(problem.task, conditioned_on.removeprefix("state "))
+
+
+def problems_of(settings: Mapping, names: tuple, n: int, walls: Sequence[int] = INNER_WALLS) -> list[Problem]:
+    """`n` problems; more of them leave the first ones as they are."""
+    return [problem_of(settings, (*names, i), walls) for i in range(n)]
+
+
+def exact_priors(
+    settings: Mapping, names: tuple, conditions: Iterable[str], walls: Sequence[int] = INNER_WALLS
+) -> dict[tuple[str, int], ActionPrior]:
+    """Priors with α⁰ = 1 from exact policies, by what they are conditioned on and how many ``policies`` count."""
+    counting, found = {name: ActionPrior(N_ACTIONS, 1.0) for name in conditions}, {}
+    for i in range(max(settings["policies"])):
+        problem = problem_of(settings, (*names, i), walls)
+        for name, prior in counting.items():
+            prior.update(contexts_of(problem, name), problem.best)
+            if i + 1 in settings["policies"]:
+                found[name, i + 1] = ActionPrior.merged([prior])
+    return found
+
+
+def rows_of(problem: Problem, conditioned_on: str, probs_of: Callable, ties: str) -> Rows:
+    """ε-QPAP's rows (Alg. 4) with the prior whose ``probs`` are `probs_of`; over states they are ε-QSAP's."""
+    return prior_rows(problem.tables, contexts_of(problem, conditioned_on), probs_of, ties)
+
+
+def learn_problem(problem: Problem, rows: Rows | None, schedule: Schedule) -> tuple[Curve, QLearner]:
+    """The curve and the learner after all episodes; without `rows` it is plain Q-learning."""
+    return learnt(problem.tables, problem.stream, rows, schedule)
+
+
+def rewards_of(
+    problems: Iterable[Problem], rows_for: Callable[[Problem], Rows | None], schedule: Schedule
+) -> NDArray[np.float64]:
+    """Reward of each episode of each problem, (n_problems, n_episodes)."""
+    return np.array([learn_problem(problem, rows_for(problem), schedule)[0].rewards for problem in problems])
+
+
+def curve_across(rewards: NDArray[np.float64]) -> dict[str, list[float]]:
+    """Mean and standard deviation across problems of (n_problems, n_episodes) rewards, episode by episode."""
+    return {"mean": rewards.mean(axis=0).tolist(), "deviation": rewards.std(axis=0, ddof=1).tolist()}

@@ -1,0 +1,63 @@
+"""Early regret over a life under five priors, in three worlds of tasks."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from lifelore.figures.curves import draw_curves
+from lifelore.figures.style import BLUE, GREY, INK, LIGHT, ORANGE, SKY, Figure, house_style, new_figure
+from reproduction.chapter5.c5_04_learnt_type_prior.run import (
+    CONTEXT,
+    CONTEXTS,
+    DRIFT,
+    LEARNT,
+    LIBRARY,
+    NO_DECAY,
+    STEADY,
+    TRUE,
+)
+
+TITLES = {
+    STEADY: "Popularity alike in all contexts",
+    CONTEXTS: "Popularity of each context its own",
+    DRIFT: "The same, drawn again every {steady_for} tasks",
+}
+LOOKS = {
+    LIBRARY: {"color": GREY},
+    LEARNT: {"color": SKY},
+    CONTEXT: {"color": BLUE, "linewidth": 2.2},
+    NO_DECAY: {"color": ORANGE},
+    TRUE: {"color": INK, "linestyle": "--"},
+}
+LABELS = {
+    LIBRARY: "library's prior",
+    LEARNT: "learnt, contexts ignored",
+    CONTEXT: "learnt by context",
+    NO_DECAY: "learnt by context, no decay",
+    TRUE: "true popularity",
+}
+
+
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """The figure from the result."""
+    settings = result["settings"]
+    figure = new_figure(12.4, 4.2)
+    panels = figure.subplots(1, 3, sharey=True)
+    for axes, (world, title) in zip(panels, TITLES.items(), strict=True):
+        own = [row for row in result["rows"] if row["world"] == world]
+        series = {
+            LABELS[row["agent"]]: {"mean": row["mean"], "error": 1.96 * np.array(row["error"])} for row in own
+        }
+        looks = {LABELS[agent]: look for agent, look in LOOKS.items()}
+        n = len(own[0]["mean"])
+        tasks = (np.arange(n) + 0.5) * settings["tasks"] / n
+        draw_curves(
+            axes, tasks, series, looks=looks, title=title.format(**settings), xlabel="tasks lived", legend=False
+        )
+        axes.grid(axis="y", color=LIGHT)
+    panels[0].set_ylim(0, None)
+    panels[0].set_ylabel(f"regret of a task's first {settings['early']} episodes")
+    panels[0].legend(loc="lower left")
+    figure.suptitle(f"Means of {settings['lives']} lives with 95 % intervals", x=0.01, ha="left")
+    return figure

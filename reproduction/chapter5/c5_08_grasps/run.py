@@ -1,0 +1,133 @@
+"""Cells of claim C5.8: pairs of settled scenes of one arrangement; grasps are sought in both with few tries.
+
+A try is a pose of the gripper chosen from the perceived scene alone; the simulator's true objects tell whether it
+is reached and holds. Labels of the clouds are given.
+"""
+
+from collections.abc import Iterable, Mapping
+from itertools import islice
+
+import numpy as np
+
+from lifelore.core.streams import stream
+from lifelore.domains.tabletop.parallel_gripper import Grasp, GraspedTabletop
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT
+from lifelore.domains.tabletop.settings import TabletopScene
+from lifelore.domains.tabletop.shapes import Shape
+from lifelore.perception.scene import Scene
+from lifelore.perception.topology.grasp_seeds import grasp_seeds
+from lifelore.perception.topology.substructure import Substructure, find_substructure, skeleton
+from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled
+from reproduction.chapter2.scenes.scene_example import scene_row
+from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
+from reproduction.chapter2.scenes.skeletons import perceived, reading
+from reproduction.chapter5.c5_02_functional_roles.run import PARTS, POOLS
+from reproduction.chapter5.c5_08_grasps.searches import (
+    anywhere,
+    around,
+    carried,
+    copied,
+    from_above,
+    from_seeds,
+)
+
+LOT = 5
+HOLES = ("hole-other", "hole-hinged")
+"""Arrangements of the tabletop with a hole through two objects; both scenes of a pair are of the same kind."""
+ARRANGEMENTS = ("two", "tower", "bridge", "lean", "neighbours", "row", *HOLES)
+"""Kinds of scene; the others are those of C5.2, the two scenes of a pair from pools without a common shape."""
+DRAWN = ("bridge", "lean", "hole-other")
+"""Arrangements of the figure."""
+TRIES = 10
+"""Most tries of a search."""
+LEARNT_TRIES = 100
+"""Most tries in the first scene of a pair, until a grasp worked that can be carried."""
+
+
+def cells(settings: Mapping) -> list[dict]:
+    """Pairs of scenes in lots, by arrangement."""
+    return [lot for name in ARRANGEMENTS for lot in lots(settings["pairs"], LOT, arrangement=name)]
+
+
+def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
+    """Tries until success, by object and search; None where no try of `TRIES` succeeds."""
+    name, objects, examples, equal = cell["arrangement"], [], [], []
+    for number in numbers_of(cell, LOT, settings["pairs"]):
+        pair = [drawn_scene(name, pool, seed, number) for pool in POOLS]
+        scenes = [perceived(scene.cloud) for scene in pair]
+        networks = [reading(scene, ground=True) for scene in scenes]
+        same = equal_topology(*networks)
+        equal.append(same is not None)
+        worlds = [GraspedTabletop(scene.shapes, scene.poses) for scene in pair]
+        for label in scenes[1].objects:
+            rng = stream(seed, "C5.8", name, number, label)
+            row = {"scene": f"{name} {number}", **searched(worlds[1], networks[1], label, rng)}
+            if same is not None:
+                row |= transferred(worlds, networks, same, label, rng)
+            objects.append(row)
+        if number == 0 and name in DRAWN:
+            examples.append(scene_row(networks[1], name))
+    return {"arrangement": name, "objects": objects, "equal": equal, "examples": examples}
+
+
+def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
+    """Scene `number` of an arrangement with the shapes of a pool."""
+    if name in HOLES:
+        own_seed = int(stream(seed, "C5.8", "scenes", pool).integers(2**31))
+        return arranged(name, own_seed, number)
+    part, draws = PARTS[name], POOLS[pool]
+
+    def any_shape(rng: np.random.Generator) -> Shape:
+        return draws[int(rng.integers(len(draws)))](rng)
+
+    placement = Placement(lambda rng: part.place(rng, any_shape), part.true)
+    return settled(placement, f"C5.8 {pool} {name}", seed, number)
+
+
+def equal_topology(first: Scene, second: Scene) -> Substructure | None:
+    """The correspondence of two scenes whose skeletons have the same contact points, else None."""
+    if len(skeleton(first)) != len(skeleton(second)):
+        return None
+    found = find_substructure(first, second, networks="connected")
+    return found if found.found else None
+
+
+def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Generator) -> dict:
+    """Tries from seeds, anywhere and from above; `seeds` counts the seeds of the object."""
+    seeds = [seed for seed in grasp_seeds(scene) if seed.object_id == label]
+    points = scene.cloud.of(label)
+    return {
+        "seeds": len(seeds),
+        "seeded": first_success(world, label, from_seeds(seeds, rng)),
+        "anywhere": first_success(world, label, anywhere(points, rng)),
+        "above": first_success(world, label, from_above(points, rng)),
+    }
+
+
+def transferred(
+    worlds: list[GraspedTabletop], scenes: list[Scene], same: Substructure, label: int, rng: np.random.Generator
+) -> dict:
+    """Tries of a grasp that worked on the corresponding object of the first scene, carried or copied over."""
+    source = next((a for a, b in same.objects.items() if b == label), None)
+    if source is None:
+        return {}
+    points = [scenes[0].cloud.of(source), scenes[1].cloud.of(label)]
+    tried = zip(anywhere(points[0], rng), from_above(points[0], rng), strict=True)
+    grasps = islice((grasp for both in tried for grasp in both), LEARNT_TRIES)
+    learnt = next((grasp for grasp in grasps if worlds[0].succeeds(grasp, source - FIRST_OBJECT)), None)
+    found = [] if learnt is None else carried(learnt, scenes[0], source, scenes[1], label, same.nodes)
+    if learnt is None or not found:
+        return {}
+    return {
+        "carried": first_success(worlds[1], label, around(found, rng)),
+        "copied": first_success(worlds[1], label, around([copied(learnt, *points)], rng)),
+        "not carried": first_success(worlds[1], label, anywhere(points[1], rng)),
+        "above, not carried": first_success(worlds[1], label, from_above(points[1], rng)),
+    }
+
+
+def first_success(world: GraspedTabletop, label: int, grasps: Iterable[Grasp]) -> int | None:
+    """Number of the first try that succeeds, from 1; None if none of `TRIES` does."""
+    return next(
+        (n for n, g in enumerate(islice(grasps, TRIES), start=1) if world.succeeds(g, label - FIRST_OBJECT)), None
+    )

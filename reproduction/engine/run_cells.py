@@ -1,0 +1,124 @@
+"""Where cells run: on threads, in processes of this machine, or on the workers of a dask cluster.
+
+A cell is a pure function of settings, cell and seed, so its result depends neither on the place nor on what runs
+beside it. Full runs use processes: threads share Python's lock, so that two of them are slower than one where a
+claim computes in Python (C4.3: 200 s and 142 s). Starting processes takes longer than most quick runs.
+"""
+
+import socket
+from collections.abc import Generator, Mapping, Sequence
+from concurrent.futures import BrokenExecutor, Future, ThreadPoolExecutor, as_completed
+from contextlib import nullcontext
+from time import thread_time
+from typing import Any, NamedTuple
+from warnings import catch_warnings, filterwarnings
+
+from lifelore.core.errors import InputError
+from reproduction.engine.cell_store import CellStore
+from reproduction.engine.claim import Claim
+from reproduction.engine.registry import claim_of
+from reproduction.engine.source_key import source_key
+
+
+class CellRun(NamedTuple):
+    """A cell to run, and where it is kept."""
+
+    claim: Claim
+    settings: Mapping[str, Any]
+    seed: int
+    cell: Mapping[str, Any]
+    store: CellStore
+
+
+Finished = Generator[tuple[int, dict], None, None]
+"""Place and content of each finished cell, which is stored already."""
+
+
+def run_on_threads(cells: Sequence[CellRun], jobs: int) -> Finished:
+    """Run cells on threads; where it is stopped, cells under way are finished and stored first."""
+    from threadpoolctl import threadpool_limits
+
+    def run(one: CellRun) -> dict:
+        began = thread_time()
+        result = one.claim.run_cell(one.settings, one.cell, one.seed)
+        return one.store.put(one.cell, result, thread_time() - began)
+
+    # Cells share the cores among themselves; threads of a library's own would fight them, and change its sums.
+    with threadpool_limits(1), ThreadPoolExecutor(max_workers=jobs) as pool:
+        place: dict[Future, int] = {pool.submit(run, one): i for i, one in enumerate(cells)}
+        try:
+            for future in as_completed(place):
+                yield place[future], future.result()
+        except BaseException:
+            pool.shutdown(wait=True, cancel_futures=True)
+            raise
+
+
+def run_on_workers(cells: Sequence[CellRun], jobs: int, scheduler: str | None = None) -> Finished:
+    """Run cells in processes; where it is stopped, cells under way are dropped.
+
+    Parameters
+    ----------
+    jobs : int
+        Processes here; a cluster uses all its workers.
+    scheduler : str, optional
+        Address of a dask scheduler, such as ``tcp://host:8786`` (extra ``cluster``); default: this machine.
+
+    Raises
+    ------
+    MissingExtraError
+        dask.distributed is not installed.
+    InputError
+        The scheduler cannot be reached or has no workers; a worker has other code, or died for good.
+    """
+    from joblib import Parallel, delayed
+
+    from reproduction.engine.cluster import cluster_backend
+
+    # joblib replaces a worker that has grown by 300 MB, loses nothing, and warns from a thread of its own.
+    filterwarnings("ignore", message="A worker stopped while some jobs", category=UserWarning)
+    one: Any = 1  # joblib's annotations forget whole numbers
+    with cluster_backend(scheduler) if scheduler else nullcontext():
+        # A batch is a cell: cells take seconds, and the cells of a dead worker's batch all run again.
+        run = Parallel(-1 if scheduler else jobs, batch_size=one, return_as="generator_unordered")
+        asked = (
+            delayed(run_on_worker)(place, claim.id, settings, cell, seed, source_key(claim.run_cell.__module__))
+            for place, (claim, settings, seed, cell, _) in enumerate(cells)
+        )
+        done: Any = run(asked)
+        try:
+            for place, result, seconds in done:
+                yield place, cells[place].store.put(cells[place].cell, result, seconds)
+        except BrokenExecutor as error:
+            raise InputError(
+                "jobs: a process that ran cells died, perhaps for want of memory; run the same again with fewer "
+                f"than {jobs} (what is finished is kept)"
+            ) from error
+        finally:
+            with catch_warnings(action="ignore"):  # of cells that are dropped
+                done.close()
+
+
+def run_on_worker(
+    place: int, claim_id: str, settings: Mapping[str, Any], cell: Mapping[str, Any], seed: int, code: str
+) -> tuple[int, dict, float]:
+    """Run a cell in this process, which must have the code of the process that asks.
+
+    Returns
+    -------
+    tuple
+        `place`, the cell's result, and the processor seconds it took.
+    """
+    from threadpoolctl import threadpool_limits
+
+    claim = claim_of(claim_id)
+    if (own := source_key(claim.run_cell.__module__)) != code:
+        raise InputError(
+            f"worker {socket.gethostname()} has other code of {claim_id} (key {own}, here {code}); "
+            "it must have the same lifelore"
+        )
+    # While the worker lives, because cells may overlap in its threads; a library's threads would change its sums.
+    threadpool_limits(1)
+    began = thread_time()
+    result = claim.run_cell(settings, cell, seed)
+    return place, result, thread_time() - began

@@ -1,0 +1,64 @@
+"""`bench priors`: like work by all, and the contract of its answer."""
+
+import json
+
+import numpy as np
+import pytest
+
+from benchmarks.action import priors
+from benchmarks.action.priors import (
+    ACTIONS,
+    ALPHA0,
+    DENSE,
+    DICT,
+    OURS,
+    SCATTERED,
+    STATES,
+    Case,
+    bench_priors,
+)
+from lifelore.core.errors import InputError
+
+
+@pytest.mark.parametrize("name", [STATES, SCATTERED])
+def test_all_count_the_same_and_sample_the_same_law(name):
+    case = Case(name, 20_000)
+    case.prepare()
+    counts = case.update().counts(case.codes)
+    assert counts.sum() == case.best.sum()
+    dictionary = case.update_dict()
+    assert counts.tolist() == [dictionary[code] for code in case.code_list]
+    ways = {OURS: case.sample(), DICT: np.array(case.sample_dict())}
+    if name == STATES:
+        assert counts.tolist() == case.update_dense()
+        ways[DENSE] = np.array(case.sample_dense())
+    # The share of samples that fall on counted actions: one minus the mean of what α⁰ gives the others. Its
+    # deviation is at most ½ / √20000 = 0.0035; four of them.
+    alpha = counts + ALPHA0
+    expected = np.mean((alpha * (counts > 0)).sum(axis=1) / alpha.sum(axis=1))
+    for drawn in ways.values():
+        assert set(drawn.tolist()) == set(range(ACTIONS))
+        assert np.mean(counts[np.arange(len(drawn)), drawn] > 0) == pytest.approx(expected, abs=0.015)
+
+
+def test_the_answer_keeps_its_contract(monkeypatch):
+    monkeypatch.setattr(priors, "CONTEXTS", 20_000)
+    told = []
+    result = bench_priors(2, lambda *at: told.append(at))
+    assert json.loads(json.dumps(result, allow_nan=False)) == result
+    names = [line["name"] for line in result["rows"]]
+    assert len(names) == len(set(names)) == 10
+    assert [(done, of) for done, of, _ in told] == [(i + 1, 20) for i in range(20)]
+    for line in result["rows"]:
+        assert (line["ratio"] is None) == (line["ratio_to"] is None) == line["name"].endswith(OURS)
+    ratios = {f"{line['name']} / {OURS}": line["ratio"] for line in result["rows"] if line["ratio"]}
+    measured = {goal["name"]: goal["measured"] for goal in result["goals"]}
+    assert ratios.items() <= measured.items()
+    assert len(result["goals"]) == len(ratios) + 2
+
+
+def test_unlike_work_is_refused(monkeypatch):
+    case = Case(STATES, 100)
+    monkeypatch.setattr(Case, "update_dict", lambda self: {code: [0.0] * ACTIONS for code in self.code_list})
+    with pytest.raises(InputError, match="must hold the prior's counts, got others"):
+        case.prepare()

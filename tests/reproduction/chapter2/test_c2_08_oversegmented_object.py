@@ -1,0 +1,87 @@
+"""C2.8: which cuts are made, what is said of parts, and the numbers by hand."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.relations import PairLabel
+from lifelore.perception.relations.relation import Relation
+from reproduction.chapter2.c2_08_oversegmented_object.measure import measure, rows, share_by_scene
+from reproduction.chapter2.c2_08_oversegmented_object.run import (
+    free_standing,
+    relation_in_words,
+    simulated_cuts,
+)
+
+pytest.importorskip("mujoco")
+
+
+def test_things_that_stand_by_themselves():
+    truth = (
+        PairLabel(2, TABLE, "on"),
+        PairLabel(3, TABLE, "on"),
+        PairLabel(4, TABLE, "none"),
+        PairLabel(5, TABLE, "on", 2),
+        PairLabel(3, 2, "both"),
+        PairLabel(4, 2, "on"),
+        PairLabel(5, 2, "adjacent"),
+    )
+    assert free_standing(truth) == [2]
+
+
+@pytest.mark.parametrize(
+    ("relation", "said"),
+    [
+        (Relation(7, 2, "on", 1.0, 0.0), "on"),
+        (Relation(2, 7, "on", 1.0, 0.0), "on, turned"),
+        (Relation(2, 7, "adjacent", 1.0, 0.0), "adjacent"),
+        (Relation(2, 7, "both", 1.0, 0.0), "both, turned"),
+        (Relation(2, 3, "on", 1.0, 0.0), "none"),
+    ],
+)
+def test_what_is_said_has_a_direction(relation, said):
+    assert relation_in_words((relation,), 7, 2) == said
+
+
+def test_parts_of_a_level_cut_lie_above_one_another():
+    cuts = simulated_cuts(0, 0)
+    assert {row["kind"] for row, _ in cuts} <= {"level", "oblique", "upright"}
+    level = next(scene for row, scene in cuts if row["kind"] == "level")
+    part = max(level.cloud.objects)
+    others = [thing for thing in level.cloud.objects if thing != part]
+    top = level.cloud.of(part)[:, 2].min()
+    assert any(abs(level.cloud.of(thing)[:, 2].max() - top) < 0.01 for thing in others)
+
+
+def row(scene, kind, said, tilt=0.0, boxes="on"):
+    table = ["none", "on"] if kind == "level" else ["on", "on"]
+    return {"scene": scene, "kind": kind, "tilt": tilt, "said": said, "boxes": boxes, "table": table}
+
+
+ROWS = [
+    row("a", "level", "on"),
+    row("a", "upright", "adjacent"),
+    row("b", "level", "on, turned"),
+    row("b", "upright", "on"),
+    row("c", "level", "on"),
+    row("c", "oblique", "both", 30.0),
+    row("c", "oblique", "adjacent", 60.0),
+]
+
+
+def test_measures_by_hand():
+    found = measure({}, [{"real": False, "rows": ROWS, "examples": []}])
+    assert found["on_right_simulated"].value == pytest.approx(2 / 3)
+    assert found["adjacent_right_simulated"].value == 0.5
+    assert found["table_right_simulated"].value == 1.0
+    assert np.isnan(found["on_right_real"].value)
+    counted = rows({}, [{"real": False, "rows": ROWS, "examples": []}])
+    assert {"set": "simulated", "cut": "level", "said": "on", "boxes": "on", "cuts": 2} in counted
+    assert {row["cut"] for row in counted} == {"level", "upright", "30° to 45°", "60° to 75°"}
+
+
+def test_shares_by_scene_count_cuts_and_resample_scenes():
+    found = share_by_scene(ROWS[:5], [True, True, False, False, True])
+    assert (found.value, found.n) == (0.6, 5)
+    alike = share_by_scene(ROWS[:5], [True] * 5)
+    assert alike.ci95 == pytest.approx((0.025 ** (1 / 5), 1.0))

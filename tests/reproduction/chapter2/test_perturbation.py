@@ -1,0 +1,112 @@
+"""Spoilt clouds: how many points go, where they move, which labels change and which never do."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.errors import InputError
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from reproduction.chapter2.scenes.perturbation import (
+    cut_object,
+    fewer_points,
+    grown_masks,
+    noisier_depth,
+    swapped_border,
+)
+
+CAMERA = np.array([0.0, 0.0, 1.0])
+
+
+@pytest.fixture
+def cloud() -> LabelledCloud:
+    """Rows of points 1 mm apart: object 2 from 0 to 100 mm, 3 from 103.5 mm on, the table 20 mm below."""
+    x = np.arange(0, 0.2, 0.001)
+    thing = np.stack([x, 0 * x, 0 * x], axis=1)
+    thing[x > 0.1005, 0] += 0.0025
+    table = thing - [0, 0, 0.02]
+    labels = np.concatenate([np.where(x > 0.1005, 3, 2), np.ones(len(x), int)])
+    colours = np.arange(2 * len(x), dtype=np.uint8)[:, None].repeat(3, axis=1)
+    return LabelledCloud(np.concatenate([thing, table]), labels.astype(np.int64), colours, CAMERA)
+
+
+def test_points_are_discarded_with_their_labels_and_colours(cloud):
+    fewer = fewer_points(cloud, 0.7, np.random.default_rng(0))
+    # 400 points, each kept with 0.3: 120 ± 9.2; four standard deviations.
+    assert 83 <= len(fewer.points) <= 157
+    at = [int(np.flatnonzero((cloud.points == point).all(axis=1))[0]) for point in fewer.points]
+    assert (cloud.labels[at] == fewer.labels).all()
+    assert cloud.colours is not None
+    assert fewer.colours is not None
+    assert (cloud.colours[at] == fewer.colours).all()
+    assert len(fewer_points(cloud, 0.0, np.random.default_rng(0)).points) == 400
+    for share in (1.0, -0.1):
+        with pytest.raises(InputError, match="discarded"):
+            fewer_points(cloud, share, np.random.default_rng(0))
+
+
+def test_noise_moves_points_along_the_line_of_sight(cloud):
+    noisy = noisier_depth(cloud, 0.002, np.random.default_rng(0))
+    moved = noisy.points - cloud.points
+    assert np.cross(moved, cloud.points - CAMERA) == pytest.approx(0, abs=1e-12)
+    # 400 normal errors: their deviation is 2 mm ± 0.07.
+    assert np.linalg.norm(moved, axis=1).std() > 0
+    assert np.sqrt((moved**2).sum(axis=1).mean()) == pytest.approx(0.002, rel=0.15)
+    with pytest.raises(InputError, match="camera"):
+        noisier_depth(LabelledCloud(cloud.points, cloud.labels), 0.002, np.random.default_rng(0))
+    with pytest.raises(InputError, match="deviation"):
+        noisier_depth(cloud, -1.0, np.random.default_rng(0))
+
+
+def test_labels_swap_only_near_the_other_object(cloud):
+    swapped = swapped_border(cloud, np.random.default_rng(0), probability=1.0)
+    # Ends 3.5 mm apart: points within 5 mm of the other are the last two and the first two.
+    changed = np.flatnonzero(swapped.labels != cloud.labels)
+    assert changed.tolist() == [99, 100, 101, 102]
+    assert swapped.labels[changed].tolist() == [3, 3, 2, 2]
+    assert (swapped_border(cloud, np.random.default_rng(0), probability=0.0).labels == cloud.labels).all()
+
+
+def test_half_of_the_border_swaps():
+    x = np.repeat(np.arange(1000) * 0.1, 2)
+    points = np.stack([x, np.tile([0.0, 0.003], 1000), 0 * x], axis=1)
+    cloud = LabelledCloud(points, np.tile([2, 3], 1000))
+    swapped = swapped_border(cloud, np.random.default_rng(0))
+    # 2,000 fair coins: 1,000 ± 22; four standard deviations.
+    assert 910 <= (swapped.labels != cloud.labels).sum() <= 1090
+
+
+def test_masks_grow_over_others_and_the_table_once(cloud):
+    near = LabelledCloud(cloud.points + np.array([0, 0, 1.0]) * (cloud.labels == 1)[:, None] * 0.016, cloud.labels)
+    for seed in range(4):
+        grown = grown_masks(near, np.random.default_rng(seed))
+        # The table, now 4 mm below, is taken wherever a thing is above it.
+        assert (grown.labels[200:] > 1).all()
+    # Whoever comes first takes the other's first two points, and loses none of its own.
+    first = {tuple(grown_masks(near, np.random.default_rng(s)).labels[96:106].tolist()) for s in range(8)}
+    assert first == {(2,) * 7 + (3,) * 3, (2,) * 3 + (3,) * 7}
+
+
+@pytest.mark.parametrize("spoil", [lambda c, r: fewer_points(c, 0.5, r), swapped_border, grown_masks])
+def test_the_same_generator_spoils_alike(cloud, spoil):
+    one, other = (spoil(cloud, np.random.default_rng(5)) for _ in range(2))
+    assert (one.points == other.points).all()
+    assert (one.labels == other.labels).all()
+
+
+# --- an object cut into two ---------------------------------------------------------------------------------
+
+STACKED = LabelledCloud(
+    np.array([[0, 0, 0], [0, 0, 0.1], [0, 0, 0.2], [0, 0, 0.3], [1, 0, 0.3]], float), np.array([TABLE, 2, 2, 2, 5])
+)
+
+
+def test_the_part_beyond_gets_a_new_label():
+    cloud, part = cut_object(STACKED, 2, (0, 0, 1), (0, 0, 0.15))
+    assert part == 6
+    assert cloud.labels.tolist() == [TABLE, 2, 6, 6, 5]
+    assert (cloud.points == STACKED.points).all()
+
+
+@pytest.mark.parametrize(("label", "height"), [(2, 0.5), (2, -0.5), (3, 0.1), (TABLE, 0.1)])
+def test_planes_that_divide_nothing_are_refused(label, height):
+    with pytest.raises(InputError, match="must divide"):
+        cut_object(STACKED, label, (0, 0, 1), (0, 0, height))

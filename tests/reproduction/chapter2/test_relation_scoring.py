@@ -1,0 +1,153 @@
+"""Scores of relations: components, directions, classes and intervals, worked by hand."""
+
+import numpy as np
+import pytest
+from scipy.stats import binomtest
+
+from lifelore.core.metrics import Estimate
+from lifelore.core.relations import PairLabel
+from lifelore.perception.relations.relation import Relation
+from reproduction.chapter2.scoring.relation_scoring import (
+    JudgedPair,
+    difference,
+    judged_scene,
+    less_rate,
+    score,
+    share,
+    share_over_scenes,
+    wilson,
+)
+
+
+def judged(truth: str, said: str | None, *, way=(2, 3), gap=0.001, scene="a", truth_way=(2, 3)) -> JudgedPair:
+    relation = None if said is None else Relation(*way, said, 1.0, gap)
+    return JudgedPair(scene, PairLabel(*truth_way, truth), relation, gap)
+
+
+@pytest.mark.parametrize(
+    ("truth", "said", "way", "exact", "on", "adjacent"),
+    [
+        ("on", "on", (2, 3), True, True, True),
+        ("on", "on", (3, 2), False, False, True),
+        ("on", "both", (2, 3), False, True, False),
+        ("on", "both", (3, 2), False, False, False),
+        ("on", "none", (3, 2), False, False, True),
+        ("on", None, (2, 3), False, False, True),
+        ("adjacent", "adjacent", (3, 2), True, True, True),
+        ("adjacent", "none", (2, 3), False, True, False),
+        ("adjacent", "on", (2, 3), False, False, False),
+        ("both", "both", (2, 3), True, True, True),
+        ("both", "both", (3, 2), False, False, True),
+        ("both", "on", (2, 3), False, True, False),
+        ("both", "adjacent", (2, 3), False, False, True),
+        ("none", "none", (3, 2), True, True, True),
+        ("none", None, (2, 3), True, True, True),
+        ("none", "on", (2, 3), False, False, True),
+    ],
+)
+def test_components_count_the_direction(truth, said, way, exact, on, adjacent):
+    pair = judged(truth, said, way=way)
+    assert (pair.exact, pair.on_right, pair.adjacent_right) == (exact, on, adjacent)
+
+
+def test_the_truths_order_is_what_counts_not_the_numbers():
+    assert judged("on", "on", way=(3, 2), truth_way=(3, 2)).exact
+    assert not judged("on", "on", way=(2, 3), truth_way=(3, 2)).exact
+
+
+def test_border_and_hidden_pairs():
+    assert judged("none", "none", gap=0.0270).border
+    assert not judged("none", "none", gap=0.0280).border
+    assert judged("adjacent", "none", gap=0.0180).border
+    assert not judged("on", "none", gap=0.0200).border
+    assert judged("on", "none", gap=0.031).hidden
+    assert not judged("on", "none", gap=0.029).hidden
+    assert not judged("none", "none", gap=0.05).hidden
+    assert not judged("on", None, gap=np.inf).hidden
+
+
+def test_a_scene_is_judged_pair_by_pair_without_the_doubtful():
+    truth = [PairLabel(2, 3, "on"), PairLabel(4, 3, "adjacent", 1), PairLabel(2, 4, "none", 2)]
+    said = [Relation(3, 2, "on", 0.9, 0.004), Relation(3, 4, "adjacent", 0.9, 0.01)]
+    first, second = judged_scene("s", truth, said, {frozenset((2, 4)): 0.07})
+    assert (first.exact, first.gap) == (False, 0.004)
+    assert (second.exact, second.predicted, second.gap) == (True, None, 0.07)
+    assert len(judged_scene("s", truth, said, least_confidence=1)) == 3
+    # A gap that is known better than by looking counts.
+    assert judged_scene("s", truth, said, {frozenset((2, 3)): 0.001})[0].gap == 0.001
+
+
+def test_a_score_by_hand():
+    pairs = [
+        judged("on", "on", scene="a"),
+        judged("on", "on", way=(3, 2), scene="a"),
+        judged("on", "both", scene="b"),
+        judged("adjacent", "adjacent", scene="b"),
+        judged("none", "adjacent", scene="c"),
+        judged("none", None, scene="c"),
+    ]
+    found = score(pairs)
+    assert found is not None
+    assert (found.pairs, found.scenes) == (6, 3)
+    assert found.exact.value == pytest.approx(3 / 6)
+    assert found.on.value == pytest.approx(5 / 6)
+    assert found.adjacent.value == pytest.approx(4 / 6)
+    assert {name: one.value for name, one in found.recall.items()} == pytest.approx(
+        {"on": 1 / 3, "adjacent": 1.0, "none": 0.5}
+    )
+    # on: right 1, said 2, true 3; adjacent: 1, 2, 1; none: 1, 1, 2. Of "both" nothing is true.
+    assert found.macro_f1.value == pytest.approx((2 / 5 + 2 / 3 + 2 / 3) / 3)
+    assert score([]) is None
+
+
+def test_a_users_own_words_are_scored_too():
+    found = score([judged("left_of", "left_of"), judged("left_of", "left_of", way=(3, 2))])
+    assert found is not None
+    assert {name: one.value for name, one in found.recall.items()} == {"left_of": 0.5}
+
+
+@pytest.mark.parametrize(("right", "n"), [(0, 5), (3, 10), (10, 10), (47, 52)])
+def test_wilsons_interval_is_scipys(right, n):
+    expected = binomtest(right, n).proportion_ci(0.95, method="wilson")
+    assert wilson(right, n) == pytest.approx((expected.low, expected.high), abs=1e-6)
+
+
+def test_intervals_resample_scenes():
+    # Ten scenes of ten pairs that are right or wrong together carry no more than ten answers do.
+    together = [judged("on", "on" if s % 2 else "none", scene=str(s)) for s in range(10) for _ in range(10)]
+    apart = [judged("on", "on" if p % 2 else "none", scene=str(10 * s + p)) for s in range(10) for p in range(10)]
+    wide, narrow = share(together, lambda p: p.exact), share(apart, lambda p: p.exact)
+    assert wide.value == narrow.value == 0.5
+    assert wide.n == narrow.n == 100
+    assert wide.ci95 is not None
+    assert narrow.ci95 is not None
+    # Standard errors of 10 and of 100 fair answers are 0.158 and 0.05.
+    assert wide.ci95[1] - wide.ci95[0] > 2 * (narrow.ci95[1] - narrow.ci95[0])
+
+
+def test_nothing_wrong_still_has_an_interval():
+    found = share([judged("on", "on", scene=str(s)) for s in range(8)], lambda p: p.exact)
+    assert (found.value, found.ci95) == (1.0, wilson(8, 8))
+
+
+def test_difference_by_hand():
+    first = [judged("on", "on", scene=str(s)) for s in range(8)]
+    second = [judged("on", "none" if s < 2 else "on", scene=str(s)) for s in range(8)]
+    lost = difference(first, second)
+    assert lost.value == pytest.approx(0.25)
+    assert lost.ci95 is not None
+    assert lost.ci95[0] <= 0.25 <= lost.ci95[1]
+    assert difference(first, first).value == 0
+    assert difference(first, first).ci95 == (0.0, 0.0)
+
+
+def test_a_share_without_spread_has_wilsons_interval_and_of_nothing_none():
+    assert share_over_scenes([1, 1, 1], [1, 1, 1]).ci95 == (pytest.approx(0.4385, abs=1e-4), 1.0)
+    assert share_over_scenes([1, 1], [1, 1], lambda right, n: (right / 4, n / 2)).ci95 == (0.5, 1.0)
+    assert share_over_scenes([], []).n == 0
+
+
+def test_a_share_less_a_rate_moves_its_interval():
+    less = less_rate(Estimate(0.9, 0.8, (0.7, 1.0), 5), 0.5)
+    assert (less.value, less.median, less.n) == (pytest.approx(0.4), pytest.approx(0.3), 5)
+    assert less.ci95 == pytest.approx((0.2, 0.5))

@@ -1,0 +1,95 @@
+"""Readings of a skeleton, rows of results and paths, on scenes made by hand."""
+
+import json
+
+import numpy as np
+import pytest
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.relations import ADJACENT, NONE, ON
+from lifelore.perception.contacts.contact_points import ContactPoint
+from lifelore.perception.contacts.interface import Interface
+from lifelore.perception.relations.relation import Relation
+from lifelore.perception.scene import Scene
+from reproduction.chapter2.c2_07_oversegmented_stack.run import Three, is_path
+from reproduction.chapter2.scenes.scene_example import scene_of_row, scene_row
+from reproduction.chapter2.scenes.skeletons import NEAR, RELATED, SUPPORT, only, predicates, reading
+
+
+def contact(z, other, x=0.0):
+    return ContactPoint(np.array([x, 0.0, z]), np.array([0.0, 0.0, 1.0]), np.zeros(3), 1.0, 9, other)
+
+
+def facing(a, b, *places):
+    """An interface that meets in one contact a place (x, z)."""
+    edges = np.array([(k, k) for k in range(len(places))])
+    sides = [tuple(contact(z, other, x) for x, z in places) for other in (b, a)]
+    return Interface(a, b, 0.0, *sides, edges)
+
+
+def tower(*extra):
+    """2 below 3 below 4, on the table, and 2 near 4."""
+    points = np.array([[x, y, z] for z in (0.0, 0.05, 0.15, 0.25) for x in (0, 0.05) for y in (0, 0.05)], float)
+    cloud = LabelledCloud(points, np.repeat([TABLE, 2, 3, 4], 4), None, np.array([0.0, -1.0, 0.5]))
+    parts = (facing(2, 3, (0, 0.1)), facing(3, 4, (0, 0.2)), facing(2, 4, (0.05, 0.15)), facing(2, TABLE, (0, 0)))
+    said = ((3, 2, ON), (4, 3, ON), (2, 4, NONE), (2, TABLE, ON))
+    return Scene(cloud, (*parts, *extra), tuple(Relation(a, b, word, 1.0, 0.0) for a, b, word in said))
+
+
+def points_of(scene):
+    return {label: len(network.nodes) for label, network in scene.networks.items()}
+
+
+def test_readings_by_hand():
+    scene = tower()
+    assert points_of(reading(scene, NEAR)) == {2: 2, 3: 2, 4: 2}
+    assert points_of(reading(scene, RELATED)) == {2: 1, 3: 2, 4: 1}
+    assert points_of(reading(scene, SUPPORT, ground=True)) == {TABLE: 1, 2: 2, 3: 2, 4: 1}
+    assert points_of(reading(scene, (ADJACENT,))) == {2: 0, 3: 0, 4: 0}
+
+
+def test_all_near_pairs_say_nothing_of_strangers():
+    near = reading(tower(), NEAR)
+    assert near.relations == ()
+    assert points_of(near.without_unrelated_contacts) == points_of(near)
+
+
+def test_predicates_leave_out_none():
+    assert predicates(tower()) == {(ON, 3, 2), (ON, 4, 3), (ON, 2, TABLE)}
+
+
+def test_only_keeps_the_table():
+    assert set(only(tower().cloud, (3,)).labels.tolist()) == {TABLE, 3}
+
+
+def test_a_tower_is_a_path_through_its_middle_alone():
+    scene = reading(tower())
+    assert is_path(scene, Three(scene.cloud, 2, 3, 4))
+    assert not is_path(scene, Three(scene.cloud, 3, 2, 4))
+    near = reading(tower(), NEAR)
+    assert not is_path(near, Three(near.cloud, 2, 3, 4))
+
+
+def test_a_second_contact_is_no_path():
+    scene = tower()
+    twice = (facing(2, 3, (0, 0.1), (0.05, 0.1)), *scene.interfaces[1:])
+    scene = reading(Scene(scene.cloud, twice, scene.relations))
+    assert not is_path(scene, Three(scene.cloud, 2, 3, 4))
+
+
+def test_a_row_comes_back_as_the_scene_it_was():
+    scene = tower()
+    row = json.loads(json.dumps(scene_row(scene, "a tower")))
+    cloud, document, caption = scene_of_row(row)
+    assert caption == "a tower"
+    assert sorted(map(tuple, cloud.points.round(4))) == sorted(map(tuple, scene.cloud.points))
+    assert cloud.labels.tolist() == sorted(scene.cloud.labels.tolist())
+    assert cloud.camera == pytest.approx([0, -1, 0.5])
+    assert [len(thing["contact_points"]) for thing in document["objects"]] == [3, 2, 2]
+    assert len(document["relations"]) == 4
+
+
+def test_large_clouds_are_thinned():
+    rng = np.random.default_rng(0)
+    cloud = LabelledCloud(rng.uniform(0, 0.3, (40_000, 3)), np.full(40_000, 2))
+    assert len(json.dumps(scene_row(Scene(cloud), ""))) < 60_000

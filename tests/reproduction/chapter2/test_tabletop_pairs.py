@@ -1,0 +1,259 @@
+"""Pairs as rows: what a row holds of blocks built by hand, which pairs have one, and how lots are cut."""
+
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from lifelore.core.labelled_cloud import LabelledCloud
+from lifelore.core.relations import ADJACENT, CORE_RELATIONS, NONE, ON, PairLabel
+from lifelore.perception.contacts.contact_settings import ContactSettings
+from lifelore.perception.contacts.interface import interfaces
+from lifelore.perception.pairs.pair_features import COLUMNS
+from lifelore.perception.separation.separator import separate
+from reproduction.chapter2.scenes import scene_lots, tabletop_pairs
+from reproduction.chapter2.scenes.tabletop_pairs import (
+    BESIDE_US,
+    KERNELS,
+    LOT,
+    MIX,
+    REAL_LOT,
+    STANDARD,
+    contacts_of,
+    kernel_name,
+    loose_settings,
+    pair_cells,
+    pair_rows,
+    run_cell,
+    without_table,
+)
+
+CAMERA = np.array([0.05, -1.0, 0.6])
+SETTINGS = {"data_sets": 2, "pairs": 50, "camera": "stereo", "real": False}
+
+
+def box(low, high, spacing=0.005) -> np.ndarray:
+    """Points on the six faces of a block, metres."""
+    low, high = np.array(low, float), np.array(high, float)
+    steps = [np.linspace(a, b, round((b - a) / spacing) + 1) for a, b in zip(low, high, strict=True)]
+    grid = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1).reshape(-1, 3)
+    return grid[((grid == low) | (grid == high)).any(axis=1)]
+
+
+@pytest.fixture(scope="module")
+def blocks() -> LabelledCloud:
+    """3 stands on 2 with 2 mm between them, 4 far off; a patch of table, and three points of nobody."""
+    parts = {
+        0: np.full((3, 3), 0.3),
+        1: box((0, 0, -0.01), (0.1, 0.1, -0.005), 0.01),
+        2: box((0, 0, 0), (0.1, 0.08, 0.05)),
+        3: box((0.02, 0.02, 0.052), (0.06, 0.06, 0.102)),
+        4: box((0.5, 0.5, 0), (0.55, 0.55, 0.05)),
+    }
+    labels = np.repeat(list(parts), [len(part) for part in parts.values()])
+    return LabelledCloud(np.vstack(list(parts.values())), labels, None, CAMERA)
+
+
+TRUTH = (
+    PairLabel(3, 2, ON, 3),
+    PairLabel(2, 4, NONE, 2),
+    PairLabel(4, 3, ADJACENT, 1),
+    PairLabel(2, 1, ON, 3),
+)
+
+
+@pytest.fixture(scope="module")
+def rows(blocks):
+    return pair_rows("by hand", blocks, TRUTH)
+
+
+def test_the_doubtful_and_the_table_have_no_row(rows):
+    assert [(row["a"], row["b"], row["relation"], row["confidence"]) for row in rows] == [
+        (3, 2, ON, 3),
+        (2, 4, NONE, 2),
+    ]
+    assert {row["scene"] for row in rows} == {"by hand"}
+
+
+def test_a_far_pair_has_its_truth_alone(rows):
+    assert rows[1] == {
+        "scene": "by hand",
+        "a": 2,
+        "b": 4,
+        "relation": NONE,
+        "confidence": 2,
+        "pair": [2, 4],
+        "gap": None,
+    }
+
+
+def test_a_near_pair_is_in_the_order_of_its_numbers(rows):
+    row = rows[0]
+    assert row["pair"] == [2, 3]
+    assert row["gap"] == 0.002
+    two, three = (row["contacts"][STANDARD][side] for side in "ab")
+    # Contacts of 2 lie on or in 2, up to its top at 50 mm; those of 3 start at 52 mm, over the same place.
+    assert all(0 <= x <= 0.1 and 0 <= y <= 0.08 and 0 <= z <= 0.05 for x, y, z, _ in two)
+    assert all(0.02 <= x <= 0.06 and 0.02 <= y <= 0.06 and z >= 0.052 for x, y, z, _ in three)
+    assert two[0][2] > 0.045
+    assert three[0][2] < 0.057
+
+
+def test_features_are_of_both_orders(rows):
+    first, second = np.array(rows[0]["features"])
+    place = COLUMNS.index
+    assert first[place("gap")] == second[place("gap")] == 0.002
+    # Middles at 25 mm and 77 mm.
+    assert first[place("centre_rise")] == -second[place("centre_rise")] == pytest.approx(-0.052, abs=1e-6)
+    assert first[place("normal_up_0")] == pytest.approx(-1, abs=0.01)
+    assert second[place("normal_up_0")] == pytest.approx(1, abs=0.01)
+    assert second[place("a_over_b")] == 1
+    # Seen from y = -1 and x = 0.05 the upper one's middle is 10 mm to the left of the lower one's.
+    assert second[place("right")] == pytest.approx(-0.01, abs=1e-3)
+
+
+def test_peers_see_both_orders(rows):
+    seen = rows[0]["peers"]
+    assert tuple(seen) == BESIDE_US
+    # Centres: (50, 40, 25) and (40, 40, 77) mm.
+    for name in ("majority", "centroid k-NN"):
+        np.testing.assert_allclose(seen[name], [[0.01, 0, -0.052], [-0.01, 0, 0.052]], atol=1e-6)
+    np.testing.assert_allclose(seen["closest-point k-NN"], [[0, 0, -0.002], [0, 0, 0.002]], atol=1e-6)
+    np.testing.assert_allclose(np.array(seen["bounding-box rule"])[:, 4], 1)
+
+
+def test_each_kernel_finds_its_contacts_and_none_is_dropped(rows, blocks):
+    contacts = rows[0]["contacts"]
+    assert list(contacts) == [kernel_name(*kernel) for kernel in KERNELS]
+    for length, cost in KERNELS:
+        found = separate(blocks.of(2), blocks.of(3), length=length, cost=cost)
+        counted = [sum(n for *_, n in contacts[kernel_name(length, cost)][side]) for side in "ab"]
+        assert counted == [len(found.support_first), len(found.support_second)]
+    narrow, wide = (contacts[kernel_name(length, 10.0)]["a"] for length in (0.03, 0.12))
+    assert narrow != wide
+
+
+def test_a_row_is_plain_data_and_the_same_again(rows, blocks):
+    assert json.loads(json.dumps(rows, allow_nan=False)) == rows
+    assert pair_rows("by hand", blocks, TRUTH) == rows
+
+
+def test_the_truths_order_changes_nothing_but_itself(rows, blocks):
+    (turned,) = pair_rows("by hand", blocks, [PairLabel(2, 3, ON, 3)])
+    assert {key for key in turned if turned[key] != rows[0][key]} == {"a", "b"}
+
+
+def test_without_the_table_there_are_things_alone(blocks):
+    bare = without_table(blocks)
+    assert bare.objects == (2, 3, 4)
+    assert len(bare.points) == sum(len(blocks.of(label)) for label in (2, 3, 4))
+    assert bare.camera is CAMERA
+    assert not (bare.labels < 2).any()
+
+
+def test_contacts_stand_strongest_first():
+    def contact(x, strength, n):
+        return SimpleNamespace(position=np.array([x, 0, 1 / 3]), n_support=n, strength=strength)
+
+    one = SimpleNamespace(contacts_a=(contact(1, 9.0, 4), contact(2, 5.0, 8)), contacts_b=(contact(3, 1.0, 2),))
+    assert contacts_of(one) == {  # pyright: ignore[reportArgumentType]
+        "a": [[1, 0, 0.333333, 4], [2, 0, 0.333333, 8]],
+        "b": [[3, 0, 0.333333, 2]],
+    }
+
+
+def test_loose_settings_change_the_kernel_and_drop_nothing(blocks):
+    loose = loose_settings(0.12, 1.0)
+    assert (loose.length, loose.cost, loose.min_support) == (0.12, 1.0, 0)
+    assert {k for k, v in vars(loose).items() if vars(ContactSettings())[k] != v} == {
+        "length",
+        "cost",
+        "min_support",
+    }
+    assert len(interfaces(without_table(blocks), loose)) == 1
+    assert kernel_name(0.06, 10.0) == STANDARD == "60 mm, C 10"
+    assert kernel_name(0.125, 0.5) == "125 mm, C 0.5"
+
+
+# --- lots -------------------------------------------------------------------------------------------------
+
+
+def test_the_class_mix_is_the_thesiss():
+    assert list(MIX.items()) == list(zip(CORE_RELATIONS, (70, 32, 30, 0), strict=True))
+
+
+def test_data_sets_are_cut_into_lots():
+    assert pair_cells(SETTINGS) == [{"data_set": n, "first": first} for n in (0, 1) for first in (0, 22, 44)]
+    assert len(pair_cells({**SETTINGS, "pairs": LOT})) == 2
+
+
+@pytest.fixture
+def eight_real_scenes(monkeypatch, blocks, tmp_path):
+    scenes = [
+        SimpleNamespace(name=f"r{n}", cloud=blocks, truth=[PairLabel(2, 4, NONE, 2 + n % 2)]) for n in range(8)
+    ]
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: tmp_path)
+    for module in (scene_lots, tabletop_pairs):
+        monkeypatch.setattr(module, "real_scenes", lambda: scenes)
+
+
+@pytest.mark.usefixtures("eight_real_scenes")
+def test_real_scenes_follow_in_lots_where_asked_for():
+    assert REAL_LOT == 6
+    cells = pair_cells({**SETTINGS, "real": True})
+    assert cells[:6] == pair_cells(SETTINGS)
+    assert cells[6:] == [{"scenes": [f"r{n}" for n in range(6)]}, {"scenes": ["r6", "r7"]}]
+
+
+@pytest.mark.usefixtures("eight_real_scenes")
+def test_a_lot_of_real_scenes_has_their_rows_alone(monkeypatch):
+    monkeypatch.setattr(tabletop_pairs, "pair_rows", lambda name, cloud, truth: [(name, *truth)])
+    result = run_cell(SETTINGS, {"scenes": ["r6", "r1"]}, 0)
+    assert result == {"set": "real", "rows": [("r1", PairLabel(2, 4, NONE, 3)), ("r6", PairLabel(2, 4, NONE, 2))]}
+
+
+def test_a_machine_without_real_scenes_has_simulated_ones(monkeypatch):
+    monkeypatch.setattr(scene_lots, "real_scenes_folder", lambda: None)
+    assert pair_cells({**SETTINGS, "real": True}) == pair_cells(SETTINGS)
+
+
+@pytest.fixture
+def drawn(monkeypatch, blocks):
+    """Every third scene is beyond doubt; the seeds, numbers and settings that were asked for."""
+    asked: list[tuple] = []
+
+    def sample_scene(seed, number, settings):
+        asked.append((seed, number, settings))
+        sure = 3 if len(asked) % 3 == 0 else 1
+        return SimpleNamespace(cloud=blocks, truth=[PairLabel(2, 4, NONE, sure), PairLabel(2, 1, ON, 1)])
+
+    monkeypatch.setattr(tabletop_pairs, "sample_scene", sample_scene)
+    return asked
+
+
+def test_a_lot_ends_with_its_data_set_and_doubtful_scenes_are_drawn_anew(drawn):
+    result = run_cell({**SETTINGS, "pairs": 46}, {"data_set": 1, "first": 44}, 7)
+    assert result["set"] == 1
+    assert [row["scene"] for row in result["rows"]] == ["1-44", "1-45"]
+    assert {row["confidence"] for row in result["rows"]} == {3}
+    # What is said of the table is no reason to draw anew: twice two doubtful ones and a good one.
+    assert [number for _, number, _ in drawn] == [44, 44, 44, 45, 45, 45]
+    assert len({seed for seed, *_ in drawn}) == 6
+    settings = drawn[0][2]
+    assert (settings.arrangement, settings.camera, settings.shapes) == ("pair", "stereo", "all")
+    assert settings.mix == MIX
+
+
+def test_scenes_depend_on_seed_data_set_and_number_but_not_on_the_lot(drawn, monkeypatch):
+    monkeypatch.setattr(tabletop_pairs, "pair_rows", lambda *scene: [])
+
+    def seeds(seed, data_set, first, pairs):
+        drawn.clear()
+        run_cell({**SETTINGS, "pairs": pairs}, {"data_set": data_set, "first": first}, seed)
+        return [asked[0] for asked in drawn]
+
+    assert seeds(7, 1, 44, 46) == seeds(7, 1, 44, 46)
+    assert seeds(7, 1, 44, 46)[3:] == seeds(7, 1, 45, 46)
+    assert not set(seeds(7, 1, 44, 46)) & set(seeds(7, 0, 44, 46))
+    assert not set(seeds(7, 1, 44, 46)) & set(seeds(8, 1, 44, 46))

@@ -1,0 +1,154 @@
+"""Claim C3.1: useful actions by hand and against a naive twin; the figure shows the shares of the result."""
+
+from collections import deque
+
+import numpy as np
+import pytest
+from scipy import ndimage
+
+from lifelore.core.errors import InputError
+from lifelore.domains.grids.grid_world import MOVES, GridWorld
+from reproduction.chapter3.c3_01_useful_actions import run as c3_1
+from reproduction.chapter3.c3_01_useful_actions.figure import draw
+from reproduction.chapter3.c3_01_useful_actions.measure import measure
+from reproduction.chapter3.c3_01_useful_actions.run import (
+    prior_of,
+    run_cell,
+    uniform_maze,
+)
+from reproduction.engine.estimates import quantile_estimate
+from reproduction.engine.registry import claim_of
+
+CLAIM = claim_of("C3.1")
+FULL = dict(claim_of("C3.1").sizes["full"])
+
+
+def corridor():
+    """Three cells in a row: states 0, 1, 2 from west to east."""
+    return GridWorld.from_free("corridor", np.array([[True, True, True]]))
+
+
+def test_corridor_by_hand():
+    # Goal 2, twice: east is best in 0 and 1. Goal 0, once: west is best in 1 and 2. Actions N, S, E, W.
+    prior = prior_of(corridor(), np.array([2, 0, 2]))
+    assert prior.counts([0, 1, 2]).tolist() == [[0, 0, 2, 0], [0, 0, 2, 1], [0, 0, 0, 1]]
+
+
+def test_goal_rows_would_make_every_action_of_a_goal_useful():
+    prior = prior_of(corridor(), np.array([2]), goal_rows=True)
+    assert prior.counts([2]).tolist() == [[1, 1, 1, 1]]
+    assert not prior_of(corridor(), np.array([2])).counts([2]).any()
+
+
+def steps_to(world, goal):
+    """Naive twin of the exact solution: breadth-first from the goal."""
+    steps = {goal: 0}
+    queue = deque([goal])
+    while queue:
+        s = queue.popleft()
+        for s2 in world.neighbour[s]:
+            if s2 >= 0 and int(s2) not in steps:
+                steps[int(s2)] = steps[s] + 1
+                queue.append(int(s2))
+    return steps
+
+
+def test_useful_is_one_step_nearer_some_goal():
+    random = np.random.default_rng(5)
+    for _ in range(5):
+        world = uniform_maze(random, 7, 6, 0.95)
+        goals = random.integers(world.n_states, size=12)
+        expected = np.zeros((world.n_states, 4))
+        for goal in goals:
+            steps = steps_to(world, int(goal))
+            for s, a in np.ndindex(expected.shape):
+                s2 = int(world.neighbour[s, a])
+                expected[s, a] += s != goal and s2 >= 0 and steps[s2] == steps[s] - 1
+        assert (prior_of(world, goals).counts(np.arange(world.n_states)) == expected).all()
+
+
+def test_with_every_cell_a_goal_useful_is_exactly_passable():
+    world = uniform_maze(np.random.default_rng(1), 7, 6, 0.95)
+    counts = prior_of(world, np.arange(world.n_states)).counts(np.arange(world.n_states))
+    assert ((counts > 0) == (world.neighbour >= 0)).all()
+
+
+def test_uniform_mazes_are_connected_with_the_obstacles_asked_for_and_differ():
+    random = np.random.default_rng(0)
+    free = set()
+    for _ in range(20):
+        world = uniform_maze(random, 7, 6, 0.95)
+        picture = world.state_of >= 0
+        assert picture.sum() == 19
+        assert ndimage.label(picture)[1] == 1
+        assert not picture[[0, -1]].any()
+        assert not picture[:, [0, -1]].any()
+        free.add(picture.tobytes())
+    assert len(free) == 20
+
+
+def test_a_maze_that_is_never_connected_is_refused(monkeypatch):
+    monkeypatch.setattr(c3_1, "MAX_DRAWS", 50)
+    with pytest.raises(
+        InputError, match="none of 50 mazes with 240 obstacles at size 23 was connected; use fewer"
+    ):
+        uniform_maze(np.random.default_rng(0), 23, 240, 0.95)
+
+
+def test_a_lot_of_mazes_does_not_depend_on_how_many_are_asked_for():
+    few, more = ({**FULL, "mazes": n} for n in (3, 5))
+    cell = {"generator": "uniform", "first": 0}
+    assert run_cell(few, cell, 0)["mazes"] == run_cell(more, cell, 0)["mazes"][:3]
+
+
+def test_measures_by_hand():
+    mazes = [
+        {"actions": 76, "useful": u, "passable": p, "useful_collisions": c, "useful_with_goal_rows": 76}
+        for u, p, c in ((38, 40, 0), (42, 42, 0), (57, 57, 3), (60, 60, 0))
+    ]
+    settings = {**FULL, "generators": ["uniform"]}
+    found = measure(settings, [{"generator": "uniform", "mazes": mazes}])
+    assert found["rank_of_42_of_76_uniform"].value == 1.5 / 4  # one below, half of the one that is equal
+    assert found["rank_of_48_of_76_uniform"].value == 2 / 4
+    assert found["passable_found_useful_uniform"].value == pytest.approx((38 / 40 + 3) / 4)
+    assert found["useful_that_collide_uniform"].value == pytest.approx(3 / 57 / 4)
+    assert found["useful_share_goal_rows_counted_uniform"].value == 1.0
+
+
+def test_quantile_interval_by_hand():
+    # 100 values 1 … 100, median 50.5; Binomial(100, 1/2) has its 2.5 % and 97.5 % points at 40 and 60.
+    found = quantile_estimate(np.arange(100.0, 0.0, -1.0), 0.5)
+    assert (found.value, found.ci95, found.n) == (50.5, (40.0, 61.0), 100)
+
+
+def test_moves_are_in_the_order_that_figures_draw():
+    assert MOVES.tolist() == [[-1, 0], [1, 0], [0, 1], [0, -1]]
+
+
+def test_without_the_generator_that_the_predicate_asks_about_it_cannot_be_told():
+    assert CLAIM.predicate.verdict({}) == "cannot be tested"
+
+
+def result(examples=True):
+    rows = [
+        {"generator": "g", "useful": 3, "actions": 8, "mazes": 1},
+        {"generator": "g", "useful": 4, "actions": 8, "mazes": 3},
+    ]
+    example = {
+        "example": 2, "shape": [1, 2], "cells": [[0, 0], [0, 1]], "counted": [True, True],
+        "probs": [[0, 0, 1, 0], [0, 0, 0, 1]],
+    }  # fmt: skip
+    return {"rows": rows + ([example] if examples else []), "settings": {"generators": ["g"], "mazes": 4}}
+
+
+def test_shares_and_examples():
+    figure = draw(result())
+    maze, shares = figure.axes
+    assert maze.get_title("left") == "2 of 8 actions useful"
+    bars = [(bar.get_x() + bar.get_width() / 2, bar.get_height()) for bar in shares.patches]
+    np.testing.assert_allclose(bars, [[37.5, 25], [50, 75]])
+    assert [line.get_xdata()[0] for line in shares.lines] == [4200 / 76, 4800 / 76]
+
+
+def test_without_examples_only_shares_are_drawn():
+    assert len(draw(result(examples=False)).axes) == 1

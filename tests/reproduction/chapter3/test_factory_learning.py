@@ -1,0 +1,111 @@
+"""Learners in the factory: numbers by hand on a floor of three cells, and streams that are shared."""
+
+import numpy as np
+import pytest
+
+from lifelore.core.learning.q_learner import QLearning
+from lifelore.domains.factory.contexts import state_contexts
+from lifelore.domains.factory.layout import factory
+from reproduction.chapter3.factory import learning
+from reproduction.chapter3.factory.learning import (
+    Problem,
+    exact_prior,
+    greedy_return,
+    hand_made_prior,
+    learn_task,
+    problem_of,
+    rows_of,
+    solved,
+    tasks_of,
+    with_pseudo_count,
+)
+from reproduction.engine.registry import claim_of
+
+SETTINGS = {**claim_of("C3.5").sizes["full"], "max_steps": 300}
+THREE_CELLS = """
+#####
+#S1a#
+#####
+"""
+
+
+@pytest.fixture
+def corridor(monkeypatch):
+    """The only task of a corridor: start, procurement point, assembly point."""
+    small = factory(THREE_CELLS, discount=0.9)
+    monkeypatch.setattr(learning, "floor", lambda discount: small)
+    return solved.__wrapped__((0,), 0.9)
+
+
+def test_a_corridor_solved_by_hand(corridor):
+    # East -2, Procure 10, East -2, Assemble 10 and 100.
+    assert corridor.optimal_reward == 116
+    assert corridor.optimal_return == pytest.approx(-2 + 0.9 * 10 - 0.81 * 2 + 0.729 * 110)
+    assert corridor.way.tolist() == [0, 1, 4, 5]
+    east, west, procure, assemble = 2, 3, 4, 5
+    only = [np.flatnonzero(row).tolist() for row in corridor.best]
+    # Raw: east, Procure, back west; procured: east, east, Assemble; completed rows are empty.
+    assert only == [[east], [procure], [west], [east], [east], [assemble], [], [], []]
+
+
+def test_what_has_learnt_the_exact_values_earns_the_optimal_return(corridor):
+    problem = Problem(corridor, corridor.task.tables(), (0, "hand"))
+    q = corridor.task.optimal_q()
+    assert greedy_return(problem, q) == pytest.approx(corridor.optimal_return)
+    assert greedy_return(problem, np.zeros_like(q)) == 0.0
+    # Back and forth between the first two cells for ever: east for -2, west onto the route for -1.
+    shuttles = np.zeros_like(q)
+    shuttles[0, 2] = shuttles[1, 3] = 1.0
+    assert greedy_return(problem, shuttles) == pytest.approx((-2 - 0.9) / (1 - 0.81))
+
+
+def test_advice_counts_like_so_many_policies():
+    advice = np.array([[True, True, False, False, False, False], [False] * 6])
+    prior = hand_made_prior(advice, 35, 0.5)
+    # 35 each for two of six actions, 0.5 for all; without advice even.
+    np.testing.assert_allclose(prior.probs([0])[0], [35.5 / 73] * 2 + [0.5 / 73] * 4)
+    np.testing.assert_allclose(prior.probs([1])[0], 1 / 6)
+    firmer = with_pseudo_count(prior, 1.0)
+    np.testing.assert_allclose(firmer.probs([0])[0], [36 / 76] * 2 + [1 / 76] * 4)
+    assert prior.alpha0 == 0.5
+
+
+@pytest.mark.parametrize("encoding", ["global", "left", "listed", "phase"])
+def test_prior_counts_as_a_plain_loop_does(encoding):
+    known = [solved(components, 0.99) for components in [(0,), (4,), (0,)]]
+    counts = {}
+    for one in known:
+        for code, best in zip(state_contexts(one.task, encoding).tolist(), one.best, strict=True):
+            counts[code] = counts.get(code, 0) + best.astype(int)
+    prior = exact_prior(known, encoding, 0.1)
+    acting = [code for code, count in counts.items() if count.any()]
+    assert len(prior) == len(acting)
+    np.testing.assert_array_equal(prior.counts(acting), [counts[code] for code in acting])
+
+
+def test_a_longer_sequence_begins_like_a_shorter_one():
+    five, eight = (tasks_of(SETTINGS, 1, 4, 0, n) for n in (5, 8))
+    assert eight[:5] == five
+    assert all(len(set(components)) == 4 for components in eight)
+    assert tasks_of(SETTINGS, 1, 4, 1, 5) != five
+
+
+def test_without_counts_a_prior_is_q_learning_to_the_bit():
+    problem = problem_of(SETTINGS, (2,), (5, "test"))
+    schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
+    plain, learner = learn_task(problem, None, schedule)
+    learnt = rows_of(problem, exact_prior([], "global", 0.1), "global", "prior")
+    silent = rows_of(problem, hand_made_prior(np.zeros_like(problem.solved.best), 35, 0.1), None, "prior")
+    for rows in (learnt, silent):
+        curve, other = learn_task(problem, rows, schedule)
+        assert curve.rewards.tobytes() == plain.rewards.tobytes()
+        assert other.q.tobytes() == learner.q.tobytes()
+
+
+def test_a_prior_of_the_task_itself_finds_it_sooner():
+    problem = problem_of(SETTINGS, (2,), (5, "test"))
+    schedule = QLearning(episodes=20, max_steps=300).schedule(0.99)
+    rows = rows_of(problem, exact_prior([problem.solved], "global", 0.01), "global", "uniform")
+    guided, _ = learn_task(problem, rows, schedule)
+    plain, _ = learn_task(problem, None, schedule)
+    assert guided.rewards.mean() > plain.rewards.mean() + 1000

@@ -1,0 +1,140 @@
+"""C4.17: worlds by hand, measures of made-up results, the decision, and a tiny run."""
+
+import json
+
+import numpy as np
+import pytest
+
+from reproduction.chapter4.c4_17_default_rule.measure import (
+    _largest_excess,
+    decided_rule,
+    key_of,
+    measure,
+    rows,
+)
+from reproduction.chapter4.c4_17_default_rule.run import CANDIDATES, RULES, cells, run_cell
+from reproduction.chapter4.c4_17_default_rule.worlds import CALLS, FACTOR, GOLF, TABLES, world_of
+from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
+from reproduction.engine.registry import claim_of
+
+CLAIM = claim_of("C4.17")
+
+
+def test_there_are_22_worlds_with_each_kind_of_model():
+    found = cells(CLAIM.settings("full"))
+    assert len(found) == 44
+    assert sum(cell["model"] == EXACT for cell in found) == 22
+    assert {cell["noise"] for cell in found if cell["world"] == CALLS} == {"equal"}
+
+
+def test_deviations_are_equal_or_drawn_over_a_factor_of_30():
+    assert set(world_of(GOLF, "equal", 0, 0).deviation.ravel()) == {8.0}
+    by_policy = world_of("X", "by policy", 0, 0).deviation
+    assert (by_policy == by_policy[0]).all()
+    by_pair = np.concatenate([world_of("X", "by pair", 0, group).deviation.ravel() for group in range(3)]) / 20
+    low, high = np.quantile(by_pair, [0.025, 0.975])
+    # 13,872 draws: an end is known to about 2 %.
+    assert high / low == pytest.approx(FACTOR, rel=0.1)
+    assert np.median(by_pair) == pytest.approx(1, rel=0.05)
+
+
+def test_pays_have_the_means_and_deviations_of_the_models():
+    for name, noise in ((TABLES, "by pair"), (CALLS, "equal")):
+        world = world_of(name, noise, 3, 1)
+        library = world.library(EXACT, 0, np.random.default_rng(0))
+        assert np.allclose(library.performance.mean, world.mean)
+        assert np.allclose(library.performance.deviation, world.deviation, atol=1e-9)
+        types, policies = np.full(20_000, 2), np.full(20_000, 1)
+        luck = np.random.default_rng(0).random((20_000, 1))
+        paid = world.pays(types, luck)(0, policies)
+        assert paid.mean() == pytest.approx(world.mean[2, 1], abs=5 * world.deviation[2, 1] / 20_000**0.5)
+        assert paid.std() == pytest.approx(world.deviation[2, 1], rel=0.05)
+        learnt = world.library(LEARNT, 2000, np.random.default_rng(1)).performance.mean
+        assert np.abs(learnt - world.mean).max() < 5 * world.deviation.max() / 2000**0.5
+
+
+def made_up(regret, stuck, **cell):
+    """A result of two groups."""
+    own = {name: {"regret": regret[name], "stuck": [stuck[name]] * 2} for name in RULES}
+    return {"world": "golf", "noise": "equal", "model": EXACT, **cell, "rules": own}
+
+
+def test_measures_by_hand():
+    two = {name: [2.0, 4.0] for name in RULES}
+    first = made_up(two | {"IDS": [1.0, 2.0]}, dict.fromkeys(RULES, 0.1) | {"IDS": 0.02})
+    second = made_up(two | {"greedy": [1.0, 1.0]}, dict.fromkeys(RULES, 0.0), noise="by pair", model=LEARNT)
+    found = measure({}, [first, second])
+    # The best mean regret is 1.5 in the first world and 1 in the second.
+    assert found["regret_IDS"].value == pytest.approx((1.0 + 3.0) / 2)
+    assert found["regret_greedy"].value == pytest.approx((2.0 + 1.0) / 2)
+    assert found["regret_EI_pay_exact"].value == pytest.approx(2.0)
+    assert found["regret_EI_pay_learnt"].value == pytest.approx(3.0)
+    assert found["regret_IDS_minus_EI_pay"].value == pytest.approx(-0.5)
+    assert found["regret_IDS_minus_best_other"].value == pytest.approx(0.5)
+    assert found["regret_EI_outcome_over_greedy_unequal"].value == pytest.approx(3.0)
+    assert found["stuck_IDS_exact"].value == 0.02
+    assert found["stuck_above_least_KG"].value == pytest.approx(0.08)
+    assert rows({}, [first])[0]["regret"]["IDS"] == 1.5
+
+
+def stuck_by_group(shares):
+    return {"rules": {name: {"stuck": shares.get(name, [0.5, 0.5, 0.5])} for name in RULES}, "model": EXACT}
+
+
+def test_the_largest_excess_of_stuck_tasks_by_hand():
+    ids, least = [0.3, 0.2, 0.4], [0.2, 0.1, 0.1]
+    small = stuck_by_group({"IDS": [0.2, 0.1, 0.1], "KG": [0.2, 0.0, 0.1]})
+    found = _largest_excess([small, stuck_by_group({"IDS": ids, "greedy": least})], "IDS")
+    # Above greedy selection by 0.1, 0.1 and 0.3 in the second world.
+    assert found.value == pytest.approx(0.5 / 3)
+    assert found.ci95 is not None
+    assert 0.1 - 1e-9 <= found.ci95[0] < found.ci95[1] <= 0.3 + 1e-9
+    assert _largest_excess([small], "KG").ci95 == (0.0, 0.0)
+
+
+def test_measures_of_uncertain_models_by_hand():
+    two, some = {name: [2.0, 4.0] for name in RULES}, dict.fromkeys(RULES, 0.1)
+    learnt = made_up(two | {"IDS": [1.0, 3.0]}, some, noise="by pair", model=LEARNT)
+    learnt[UNCERTAIN] = {
+        "EI, pay": {"regret": [2.0, 2.0], "stuck": [0.0, 0.3]},
+        "IDS": {"regret": [1.0, 1.0], "stuck": [0.1, 0.3]},
+    }
+    found = measure({}, [made_up(two, some), learnt])
+    plug_in_alone = {key: value for key, value in learnt.items() if key != UNCERTAIN}
+    before = measure({}, [made_up(two, some), plug_in_alone])
+    # What was measured before stays as it was; the best rule of the learnt world has a mean regret of 2.
+    assert {key: found[key] for key in before} == before
+    assert found["regret_EI_pay_uncertain"].value == pytest.approx(1.0)
+    assert found["regret_IDS_uncertain"].value == pytest.approx(0.5)
+    assert found["regret_IDS_uncertain_minus_plug_in"].value == pytest.approx(-0.5)
+    assert found["regret_IDS_uncertain_minus_EI_pay_uncertain"].value == pytest.approx(-0.5)
+    assert found["stuck_above_least_IDS_uncertain"].value == pytest.approx(0.05)
+    assert found["stuck_above_least_EI_pay_uncertain"].value == 0
+    assert found["stuck_IDS_uncertain_above_plug_in"].value == pytest.approx(0.1)
+    assert rows({}, [learnt])[0][UNCERTAIN]["stuck"]["IDS"] == pytest.approx(0.2)
+
+
+def measured_of(regret, excess):
+    return {
+        f"{word}_{key_of(name)}": {"value": value}
+        for word, values in (("regret", regret), ("stuck_above_least", excess))
+        for name, value in zip(RULES, values, strict=True)
+    }
+
+
+def test_the_decision():
+    regret = [1.0, 1.1, 1.2, 1.3, 1.4, 1.5]
+    assert decided_rule(measured_of(regret, [0.06, 0.05, 0.0, 0.0, 0.0, 0.0])) == "EI, pay"
+    assert decided_rule(measured_of(regret, [0.06, 0.06, 0.07, 0.055, 0.2, 0.3])) == "KG"
+    assert decided_rule(measured_of(regret, [0.0, 0.2, 0.1, 0.0, 0.0, 0.0]), CANDIDATES) == "IDS"
+
+
+def test_all_rules_meet_the_same_tasks_and_a_run_repeats():
+    settings = {**CLAIM.settings("quick"), "groups": 2, "tasks": 4, "episodes": 6}
+    cell = {"world": TABLES, "noise": "by policy", "model": LEARNT}
+    found = run_cell(settings, cell, 1)
+    assert json.loads(json.dumps(found)) == run_cell(settings, cell, 1)
+    assert set(found["rules"]) == set(RULES)
+    assert set(found[UNCERTAIN]) == set(CANDIDATES)
+    assert UNCERTAIN not in run_cell(settings, {**cell, "model": EXACT}, 1)
+    assert run_cell(settings, cell, 2) != found

@@ -1,0 +1,96 @@
+"""The common runner against agents that play one task alone; counts by hand."""
+
+import numpy as np
+import pytest
+
+from lifelore.interaction.baselines import UCB1
+from lifelore.interaction.beliefs.belief import entropy
+from lifelore.interaction.beliefs.type_dynamics import TypeDynamics
+from lifelore.interaction.library.policy_library import PolicyLibrary
+from lifelore.interaction.reuse.bayesian_policy_reuse import BayesianPolicyReuse
+from lifelore.interaction.selection import ExpectedImprovement, InformationDirected
+from reproduction.chapter4.reuse.many_tasks import (
+    converged_after,
+    curve,
+    grouped_mean,
+    grouped_quantile,
+    late_regret,
+    play_baseline,
+    play_rule,
+)
+
+MEANS = np.array([[10.0, 4.0, 0.0], [5.0, 9.0, 1.0], [0.0, 3.0, 8.0]])
+
+
+@pytest.mark.parametrize("rule", [ExpectedImprovement(), InformationDirected()])
+def test_many_tasks_at_once_choose_as_single_agents_do(rule):
+    library = PolicyLibrary.from_means(MEANS, 2.0, prior=[0.5, 0.3, 0.2])
+    noise = np.random.default_rng(0).standard_normal((3, 12))
+    every = np.arange(3)
+    played = play_rule(
+        rule, library, lambda t, p: MEANS[every, p] + 2 * noise[:, t], 3, 12, np.random.default_rng(1)
+    )
+    for task in range(3):
+        agent = BayesianPolicyReuse(library, rule, dynamics=TypeDynamics.static(), horizon=12)
+        for t in range(12):
+            # The prior is uneven, so that nothing ties.
+            assert played.entropy[task, t] == pytest.approx(float(entropy(agent.belief)), abs=1e-9)
+            assert agent.select() == played.policies[task, t]
+            chosen = int(played.policies[task, t])
+            agent.update(chosen, MEANS[task, chosen] + 2 * noise[task, t])
+
+
+def test_a_first_policy_may_be_forced():
+    library = PolicyLibrary.from_means(MEANS, 2.0)
+    played = play_rule(
+        ExpectedImprovement(), library, lambda t, p: np.zeros(4), 4, 3, np.random.default_rng(1), first=2
+    )
+    assert (played.policies[:, 0] == 2).all()
+
+
+def test_peers_are_paid_for_what_they_chose():
+    paid = []
+
+    def pays(t, policies):
+        paid.append(policies.copy())
+        return np.where(policies == 1, 1.0, 0.0)
+
+    policies = play_baseline(UCB1(3, n_tasks=5, exploration=0.1), pays, 30)
+    assert (policies == np.array(paid).T).all()
+    assert (policies[:, 10:] == 1).mean() > 0.8
+
+
+def test_when_regret_ended_by_hand():
+    regret = np.array([[0.0, 0, 0, 0], [5, 0, 0, 0], [0, 0, 3, 0], [1, 1, 1, 1], [0, 0, 0, 1e-12]])
+    # From the first, after one, after three, never (one more than there are), and rounding is no regret.
+    assert converged_after(regret).tolist() == [1, 2, 4, 5, 1]
+
+
+def test_late_regret_is_of_the_last_ten():
+    regret = np.concatenate([np.full((1, 5), 100.0), np.arange(10.0)[None]], axis=1)
+    assert late_regret(regret).tolist() == [4.5]
+
+
+def test_groups_make_the_interval():
+    values = np.array([[0.0, 10.0], [0.0, 10.0], [0.0, 10.0]])
+    found = grouped_mean(values)
+    # Within groups all differs and between them nothing: no spread to estimate from.
+    assert (found.value, found.median, found.ci95, found.n) == (5.0, 5.0, None, 6)
+    shifted = grouped_mean(values + np.array([[0.0], [1.0], [2.0]]))
+    assert shifted.ci95 is not None
+    assert shifted.ci95[0] >= 5
+    assert shifted.ci95[1] <= 7
+
+
+def test_quantile_over_all_values():
+    found = grouped_quantile(np.arange(40.0).reshape(8, 5), 0.9)
+    assert found.value == pytest.approx(35.1)
+    assert found.ci95 is not None
+    assert found.ci95[0] <= found.value <= found.ci95[1]
+    assert grouped_quantile(np.ones((2, 3)), 0.5).ci95 is None
+
+
+def test_curve_by_hand():
+    found = curve(np.array([[1.0, 2.0], [3.0, 2.0]]))
+    # Deviation √2 over √2 tasks.
+    assert found == {"mean": [2.0, 2.0], "error": [1.0, 0.0]}

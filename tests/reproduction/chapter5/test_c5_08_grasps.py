@@ -1,0 +1,114 @@
+"""C5.8: searches start where they say, grasps are carried by hand, and measures by hand."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.domains.tabletop.parallel_gripper import OPENING, Grasp
+from lifelore.perception.contacts.contact_points import ContactPoint
+from lifelore.perception.contacts.interface import Interface
+from lifelore.perception.scene import Scene
+from lifelore.perception.topology.grasp_seeds import GraspSeed
+from reproduction.chapter5.c5_08_grasps.measure import measure, rows
+from reproduction.chapter5.c5_08_grasps.run import ARRANGEMENTS, TRIES, cells, equal_topology, run_cell
+from reproduction.chapter5.c5_08_grasps.searches import (
+    anywhere,
+    around,
+    carried,
+    copied,
+    from_above,
+    from_seeds,
+)
+
+DOWN, ALONG = np.array([0.0, 0.0, -1.0]), np.array([0.0, 1.0, 0.0])
+RNG = np.random.default_rng
+
+
+def on_the_table(*places):
+    """Object 2 with contact points at `places` to the table."""
+    up, nothing = np.array([0.0, 0.0, 1.0]), np.zeros(3)
+    points = [np.array(place, float) for place in places]
+    own = tuple(ContactPoint(p, up, nothing, 1.0, 7, TABLE) for p in points)
+    table = tuple(ContactPoint(p, -up, nothing, 1.0, 7, 2) for p in points)
+    edges = np.array([[k, k] for k in range(len(points))], np.int64).reshape(-1, 2)
+    return Scene(
+        LabelledCloud(np.array(points), np.full(len(points), 2)), (Interface(2, TABLE, 0.0, own, table, edges),)
+    )
+
+
+def test_seeds_come_first_as_they_are_and_wide_seeds_not_at_all():
+    seeds = [
+        GraspSeed(2, "edge", np.full(3, float(k)), DOWN, ALONG, width)
+        for k, width in enumerate((0.05, OPENING + 0.01))
+    ]
+    first, second = islice(from_seeds(seeds, RNG(0)), 2)
+    assert (first.position == 0.0).all()
+    assert np.linalg.norm(second.position) < 0.1
+    assert second.closing @ second.approach == pytest.approx(0.0)
+    assert list(from_seeds(seeds[1:], RNG(0))) == []
+
+
+@pytest.mark.parametrize("search", [anywhere, from_above])
+def test_unseeded_grasps_are_poses_at_the_object(search):
+    points = RNG(0).uniform(0, 0.1, (50, 3))
+    for grasp in islice(search(points, RNG(1)), 20):
+        assert [np.linalg.norm(way) for way in (grasp.approach, grasp.closing)] == pytest.approx([1.0, 1.0])
+        assert grasp.approach @ grasp.closing == pytest.approx(0.0, abs=1e-12)
+        assert grasp.approach[2] <= 0
+        assert np.abs(grasp.position - 0.05).max() <= 0.06 + 0.01
+
+
+def test_a_grasp_is_carried_along_a_longer_object_that_is_turned():
+    first, second = on_the_table((0, 0, 0), (0.1, 0, 0)), on_the_table((1, 0, 0), (1, 0.2, 0))
+    grasp = Grasp(np.array([0.1, 0.0, 0.03]), DOWN, ALONG)
+    nodes = {(2, 0): (2, 0), (2, 1): (2, 1)}
+    found, turned = carried(grasp, first, 2, second, 2, nodes)
+    assert found.position == pytest.approx([1.0, 0.2, 0.03])
+    assert found.closing == pytest.approx([-1.0, 0.0, 0.0])
+    assert turned.position == pytest.approx([1.0, 0.0, 0.03])
+    assert found.approach == pytest.approx(DOWN)
+    assert next(around([found], RNG(0))) is found
+
+
+def test_contact_points_above_one_another_carry_nothing():
+    upright = on_the_table((0, 0, 0), (0, 0, 0.1))
+    assert carried(Grasp(np.zeros(3), DOWN, ALONG), upright, 2, upright, 2, {(2, k): (2, k) for k in (0, 1)}) == []
+
+
+def test_a_copy_moves_with_the_middle():
+    grasp = copied(Grasp(np.zeros(3), DOWN, ALONG), np.zeros((2, 3)), np.ones((2, 3)))
+    assert grasp.position == pytest.approx([1.0, 1.0, 1.0])
+
+
+def test_topology_is_equal_whatever_the_places():
+    two, other = on_the_table((0, 0, 0), (0.1, 0, 0)), on_the_table((0, 0, 0), (0, 0.3, 0))
+    assert equal_topology(two, other) is not None
+    assert equal_topology(two, on_the_table((0, 0, 0))) is None
+
+
+def test_measures_by_hand():
+    row = {"scene": "a", "seeds": 1, "seeded": 1, "anywhere": None, "above": 4}
+    moved = {"carried": 2, "copied": 1, "not carried": None, "above, not carried": None}
+    objects = [row | moved, {**row, "scene": "b", "seeded": 3, "above": None}, {**row, "seeds": 0, "anywhere": 1}]
+    results = [{"arrangement": ARRANGEMENTS[0], "objects": objects, "equal": [True, False], "examples": []}]
+    found = {name: number.value for name, number in measure({}, results).items()}
+    assert (found["seeded"], found["anywhere"], found["above"]) == (1.0, 0.0, 0.5)
+    assert (found["seeded_first_try"], found["seeded_less_above"]) == (0.5, 0.5)
+    assert (found["carried"], found["carried_first_try"], found["carried_less_copied"]) == (1.0, 0.0, 0.0)
+    assert found["with_seeds"] == pytest.approx(2 / 3)
+    assert found["equal_topology"] == 0.5
+    curves = {line["search"]: line["within"] for line in rows({}, results) if "search" in line}
+    assert curves["seeded"] == [0.5, 0.5, *[1.0] * (TRIES - 2)]
+
+
+@pytest.mark.sim
+def test_a_lot_names_its_objects():
+    pytest.importorskip("mujoco", reason="needs the extra sim")
+    settings = {"pairs": 1}
+    cell = next(cell for cell in cells(settings) if cell["arrangement"] == "hole-other")
+    found = run_cell(settings, cell, 3)
+    assert len(found["equal"]) == 1
+    assert len(found["objects"]) == 2
+    assert {"seeds", "seeded", "anywhere", "above"} <= set(found["objects"][0])

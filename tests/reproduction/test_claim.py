@@ -1,0 +1,105 @@
+"""Settings of a claim and what may override them."""
+
+import importlib
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from lifelore.core.errors import InputError
+from reproduction.engine import registry
+from reproduction.engine.claim import Claim
+from reproduction.engine.predicate import Predicate
+
+
+def claim(check=None):
+    settings = {"runs": 5, "rate": 0.5, "name": "all", "sizes": [1, 2], "deep": {"a": 1}, "fast": True}
+    nothing = dict.fromkeys(("cells", "run_cell", "measure", "rows", "draw"), lambda *_: None)
+    sizes = {"quick": {**settings, "runs": 1}, "full": settings}
+    return Claim("C0.0", "t", "th", sizes, Predicate((), ()), **nothing, check=check)  # type: ignore[arg-type]
+
+
+def test_modes():
+    assert claim().settings("quick")["runs"] == 1
+    assert claim().settings("full")["runs"] == 5
+    with pytest.raises(InputError, match="mode must be one of quick, full, got 'fast'"):
+        claim().settings("fast")
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "value"),
+    [
+        ("runs", "7", 7),
+        ("runs", 7, 7),
+        ("rate", "1", 1.0),
+        ("rate", 1, 1.0),
+        ("name", "7", "7"),
+        ("sizes", "[3]", [3]),
+        ("fast", "false", False),
+        ("deep", '{"b": 2}', {"b": 2}),
+    ],
+)
+def test_overrides_are_read_as_the_settings_type(key, given, value):
+    found = claim().settings("full", {key: given})[key]
+    assert found == value
+    assert type(found) is type(value)
+
+
+@pytest.mark.parametrize(
+    ("key", "given", "rule"),
+    [
+        ("runs", "many", "C0.0 setting 'runs' must be a whole number, got 'many'; the default is 5"),
+        ("runs", "1.5", "whole number"),
+        ("runs", True, "whole number"),
+        ("rate", "NaN", "must be a number"),
+        ("rate", "true", "must be a number"),
+        ("sizes", "3", "must be a list"),
+        ("sizes", "[NaN]", "must be a list"),
+        ("fast", "1", "true or false"),
+        ("deep", "[1]", "JSON object"),
+        ("speed", "1", "C0.0 has no setting 'speed'; it has runs, rate"),
+    ],
+)
+def test_overrides_that_break_their_rule(key, given, rule):
+    with pytest.raises(InputError, match=rule) as refused:
+        claim().settings("full", {key: given})
+    assert "\n" not in str(refused.value)
+
+
+def test_the_claims_own_check_sees_the_overridden_settings():
+    seen = []
+    claim(seen.append).settings("full", {"runs": "3"})
+    assert seen[0]["runs"] == 3
+
+
+def test_a_cause_says_whether_a_test_shows_it():
+    one = replace(claim(), causes={"a": "it rains", "b": "it pours"}, shown_by={"b": "E7"})
+    assert one.causes_in_words() == {"a": "it rains (untested)", "b": "it pours (shown by tests: E7)"}
+
+
+def test_overriding_leaves_the_claim_as_it_was():
+    one = claim()
+    one.settings("full", {"runs": 3})
+    assert one.settings("full")["runs"] == 5
+
+
+def test_a_small_claim_stands_in_one_module(tmp_path, monkeypatch):
+    text = (Path(registry.__file__).parents[1] / "chapter2/c2_09_substructure/claim.toml").read_text()
+    (tmp_path / "small").mkdir()
+    (tmp_path / "small/claim.toml").write_text(text)
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print")
+    monkeypatch.syspath_prepend(tmp_path)
+    claim = Claim.load("C2.9", tmp_path / "small", "small")
+    assert claim.cells is claim.draw is print
+    assert claim.check is None
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = print  # no figure")
+    importlib.invalidate_caches()
+    monkeypatch.delitem(sys.modules, "small.run")
+    with pytest.raises(InputError, match="missing draw"):
+        Claim.load("C2.9", tmp_path / "small", "small")
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print; shared = ('sizes',)")
+    importlib.invalidate_caches()
+    monkeypatch.delitem(sys.modules, "small.run")
+    with pytest.raises(InputError, match=r"shared of .* must name settings, got sizes"):
+        Claim.load("C2.9", tmp_path / "small", "small")

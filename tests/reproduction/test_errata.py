@@ -1,0 +1,137 @@
+"""What the errata page says, shown; the entries' numbers are those of docs/errata.md."""
+
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from lifelore.action.priors.action_prior import ActionPrior
+from lifelore.core.planning.planning import best_actions
+from lifelore.domains.grids.lattice import lattice
+from reproduction.chapter3.c3_01_useful_actions.run import prior_of
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "errata.md").read_text(encoding="utf-8")
+
+
+def test_entries_are_numbered_and_name_tests_that_exist():
+    numbers = [int(n) for n in re.findall(r"^## E(\d+)\b", PAGE, re.MULTILINE)]
+    assert numbers == list(range(1, len(numbers) + 1))
+    sections = re.split(r"^## ", PAGE, flags=re.MULTILINE)[1:]
+    for section in sections:
+        assert all(f"**{part}.**" in section for part in ("Printed", "Why not", "Here", "Shown by")), section[:40]
+    for path, name in re.findall(r"`(tests/\S+\.py)::(\w+)`", PAGE):
+        assert f"def {name}(" in (ROOT / path).read_text(encoding="utf-8"), name
+
+
+def test_paths_that_entries_name_exist():
+    paths = set(re.findall(r"`((?:tests|src|docs|results|examples)/[^`:\s]+)", PAGE))
+    assert "tests/perception/reasoning/test_geometric_relations.py" in paths
+    assert [path for path in sorted(paths) if not (ROOT / path).exists()] == []
+
+
+def test_e1_printed_shares_need_nineteen_cells_or_thirty_eight():
+    def shares(n_cells):
+        return {f"{100 * k / (4 * n_cells):.2f}" for k in range(4 * n_cells + 1)}
+
+    assert [n for n in range(2, 50) if {"55.26", "63.16"} <= shares(n)] == [19, 38]
+
+
+def test_e2_a_state_prior_tells_cells_apart_that_look_alike():
+    world = lattice(9)
+    by_state = prior_of(world, np.arange(world.n_states))
+    states = np.arange(world.n_states)
+    probs = by_state.probs(states)
+    alike = [(a, b) for a in states for b in states[:a] if world.percepts[a] == world.percepts[b]]
+    assert any(not np.allclose(probs[a], probs[b]) for a, b in alike)
+    by_percept = by_state.marginalise(world.percepts[by_state.contexts])
+    assert all(np.array_equal(*by_percept.probs(world.percepts[[a, b]])) for a, b in alike)
+
+
+def test_e5_a_draw_at_every_step_is_the_proportion():
+    # 40,000 draws of θ and then of an action: a frequency's standard error is below 0.5 / 200 = 0.0025; 4.5 of
+    # them leave a false alarm in 150,000 for each of 4 actions, and the seed is fixed.
+    prior = ActionPrior(4, alpha0=0.1)
+    prior.update([0, 0, 0], [[True, False, True, False], [True, False, False, False], [False, True, True, False]])
+    drawn = prior.sample(np.zeros(40_000, int), np.random.default_rng(0), form="dirichlet")
+    frequency = np.bincount(drawn, minlength=4) / 40_000
+    np.testing.assert_allclose(frequency, prior.probs([0])[0], atol=4.5 * 0.0025)
+
+
+def test_e6_softmax_of_counts_loses_what_the_proportion_keeps():
+    prior = ActionPrior(2, alpha0=0.1)
+    prior.update([0], [[True, True]], weight=60)
+    prior.update([0], [[True, False]], weight=40)
+    assert prior.probs([0])[0, 1] == pytest.approx(60.1 / 160.2)
+    assert prior.probs([0], "softmax")[0, 1] < 1e-17
+
+
+def test_e8_an_action_optimal_where_its_policy_never_comes_leads_out_of_the_minimised_domain():
+    # States 0 … 4, actions a and b. Both tasks start in 0. Task 1: goal 1, by 0 -a-> 1; from 2, where it never
+    # comes, its policy would go 2 -b-> 3 -a-> 1. Task 2: goal 4, by 0 -b-> 2 -a-> 4.
+    follow = np.array([[1, 2], [1, 1], [4, 3], [1, 1], [4, 4]])
+    policies = np.array([[0, 0, 1, 0, 0], [1, 0, 0, 0, 0]])
+
+    def reachable(policy):  # Algorithm 3
+        states = {0}
+        while (grown := states | {int(follow[s, policy[s]]) for s in states}) != states:
+            states = grown
+        return states
+
+    kept_states = set().union(*(reachable(p) for p in policies))
+    kept_actions = {(s, int(p[s])) for p in policies for s in range(5)}
+    assert kept_states == {0, 1, 2, 4}
+    leaving = [(s, a) for s, a in kept_actions if s in kept_states and int(follow[s, a]) not in kept_states]
+    assert leaving == [(2, 1)]  # here η(s, a) would be 1/0
+    own = {(s, int(p[s])) for p in policies for s in reachable(p)}  # pairs of one and the same task
+    assert all(int(follow[s, a]) in kept_states for s, a in own)
+
+
+def test_e9_a_domain_without_traps_cannot_have_fewer():
+    world = lattice(7)
+    prior = prior_of(world, np.arange(world.n_states))
+    assert (prior.counts(np.arange(world.n_states)) > 0).any(axis=1).all()  # no state is futile
+    assert ((prior.counts(np.arange(world.n_states)) > 0) == (world.neighbour >= 0)).all()
+
+
+def test_e10_states_that_look_alike_pool_their_own_best_actions():
+    q = np.array([[1.0, 0.0], [0.0, 1.0]])
+    prior = ActionPrior(2)
+    prior.update([7, 7], best_actions(q))  # one percept, two states, different best actions
+    assert prior.counts([7]).tolist() == [[1, 1]]
+
+
+def test_e11_summed_over_actions_the_printed_terms_are_the_entropy():
+    prior = ActionPrior(3)
+    prior.update([0, 0, 0, 0], [[True, False, False]] * 2 + [[False, True, False], [False, False, True]])
+    p = np.array([0.5, 0.25, 0.25])
+    terms = -p * np.log2(p)
+    assert terms.sum() == 1.5
+    assert prior.entropy([0])[0] == pytest.approx(1.5 * np.log(2))
+    assert terms[0] != -(0.5 * np.log2(0.5) + 0.5 * np.log2(0.5))  # not the entropy of taking the action or not
+
+
+def test_e33_and_e34_tell_the_committed_numbers_of_c3_15():
+    result = json.loads((ROOT / "results" / "C3.15" / "result.json").read_text(encoding="utf-8"))
+    text = " ".join((ROOT / "docs" / "errata.md").read_text(encoding="utf-8").split())
+
+    def reach(agent, way):
+        found = [row["reward"] for row in result["rows"] if (row.get("agent"), row.get("way")) == (agent, way)]
+        return f"{min(found):.0f}–{max(found):.0f}"
+
+    names = {"random": "random motion", "avoid": "obstacle avoidance", "left": "always left", "bug": "the bug"}
+    for agent, name in names.items():
+        assert f"{name} from {reach(agent, 'none')} to {reach(agent, 'thesis')}" in text
+    assert result["measured"]["grid_all_raised"]["value"] == 0
+    left = {
+        row["loops"]: row["reward"]
+        for row in result["rows"]
+        if row.get("agent") == "left" and row["way"] == "none"
+    }
+    assert f"always-left from {left[0.0]:.0f} (none) to {left[0.4]:.0f} (four in ten" in text
+    advised = result["measured"]["q_learning_thesis"]["value"]
+    alone = advised - result["measured"]["q_learning_gain"]["value"]
+    assert f"gets {alone:.0f} of 1000 without advice and {advised:.0f} with" in text
+    assert f"± {1000 * 1.96 * (0.25 / 20) ** 0.5:.0f} (binomial)" in text

@@ -1,0 +1,50 @@
+"""The worlds as the thesis draws them: what is on each plate, and the committed picture's titles."""
+
+import numpy as np
+import pytest
+
+from docs.pictures.figure_world_plates import draw_world_plates
+from docs.pictures.worlds import pictures, walked
+from lifelore.core.errors import InputError
+from lifelore.domains.grids.grid_picture import AGENT_COLOUR, GOAL_COLOUR
+from lifelore.figures.style import save_figure
+
+
+def pixels(picture, colour) -> int:
+    return int((picture == np.array(colour, np.uint8)).all(axis=2).sum())
+
+
+def test_every_world_of_the_thesis_has_its_plate(tmp_path):
+    plates = list(pictures())
+    assert [title.split("(")[1] for title, _ in plates] == [
+        "3.2)",
+        "3.4)",
+        "3.4)",
+        "3.6)",
+        "3.10)",
+        "3.10)",
+        "3.20)",
+    ]
+    for _, picture in plates[1:3]:
+        assert pixels(picture, GOAL_COLOUR) == (640 // 23) ** 2
+        assert pixels(picture, AGENT_COLOUR) > 0
+    assert pixels(plates[-1][1], GOAL_COLOUR) == 8 * (640 // 30) ** 2
+    assert not np.array_equal(plates[4][1], plates[5][1])
+    figure = draw_world_plates(plates, walked())
+    assert [one.get_title(loc="left") or one.get_title() for one in figure.axes] == [
+        *(title for title, _ in plates), "a prior from three walks (3.18)"
+    ]  # fmt: skip
+    assert save_figure(figure, tmp_path / "worlds.png").stat().st_size > 10_000
+
+
+def test_the_prior_of_three_walks():
+    probs = walked()["probs"]
+    assert probs[4] == pytest.approx([2 / 3, 0, 1 / 3, 0])
+    assert probs[7].tolist() == [1, 0, 0, 0]
+    assert probs[3].tolist() == [0, 0, 1, 0]
+    assert np.flatnonzero(probs.any(axis=1)).tolist() == [3, 4, 7]  # at a walk's end nothing was done
+
+
+def test_nothing_is_no_picture():
+    with pytest.raises(InputError, match="plates must be at least one"):
+        draw_world_plates([])

@@ -1,0 +1,33 @@
+"""A claim of a few cells whose mean is its only measure, for tests of what runs claims."""
+
+from collections.abc import Callable
+from typing import Any
+
+from lifelore.core.metrics import mean_estimate
+from lifelore.figures.style import house_style, new_figure
+from reproduction.engine.claim import Claim
+from reproduction.engine.predicate import Predicate
+
+
+def toy_claim(settings: dict, run_cell: Callable[..., dict], predicate: Predicate, **more: Any) -> Claim:
+    """The claim C3.1 with ``settings["n"]`` cells ``{"i": number}``; `run_cell` gives each an ``x``."""
+    return Claim(
+        id="C3.1",
+        title="toy",
+        thesis="says",
+        sizes={"quick": settings, "full": settings},
+        predicate=predicate,
+        cells=lambda s: [{"i": i} for i in range(s["n"])],
+        run_cell=run_cell,
+        measure=lambda s, results: {"x": mean_estimate([r["x"] for r in results])},
+        rows=lambda s, results: list(results),
+        draw=draw,
+        **more,
+    )
+
+
+def draw(result):
+    with house_style():
+        figure = new_figure(2, 2)
+        figure.subplots().plot([0, 1], [0, len(result["rows"])])
+    return figure
