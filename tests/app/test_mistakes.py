@@ -140,11 +140,6 @@ NAMES = {
     "reproduce C3.1 --jobs 0 --out {folder}": "jobs must be at least 1",
     "reproduce C3.1 --jobs x": "'--jobs'",
     "reproduce C3.1 --out {text}": "Not a directory",
-    "bench": "Missing argument",
-    "bench nonsense": "bench must be one of kernels",
-    "bench nonsense --json": "got 'nonsense'",
-    "bench kernels --repeats 0": "repeats must lie in",
-    "bench kernels --repeats x": "'--repeats'",
 }
 MAPS = {
     f"{LATTICE} --map {{map}}": "map does not apply to domain",

@@ -1,4 +1,4 @@
-"""Furniture of a simulated room: upright boxes, and the rays that meet them."""
+"""Upright boxes, and the rays of a simulated camera that meet them."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,28 +11,13 @@ from numpy.typing import NDArray
 class Board:
     """A box that stands upright: `middle` and `half` sizes (x, y, z) in metres, turned by `yaw` radians about z.
 
-    `kind` names the furniture it belongs to, such as ``"table"`` or ``"wall"``.
+    `kind` is a name.
     """
 
     kind: str
     middle: tuple[float, float, float]
     half: tuple[float, float, float]
     yaw: float = 0.0
-
-
-def standing_table(
-    kind: str, x: float, y: float, top: float, floor: float, half: tuple[float, float], yaw: float, thick: float
-) -> list[Board]:
-    """A table: a top whose upper face is at height `top`, and four legs down to height `floor`."""
-    cosine, sine = np.cos(yaw), np.sin(yaw)
-    boards = [Board(kind, (x, y, top - thick / 2), (*half, thick / 2), yaw)]
-    length = top - thick - floor
-    for s in (-1, 1):
-        for t in (-1, 1):
-            u, v = s * (half[0] - 0.04), t * (half[1] - 0.04)
-            place = (x + cosine * u - sine * v, y + sine * u + cosine * v, floor + length / 2)
-            boards.append(Board(f"{kind} leg", place, (0.022, 0.022, length / 2), yaw))
-    return boards
 
 
 def cast_boards(
