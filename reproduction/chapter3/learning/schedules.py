@@ -1,4 +1,4 @@
-"""Schedules of ε and α: the printed one, and geometric ones by the first ε, its factor an episode, and the least ε."""
+"""Schedules of ε and α: the printed one, and geometric ones (the first ε, its factor an episode, the least ε)."""
 
 from collections.abc import Mapping, Sequence
 
@@ -20,9 +20,10 @@ def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
 
     The learning rate belongs to geometric schedules; the printed schedule has its own.
     """
-    n, own = settings["episodes"], epsilon if epsilon != PRINTED else (FIRST, 1.0, FIRST)
+    n = settings["episodes"]
+    own = (FIRST, 1.0, FIRST) if isinstance(epsilon, str) else epsilon
     schedule = QLearning(n, settings["max_steps"], settings["learning_rate"], *own).schedule(settings["discount"])
-    if epsilon != PRINTED:
+    if not isinstance(epsilon, str):
         return schedule
     left = FIRST * (1 - np.arange(n) / n)
     return schedule._replace(epsilon=left, alpha=left)
@@ -30,7 +31,7 @@ def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
 
 def schedule_in_words(epsilon: Epsilon) -> str:
     """A schedule as a panel's title."""
-    if epsilon == PRINTED:
+    if isinstance(epsilon, str):
         return "ε = α = 0.5, less 0.5/N an episode"
     first, decay, floor = epsilon
     return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"
