@@ -1,5 +1,7 @@
-"""`lifelore reproduce`: run claims of the thesis as experiments."""
+"""`lifelore reproduce`: run claims of the thesis, and print their marks, numbers and picture."""
 
+from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Annotated
 
 import typer
@@ -7,13 +9,14 @@ import typer
 
 def reproduce(
     claims: Annotated[
-        list[str] | None, typer.Argument(metavar="[CLAIM]...", help="Claims, such as C3.2; default: all.")
+        list[str] | None,
+        typer.Argument(metavar="[CLAIM|FIGURE]...", help="Claims (C3.4) or figures (3.7); default: all."),
     ] = None,
     quick: Annotated[
         bool, typer.Option("--quick", help="Run at a small size, for tests only (the default).")
     ] = False,
     full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger.")] = False,
-    list_all: Annotated[bool, typer.Option("--list", help="List every claim.")] = False,
+    list_all: Annotated[bool, typer.Option("--list", help="List every claim with its figure.")] = False,
     verify: Annotated[
         bool, typer.Option("--verify", help="Run stored results again and compare them to the last digit.")
     ] = False,
@@ -28,12 +31,10 @@ def reproduce(
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="dask: the cluster's scheduler, such as tcp://host:8786.")
     ] = None,
-    out: Annotated[str, typer.Option(metavar="DIR", help="Folder for the results.")] = "results",
-    seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
-    seeds: Annotated[
-        int | None,
-        typer.Option(metavar="N", help="Run under N seeds and pool them: for verdicts near a bound."),
+    out: Annotated[
+        str | None, typer.Option(metavar="DIR", help="Folder for the results; default: that of the checkout.")
     ] = None,
+    seed: Annotated[int, typer.Option(help="Draws all random numbers.")] = 0,
     as_json: Annotated[bool, typer.Option("--json", help="One JSON document on stdout and nothing else.")] = False,
 ) -> None:
     """Run claims of the thesis and compare the results.
@@ -42,55 +43,60 @@ def reproduce(
     """
     from lifelore.app.console import print_json, progress_bar
     from lifelore.core.errors import InputError
-    from reproduction.engine.registry import list_claims
+    from reproduction.engine.registry import RESULTS, found_ids, list_claims
     from reproduction.engine.reproduce import reproduce as run
 
     if list_all:
-        entries = list_claims()
-        print_json(entries) if as_json else _print_list(entries)
+        found = list_claims()
+        print_json(found) if as_json else _print_list(found)
         return
     if quick and full:
         raise InputError("quick and full exclude each other: choose one")
+    ids = [claim_id for name in claims or [] for claim_id in found_ids(name)]
+    folder = Path(out) if out else RESULTS
     if verify:
-        if quick or full or settings or seed or seeds:
+        if quick or full or settings or seed:
             raise InputError(
-                "verify takes mode, settings and seed from the stored result; leave out --quick, --full, --set, "
-                "--seed and --seeds"
+                "verify takes mode, settings and seed from the stored result; leave out --full, --set and --seed"
             )
         from reproduction.engine.verify import verify as run_again
 
         with progress_bar("verifying") as progress:
-            found = run_again(claims or [], jobs, out, progress, engine, scheduler)
+            found = run_again(ids, jobs, folder, progress, engine, scheduler)
         print_json(found) if as_json else _print_verified(found)
         if any(one["equal"] is False for one in found):
             raise typer.Exit(1)
         return
-    if seeds is not None and engine != "local":
-        raise InputError(
-            f"seeds run on this machine, got engine '{engine}'; run each --seed on the cluster instead"
-        )
     with progress_bar("reproducing") as progress:
-        mode, overrides = "full" if full else "quick", _pairs(settings or [])
-        if seeds is not None:
-            from reproduction.engine.more_seeds import run_seeds
-
-            pools = run_seeds(claims or [], seeds, mode, overrides, jobs, out, seed, progress)
-            print_json(pools) if as_json else _print_pools(pools)
-            return
-        results = run(claims or [], mode, overrides, jobs, out, seed, progress, engine, scheduler)
-    if as_json:
-        print_json(results)
-    else:
-        from reproduction.claim_table import print_claims
-
-        print_claims(results, out)
+        mode = "full" if full else "quick"
+        results = run(ids, mode, _pairs(settings or []), jobs, folder, seed, progress, engine, scheduler)
+    print_json(results) if as_json else print_results(results, folder)
 
 
-def _print_pools(pools: list[dict]) -> None:
-    for pool in pools:
-        own = ", ".join(f"{one['seed']}: {one['verdict']}" for one in pool["by_seed"])
-        print(f"{pool['claim']} ({pool['mode']}, {len(pool['seeds'])} seeds): {pool['verdict']}. {pool['why']}")
-        print(f"  by seed: {own}")
+def print_results(results: Sequence[Mapping], folder: Path) -> None:
+    """Print each result's word, its statements with marks and numbers, and where its picture is."""
+    from rich.console import Console
+    from rich.table import Table
+    from rich.text import Text
+
+    from reproduction.engine.registry import claim_of
+    from reproduction.engine.reproduce import result_folder
+    from reproduction.engine.statement import number_in_words
+
+    console = Console()
+    for result in results:
+        claim, table = claim_of(result["claim"]), Table.grid(padding=(0, 2))
+        small = "; a small run, no evidence" if result["mode"] == "quick" else ""
+        console.print(
+            Text.assemble(f"{claim.id} {claim.title}: ", (result["verdict"], "bold"), small), highlight=False
+        )
+        for one in claim.statements:
+            number = result["measured"].get(one.measure)
+            shown = number_in_words(number) if number else "not measured"
+            table.add_row("  " + "".join(result["marks"][one.says]), Text(f"{one.says}: {shown}"))
+        console.print(table, highlight=False)
+        picture = result_folder(folder / claim.id, result["mode"]) / "figure.png"
+        console.print(f"{picture}\n", soft_wrap=True, highlight=False)
 
 
 def _print_verified(found: list[dict]) -> None:
@@ -125,11 +131,11 @@ def _pairs(settings: list[str]) -> dict[str, str]:
     return dict(setting.split("=", 1) for setting in settings)
 
 
-def _print_list(entries: list[dict]) -> None:
+def _print_list(found: Sequence[Mapping]) -> None:
     from rich.console import Console
     from rich.table import Table
 
-    table = Table("claim", "where", "built", "what the thesis reports")
-    for entry in entries:
-        table.add_row(entry["claim"], entry["where"], "yes" if entry["built"] else "not yet", entry["reports"])
+    table = Table("claim", "figure", "what the thesis says")
+    for one in found:
+        table.add_row(one["claim"], ", ".join(one["figure"]), one["sentence"])
     Console().print(table)

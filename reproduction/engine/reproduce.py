@@ -1,4 +1,4 @@
-"""Run claims: cells, finished ones kept, then numbers, verdict, result file and figure.
+"""Run claims: cells, finished ones kept, then numbers, marks, result file and figure.
 
 Results do not depend on where cells run, nor on whether a run was stopped and taken up again.
 """
@@ -12,18 +12,20 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from lifelore.core.errors import InputError, StoreError
+from lifelore.core.metrics import Estimate
 from lifelore.core.protocols import Progress
 from lifelore.core.usable_cores import usable_cores
 from reproduction.engine.cell_store import CellStore, write_atomically
 from reproduction.engine.claim import Claim
 from reproduction.engine.provenance import provenance, versions
-from reproduction.engine.registry import built_ids, claim_of
+from reproduction.engine.registry import RESULTS, claim_ids, claim_of
 from reproduction.engine.run_cells import CellRun, run_on_threads, run_on_workers
 from reproduction.engine.source_key import source_key
+from reproduction.engine.statement import word_of
 
 RESULT_KEYS = (
-    "claim", "mode", "thesis", "measured", "verdict", "why", "second", "settings", "seed", "versions", "seconds",
-    "made", "rows",
+    "claim", "mode", "verdict", "marks", "measured", "settings", "seed", "versions", "seconds", "made", "readings",
+    "rows",
 )  # fmt: skip
 ENGINES = ("local", "dask")
 MAX_BYTES = 200_000
@@ -35,7 +37,7 @@ def reproduce(
     mode: str = "quick",
     overrides: Mapping[str, Any] | None = None,
     jobs: int | None = None,
-    out: str | Path = "results",
+    out: str | Path = RESULTS,
     seed: int = 0,
     progress: Progress | None = None,
     engine: str = "local",
@@ -46,7 +48,7 @@ def reproduce(
     Parameters
     ----------
     ids : sequence of str
-        Such as ``["C3.1"]``; empty: every claim that is built.
+        Such as ``["C3.1"]``; empty: every claim.
     mode : {"quick", "full"}
         ``quick`` is for tests; only ``full`` is evidence.
     overrides : mapping, optional
@@ -70,14 +72,14 @@ def reproduce(
     Returns
     -------
     list of dict
-        The results, each with exactly `RESULT_KEYS`; `seconds` is the processor time of the cells' threads,
-        whenever and for whichever claim they were run, `made` is that of `provenance`, and `second` the verdict of
-        the second reading.
+        The results, each with exactly `RESULT_KEYS`: `verdict` is the claim's word, `marks` has three marks by
+        statement, `seconds` is the processor time of the cells' threads, whenever and for whichever claim they
+        were run, and `made` that of `provenance`.
 
     Raises
     ------
     NotFoundError
-        An id that is not in the ledger or not built.
+        An id that no claim has.
     InputError
         A mode, setting or number of jobs that breaks its rule; a cluster that cannot be used.
     MissingExtraError
@@ -87,7 +89,7 @@ def reproduce(
     KeyboardInterrupt
         Ctrl-C; cells under way are finished and kept first on threads, and dropped elsewhere.
     """
-    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or built_ids())]
+    claims = [claim_of(claim_id) for claim_id in dict.fromkeys(ids or claim_ids())]
     plan = [ClaimRun(claim, mode, claim.settings(mode, overrides), seed) for claim in claims]
     results = []
     for claim, result in zip(claims, run_plan(plan, jobs, out, progress, engine, scheduler), strict=True):
@@ -202,45 +204,31 @@ def result_folder(folder: Path, mode: str) -> Path:
 
 
 def finish(run: ClaimRun, kept: Sequence[Mapping]) -> dict:
-    """The result of a run from its finished cells, plain data.
-
-    Measures that a condition, a figure or a page reads stand under ``measured``; the others are the last row,
-    ``{"other_measures": …}``.
-    """
+    """The result of a run from its finished cells, plain data."""
     claim, mode, settings, seed = run
     results = [found["result"] for found in kept]
-    estimates = {name: rounded(estimate.to_dict()) for name, estimate in claim.measure(settings, results).items()}
-    measured, others = split_measures(claim, estimates)
-    rows = rounded(claim.rows(settings, results)) + others
-    why = claim.predicate.why(measured, claim.causes_in_words())
-    seconds = round(sum(found["seconds"] for found in kept), 1)
+    measured = _plain(claim.measure(settings, results))
+    readings = [{"cell": dict(cell), **_plain(found)} for cell, found in claim.readings(settings, results)]
     module = claim.run_cell.__module__
     data = claim.data if settings.get("real", True) else ()
+    seconds = round(sum(found["seconds"] for found in kept), 1)
     values = (
-        claim.id, mode, claim.thesis, measured, claim.predicate.verdict(measured), why, _second(claim, measured),
-        settings, seed, versions(module), seconds, provenance(module, data), rows,
+        claim.id, mode, *judged(claim, measured, readings), measured, settings, seed, versions(module), seconds,
+        provenance(module, data), rounded(readings), rounded(claim.rows(settings, results)),
     )  # fmt: skip
     return json.loads(json.dumps(dict(zip(RESULT_KEYS, values, strict=True)), allow_nan=False))
 
 
-def _second(claim: Claim, measured: Mapping[str, Mapping]) -> dict[str, str] | None:
-    """The verdict of the second reading; None for a claim without one."""
-    if claim.second is None:
-        return None
-    return {"verdict": claim.second.verdict(measured), "why": claim.second.said(measured)}
+def judged(claim: Claim, measured: Mapping, readings: Sequence[Mapping]) -> tuple[str, dict[str, list[str]]]:
+    """The claim's word, and the three marks of each statement."""
+    marks = [one.marks(measured, readings) for one in claim.statements]
+    return word_of(claim.statements, marks, bool(claim.erratum)), {
+        one.says: list(of) for one, of in zip(claim.statements, marks, strict=True)
+    }
 
 
-def split_measures(claim: Claim, estimates: Mapping[str, Mapping]) -> tuple[dict[str, Any], list[dict]]:
-    """The measures that are read, and a row of the others (no row where there are none)."""
-    read = claim.read_measures()
-    others = {name: number for name, number in estimates.items() if name not in read}
-    rows = [{"other_measures": others}] if others else []
-    return {name: number for name, number in estimates.items() if name in read}, rows
-
-
-def own_rows(result: Mapping) -> list[dict]:
-    """The rows of a result without that of the other measures."""
-    return [row for row in result["rows"] if "other_measures" not in row]
+def _plain(estimates: Mapping[str, Estimate]) -> dict[str, Any]:
+    return {name: rounded(estimate.to_dict()) for name, estimate in estimates.items()}
 
 
 def rounded(data: Any) -> Any:
@@ -255,23 +243,31 @@ def rounded(data: Any) -> Any:
 
 
 def _write(claim: Claim, result: dict, folder: Path) -> None:
-    from lifelore.figures.style import save_figure
-
     text = _one_row_a_line(result)
     if len(text.encode()) > MAX_BYTES:
         raise InputError(f"{claim.id}: result.json may hold {MAX_BYTES} bytes, got {len(text)}; compact its rows")
     write_atomically(folder / "result.json", text)
-    save_figure(claim.draw({**result, "rows": own_rows(result)}), folder / "figure.png")
+    draw(claim, result, folder)
+
+
+def draw(claim: Claim, result: Mapping, folder: Path) -> None:
+    """Draw ``figure.png``, and ``readings.png`` where there are several readings; nothing is run."""
+    from lifelore.figures.style import save_figure
+    from reproduction.engine.readings_figure import draw_readings
+
+    save_figure(claim.draw(result), folder / "figure.png")
+    if len(result["readings"]) > 2:
+        save_figure(draw_readings(claim, result), folder / "readings.png")
 
 
 def _one_row_a_line(result: dict) -> str:
-    """JSON that people and diffs can read: keys indented, each measured number and each row on a line."""
+    """JSON that people and diffs can read: keys indented, each measured number, reading and row on a line."""
     lines = []
     for key, value in result.items():
-        if key == "measured":
-            inner = ",\n".join(f"  {json.dumps(k)}: {json.dumps(v)}" for k, v in value.items())
+        if key in ("measured", "marks"):
+            inner = ",\n".join(f"  {json.dumps(k)}: {json.dumps(v, ensure_ascii=False)}" for k, v in value.items())
             lines.append(f' "{key}": {{\n{inner}\n }}')
-        elif key == "rows":
+        elif key in ("readings", "rows") and value:
             inner = ",\n".join(f"  {json.dumps(row)}" for row in value)
             lines.append(f' "{key}": [\n{inner}\n ]')
         else:

@@ -9,11 +9,12 @@ from typing import Any
 from lifelore.core.errors import NotFoundError
 from lifelore.core.protocols import Progress
 from reproduction.engine.provenance import data_hash
-from reproduction.engine.registry import built_ids, claim_of
-from reproduction.engine.reproduce import ClaimRun, own_rows, run_plan, stored_result
+from reproduction.engine.registry import RESULTS, claim_ids, claim_of
+from reproduction.engine.reproduce import ClaimRun, run_plan, stored_result
 
 FILE = "verify.json"
 """Among the results: what `verify` gave for all of them, ``--json``."""
+CIRCUMSTANCES = ("source", "processor", "simd", "data")
 MOST_SHOWN = 20
 """Differences that are listed for a claim."""
 ABSENT = "nothing"
@@ -22,7 +23,7 @@ ABSENT = "nothing"
 def verify(
     ids: Sequence[str],
     jobs: int | None = None,
-    out: str | Path = "results",
+    out: str | Path = RESULTS,
     progress: Progress | None = None,
     engine: str = "local",
     scheduler: str | None = None,
@@ -43,14 +44,13 @@ def verify(
     Returns
     -------
     list of dict
-        For each claim: ``claim``; ``equal``: whether verdicts, measures and rows are the same to the last of the
-        six digits that results have, None where it was not run; ``missing``: folders of outside data that the
-        stored result was made with and that are not here, so that it was not run; ``of``: the commit that the
-        stored result was made at; ``n_differences`` and the first of them in ``differences``,
+        For each claim: ``claim``; ``equal``: whether marks, measures, readings and rows are the same to the
+        last of the six digits that results have, None where it was not run; ``missing``: folders of outside
+        data that the stored result was made with and that are not here, so that it was not run; ``of``: the commit
+        that the stored result was made at; ``n_differences`` and the first of them in ``differences``,
         ``{"where", "stored", "now"}``; ``changed``, the same for versions, code, processor and data, which may
-        explain them; ``verdict``, ``seconds`` and ``made`` now. Pools of several seeds are not run again, only
-        their first seed. Measures of time, whose names begin with ``seconds``, are not compared, nor the rows of
-        a claim that measures time.
+        explain them; ``verdict``, ``seconds`` and ``made`` now. Measures of time, whose names begin with
+        ``seconds``, are not compared, nor the rows of a claim that measures time.
 
     Raises
     ------
@@ -104,7 +104,7 @@ def _commit_of(stored: Mapping[str, Any]) -> str | None:
 
 
 def _with_results(out: Path) -> list[str]:
-    found = [claim_id for claim_id in built_ids() if (out / claim_id / "result.json").is_file()]
+    found = [claim_id for claim_id in claim_ids() if (out / claim_id / "result.json").is_file()]
     if not found:
         raise NotFoundError(f"no result in {out}; name the folder of the results with --out")
     return found
@@ -124,24 +124,18 @@ def _as_stored(result: Mapping[str, Any]) -> ClaimRun:
 
 
 def _numbers(result: Mapping[str, Any]) -> dict[str, Any]:
-    others = [row["other_measures"] for row in result["rows"] if "other_measures" in row]
-    measured = {name: number for found in (result["measured"], *others) for name, number in found.items()}
     return {
         "verdict": result["verdict"],
-        "second": (result.get("second") or {}).get("verdict"),
-        "measured": {name: number for name, number in measured.items() if not name.startswith("seconds")},
-        "rows": [] if claim_of(result["claim"]).timed else own_rows(result),
+        "marks": result["marks"],
+        "measured": {name: n for name, n in result["measured"].items() if not name.startswith("seconds")},
+        "readings": result["readings"],
+        "rows": [] if claim_of(result["claim"]).timed else result["rows"],
     }
 
 
 def _circumstances(result: Mapping[str, Any]) -> dict[str, Any]:
-    """What may differ without a fault; results before the key ``made`` tell only some versions."""
-    made = {
-        name: value
-        for name, value in result.get("made", {}).items()
-        if name in ("source", "processor", "simd", "data")
-    }
-    return {"versions": result["versions"], **made}
+    """What may differ without a fault."""
+    return {"versions": result["versions"], **{name: result["made"][name] for name in CIRCUMSTANCES}}
 
 
 def _differences(where: str, stored: Any, now: Any) -> Iterator[dict[str, Any]]:

@@ -1,4 +1,4 @@
-"""Cells of C3.1: which share of the actions of a small maze is ever useful.
+"""C3.1: which share of the actions of a small maze is ever useful.
 
 The printed shares determine the size of the mazes: 55.26 % = 42/76 and 63.16 % = 48/76 need 19 free cells, that
 is 6 obstacles in the 25 cells inside the wall. The thesis does not state how they were placed; there are two
@@ -6,7 +6,7 @@ generators: one walls up cells one at a time without parting the rest, one is un
 Thesis: §3.2.2.2, Figure 3.1.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,10 +14,12 @@ from scipy import ndimage
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.errors import InputError
+from lifelore.core.metrics import Estimate, mean_estimate
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.engine.results_table import tally
 
 PRINTED, PRINTED_OF = (42, 48), 76
 """Useful actions in the two mazes of Figure 3.1, and all actions there."""
@@ -100,3 +102,47 @@ def _example(world: GridWorld, prior: ActionPrior) -> dict:
         "probs": (counts / counts.sum(axis=1, keepdims=True)).tolist(),
         "counted": (~prior.unseen(states)).tolist(),
     }
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Shares over the mazes of the first generator."""
+    return _shares(_mazes(results, settings["generators"][0]))
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The same for each generator."""
+    for generator in settings["generators"]:
+        yield {"generator": generator}, _shares(_mazes(results, generator))
+
+
+def _mazes(results: Sequence[Mapping], generator: str) -> list[Mapping]:
+    return [maze for result in results if result["generator"] == generator for maze in result["mazes"]]
+
+
+def _shares(mazes: Sequence[Mapping]) -> dict[str, Estimate]:
+    counts = {key: np.array([maze[key] for maze in mazes], float) for key in mazes[0]}
+    found = {
+        "passable_found_useful": mean_estimate(counts["useful"] / counts["passable"]),
+        "useful_share_goal_rows_counted": mean_estimate(counts["useful_with_goal_rows"] / counts["actions"]),
+    }
+    for printed in PRINTED:
+        # Mid-ranks: of the mazes that have exactly this share, half count as below.
+        apart = counts["useful"] / counts["actions"] - printed / PRINTED_OF
+        rank = (apart < -1e-9) + 0.5 * (abs(apart) < 1e-9)
+        found[f"rank_of_{printed}_of_{PRINTED_OF}"] = mean_estimate(rank)
+    return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """How many mazes have each number of useful actions, and one maze for each printed share."""
+    found = []
+    for generator in settings["generators"]:
+        mazes = _mazes(results, generator)
+        found += tally(
+            [{"generator": generator, **{key: maze[key] for key in ("useful", "actions")}} for maze in mazes],
+            "mazes",
+        )
+    for printed in map(str, PRINTED):
+        examples = (r["examples"][printed] for r in results if printed in r["examples"])
+        found += [{"example": int(printed), **example} for example in examples][:1]
+    return found

@@ -1,4 +1,4 @@
-"""Schedules of ε by three numbers: the first ε, its factor each episode, and the least ε."""
+"""Schedules of ε and α: the printed one, and geometric ones (the first ε, its factor an episode, the least ε)."""
 
 from collections.abc import Mapping, Sequence
 
@@ -7,26 +7,31 @@ import numpy as np
 from lifelore.core.learning.q_learner import QLearning
 from lifelore.core.learning.q_learning import Schedule
 
+PRINTED = "printed"
+"""α = ε = 0.5, each less 0.5/N in each of N episodes: the only schedule that the thesis prints (§4.6.3)."""
+FIRST = 0.5
 
-def schedule_of(settings: Mapping, epsilon: Sequence[float]) -> Schedule:
-    """ε and α of each episode; `settings` has ``episodes``, ``max_steps``, ``learning_rate`` and ``discount``."""
-    learning = QLearning(settings["episodes"], settings["max_steps"], settings["learning_rate"], *epsilon)
-    return learning.schedule(settings["discount"])
-
-
-def with_learning_rate(schedule: Schedule, rates: Sequence[float]) -> Schedule:
-    """The schedule with α by three numbers: the first α, its factor each episode, and the least α."""
-    first, decay, least = rates
-    return schedule._replace(alpha=np.maximum(least, first * decay ** np.arange(len(schedule.alpha))))
+Epsilon = str | Sequence[float]
+"""`PRINTED`, or three numbers."""
 
 
-def schedule_in_words(epsilon: Sequence[float]) -> str:
+def schedule_of(settings: Mapping, epsilon: Epsilon) -> Schedule:
+    """ε and α of each episode; `settings` has ``episodes``, ``max_steps``, ``learning_rate`` and ``discount``.
+
+    The learning rate belongs to geometric schedules; the printed schedule has its own.
+    """
+    n = settings["episodes"]
+    own = (FIRST, 1.0, FIRST) if isinstance(epsilon, str) else epsilon
+    schedule = QLearning(n, settings["max_steps"], settings["learning_rate"], *own).schedule(settings["discount"])
+    if not isinstance(epsilon, str):
+        return schedule
+    left = FIRST * (1 - np.arange(n) / n)
+    return schedule._replace(epsilon=left, alpha=left)
+
+
+def schedule_in_words(epsilon: Epsilon) -> str:
     """A schedule as a panel's title."""
+    if isinstance(epsilon, str):
+        return "ε = α = 0.5, less 0.5/N an episode"
     first, decay, floor = epsilon
     return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {floor:g}"
-
-
-def schedule_in_brief(epsilon: Sequence[float]) -> str:
-    """A schedule as a row or column of a table names it, without the least ε."""
-    first, decay, _ = epsilon
-    return f"ε {first:g}" if decay == 1 else f"ε {first:g} × {decay:g}"
