@@ -1,10 +1,10 @@
 """Time to a first answer: of a learner, and of each verb from the shell.
 
-A learner's first result is wall time without imports, with an empty and with a filled cache of kernels. The
+Seconds are those of the processor, so that other programs on the machine count little; they do not contain waits for
+the disk. A learner's first result is timed without imports, with an empty and with a filled cache of kernels: the
 lattice is enumerated, solved exactly and learnt, and the learnt policy is evaluated. Verbs are whole processes in
 three states: *first ever* with no kernel compiled, *first after setup* with the kernels of ``lifelore doctor
---warm``, and *warm*. Their seconds are of the processor, so that other programs on the machine count little. They
-do not contain the time in which a verb waits for the disk.
+--warm``, and *warm*.
 """
 
 import csv
@@ -52,12 +52,12 @@ from lifelore.core.learning.model_learning import ExplorationStrategy, StateInfo
 from lifelore.core.planning.planning import greedy_policy, optimal_q, policy_values
 from lifelore.core.streams import stream
 from benchmarks.lattice import lattice_task, new_case, run_kernel
-started = time.perf_counter()
+started = time.process_time()
 tables = lattice_task().tables()
 optimal_q(tables, 0.95)
 {learn}
 policy_values(tables, policy, 0.95)
-print(time.perf_counter() - started)
+print(time.process_time() - started)
 """
 _Q = """
 case = new_case(500)
