@@ -1,9 +1,9 @@
 """Time to a first answer: of a learner, and of each verb from the shell.
 
-Seconds are those of the processor, so that other programs on the machine count little; they do not contain waits for
-the disk. A learner's first result is timed without imports, with an empty and with a filled cache of kernels: the
-lattice is enumerated, solved exactly and learnt, and the learnt policy is evaluated. Verbs are whole processes in
-three states: *first ever* with no kernel compiled, *first after setup* with the kernels of ``lifelore doctor
+Seconds are those of the processor, so that other programs on the machine count little; they do not contain waits
+for the disk. A learner's first result is timed without imports, with an empty and with a filled cache of kernels:
+the lattice is enumerated, solved exactly and learnt, and the learnt policy is evaluated. Verbs are whole processes
+in three states: *first ever* with no kernel compiled, *first after setup* with the kernels of ``lifelore doctor
 --warm``, and *warm*.
 """
 
