@@ -17,11 +17,11 @@ class Connection:
         self._reader, self._writer = reader, writer
         self.seconds: list[float] = []
 
-    async def post(self, path: str, document: Any) -> Any:
-        """The JSON answer to a POST; RuntimeError unless its status is 200."""
+    async def post(self, path: str, document: Any, method: str = "POST") -> Any:
+        """The JSON answer to a POST, or to another method; RuntimeError unless its status is 200."""
         body = json.dumps(document).encode()
         head = (
-            f"POST {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
+            f"{method} {path} HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
             f"Content-Length: {len(body)}\r\n\r\n"
         )
         began = time.perf_counter()

@@ -55,7 +55,9 @@ MOST_UNCERTAIN = 3.0
 """Most time of an episode with uncertain models, in the time of an episode with plug-in models."""
 OURS, LOOPS = "Lifelore", "loops"
 EI, SAMPLING = "policy reuse, expected improvement", "policy reuse, sampling"
-GP_EACH, GP_TEN = "BoTorch GP-UCB, refitted each", "BoTorch GP-UCB, refitted every 10"
+TUNED, GP_EACH, GP_TEN = f"{UCB1}, tuned", "BoTorch GP-UCB, refitted each", "BoTorch GP-UCB, refitted every 10"
+LEAST_PEERS = {UCB1: 2.0, GP_TEN: 50.0}
+"""Least time of a peer's episode, in the time of ours."""
 
 
 def bench_reuse(repeats: int, progress: Progress) -> dict:
@@ -160,18 +162,16 @@ def _beside_peers(repeats: int, after: Callable[[str], None]) -> Part:
     contenders = {name: _playing(case, name, make, regrets[name]) for name, make in methods.items()}
     times = interleaved(contenders, repeats, after)
     rows, goals = [], []
-    for name in (*methods, *_absent()):
-        known = name in methods
-        value = median(times[name]) if known else None
-        ratio = paired_ratio(times[name], times[EI]) if known and name != EI else None
-        rows.append(row(f"select and learn: {name}", value, "us", None if name == EI else _of(EI), ratio))
-        rows.append(
-            row(f"regret over {HORIZON} episodes: {name}", mean(regrets[name]) if known else None, "return")
-        )
-    goals.append(at_least(f"{UCB1} / {EI}", 2.0, _slower(times, UCB1, EI)))
-    goals.append(at_least(f"{GP_TEN} / {EI}", 50.0, _slower(times, GP_TEN, EI)))
-    goals.append(at_most(f"regret: {EI} / {GP_TEN}", 1.0, _share(regrets, EI, GP_TEN)))
-    goals.append(at_most(f"regret: {EI} / {GP_EACH}", 1.0, _share(regrets, EI, GP_EACH)))
+    for name in (EI, SAMPLING, UCB1, TUNED, GP_TEN, GP_EACH):
+        known, beside = name in methods, None if name == EI else f"select and learn: {EI}"
+        value, regret = (median(times[name]), mean(regrets[name])) if known else (None, None)
+        ratio = paired_ratio(times[name], times[EI]) if known and beside else None
+        rows.append(row(f"select and learn: {name}", value, "us", beside, ratio))
+        rows.append(row(f"regret over {HORIZON} episodes: {name}", regret, "return"))
+        if name in LEAST_PEERS:
+            goals.append(at_least(f"{name} / {EI}", LEAST_PEERS[name], ratio))
+    for name in (GP_TEN, GP_EACH):
+        goals.append(at_most(f"regret: {EI} / {name}", 1.0, _share(regrets, EI, name)))
     return rows, goals
 
 
@@ -191,15 +191,10 @@ def _methods(case: Reserve) -> dict[str, Callable[[int], Player]]:
     if installed(MABWISER):
         average = case.mean.mean(axis=0)
         methods[UCB1] = lambda number: mabwiser_ucb1(average, ALPHAS["as it comes"])
-        methods[f"{UCB1}, tuned"] = lambda number: mabwiser_ucb1(average, ALPHAS["tuned"])
+        methods[TUNED] = lambda number: mabwiser_ucb1(average, ALPHAS["tuned"])
     if installed(BOTORCH):
         methods[GP_TEN], methods[GP_EACH] = gaussian(10), gaussian(1)
     return methods
-
-
-def _absent() -> list[str]:
-    left_out = [] if installed(MABWISER) else [UCB1]
-    return left_out + ([] if installed(BOTORCH) else [GP_TEN, GP_EACH])
 
 
 def _playing(case: Reserve, name: str, make: Callable[[int], Player], regrets: list[float]) -> Callable[[], float]:
@@ -229,20 +224,12 @@ def _playing(case: Reserve, name: str, make: Callable[[int], Player], regrets: l
     return timed
 
 
-def _slower(times: Rates, top: str, bottom: str) -> float | None:
-    return paired_ratio(times[top], times[bottom]) if top in times else None
-
-
 def _share(regrets: dict[str, list[float]], top: str, bottom: str) -> float | None:
     """Ratio of mean regrets over the tasks that both played: the first of each round, where one played no more."""
     if bottom not in regrets:
         return None
     step = len(regrets[top]) // len(regrets[bottom])
     return mean(regrets[top][::step]) / mean(regrets[bottom])
-
-
-def _of(name: str) -> str:
-    return f"select and learn: {name}"
 
 
 # ---- growth --------------------------------------------------------------------------------------------------

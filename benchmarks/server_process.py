@@ -1,7 +1,6 @@
 """Servers in processes of their own, each on its core: the service, and the bare route that is its limit."""
 
 import asyncio
-import json
 import os
 import socket
 import subprocess
@@ -12,6 +11,7 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from benchmarks.load_client import Connection
 from lifelore.core.errors import LifeloreError
 
 STUDY: dict[str, Any] = {
@@ -38,16 +38,9 @@ def processor_seconds(process: int) -> float:
 
 async def register(port: int) -> None:
     """Register `STUDY` as the study ``bench``."""
-    reader, writer = await asyncio.open_connection("127.0.0.1", port)
-    body = json.dumps(STUDY)
-    writer.write(
-        f"PUT /v1/studies/bench HTTP/1.1\r\nHost: 127.0.0.1\r\nContent-Type: application/json\r\n"
-        f"Content-Length: {len(body)}\r\nConnection: close\r\n\r\n{body}".encode()
-    )
-    answer = await reader.read()
-    writer.close()
-    if not answer.startswith(b"HTTP/1.1 200"):
-        raise LifeloreError(f"the service refused the study: {answer[-200:].decode()}")
+    connection = Connection(*await asyncio.open_connection("127.0.0.1", port))
+    await connection.post("/v1/studies/bench", STUDY, "PUT")
+    connection.close()
 
 
 @contextmanager

@@ -76,7 +76,7 @@ def test_the_answer_keeps_its_contract_without_the_outside_programs(short):
     assert told[-1][:2] == (5, 5)
     empty = {line["name"] for line in result["rows"] if line["value"] is None}
     assert all("MABWiser" in name or "BoTorch" in name for name in empty)
-    assert len(empty) == 6
+    assert len(empty) == 8
     for line in result["rows"]:
         assert line["ratio_to"] is None or line["ratio_to"] in names
         assert (line["ratio"] is None) == (line["ratio_to"] is None or line["value"] is None)
