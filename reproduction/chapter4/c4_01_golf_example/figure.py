@@ -13,7 +13,10 @@ def draw(result: Mapping) -> Figure:
     figure = new_figure(8.6, 3.2)
     panels = figure.subplots(1, 2)
     shots = range(1, result["settings"]["shots"] + 1)
-    titles = {"entropy": "Entropy of the belief before each shot (nats)", "error": "Distance from the hole (yards)"}
+    titles = {
+        "entropy": "Entropy of the belief before each shot (nats)",
+        "error": "Distance from the hole (yards)",
+    }
     for axes, (key, title) in zip(panels, titles.items(), strict=True):
         low, middle, high = learnt[key]
         axes.fill_between(shots, low, high, color=BLUE, alpha=0.2, lw=0)

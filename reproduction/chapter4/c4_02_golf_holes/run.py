@@ -74,11 +74,14 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
     for result in results[:-1]:
         error, entropy = np.array(result["error"]), np.array(result["entropy"])
         models = f"{result['samples']} shots" if result["samples"] else "exact"
-        yield {"models": models, "first_club": FIRST[result["first"]]}, {
-            "error_shot_2": mean_estimate(error[:, 1]),
-            "entropy_fall": mean_estimate(entropy[:, 0] - entropy[:, -1]),
-            "gain_over_single_club": mean_estimate(single - error[:, 1]),
-        }
+        yield (
+            {"models": models, "first_club": FIRST[result["first"]]},
+            {
+                "error_shot_2": mean_estimate(error[:, 1]),
+                "entropy_fall": mean_estimate(entropy[:, 0] - entropy[:, -1]),
+                "gain_over_single_club": mean_estimate(single - error[:, 1]),
+            },
+        )
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
