@@ -53,7 +53,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
 
 
 def follow_printed(library: PolicyLibrary) -> tuple[list[float], list[float]]:
-    """Entropy of the belief before each printed shot, and how likely greedy then takes the 3-iron after the first."""
+    """Entropy before each printed shot, and the probability that greedy takes the 3-iron from the second on."""
     log_belief = log_prior(library.prior)
     entropies, iron = [], []
     for club, category in zip(PRINTED_CLUBS, PRINTED_CATEGORIES, strict=True):

@@ -25,7 +25,6 @@ def draw(result: Mapping) -> Figure:
     right.plot(shots, row["entropy"][:-1], "s-", color=VERMILION, ms=4, label="entropy (right axis)")
     right.set(ylim=(0, None), ylabel="entropy of the belief before the shot (nats)")
     right.spines["right"].set_visible(True)
-    handles, labels = (a + b for a, b in zip(axes.get_legend_handles_labels(), right.get_legend_handles_labels()))
-    figure.legend(handles, labels, loc="outside right upper")
+    figure.legend(loc="outside right upper")
     axes.set_title(f"{settings['groups']} × {settings['holes']} unknown holes, exact models")
     return figure

@@ -12,7 +12,7 @@ from reproduction.chapter4.surveillance.runs import DRAWN
 
 @house_style()
 def draw(result: Mapping) -> Figure:
-    """Means of fifty tasks, a standard deviation shaded, interval estimation without; below: what each was given."""
+    """Means of fifty tasks, a standard deviation shaded (not interval estimation's); what each was given."""
     figure = new_figure(7.2, 4.2)
     axes = figure.subplots()
     for row in result["rows"][:3]:

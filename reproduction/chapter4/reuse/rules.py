@@ -29,10 +29,11 @@ PRINTED: dict[str, SelectionRule] = {
     "EI, printed": ExpectedImprovement(variant="thesis"),
 }
 RULES = STANDARD | PRINTED
-FORMS = ("standard", "printed")
+FORMS = ("standard", "PI as printed", "all as printed")
 
 
 def in_form(name: str, form: str) -> str:
     """The name of a rule's printed form where it has one and `form` asks for it, else of its standard form."""
     printed = f"{name}, printed"
-    return printed if form == "printed" and printed in RULES else name
+    asked = form == "all as printed" or form == f"{name} as printed"
+    return printed if asked and printed in RULES else name

@@ -1,8 +1,8 @@
 """Policy reuse and its peers in the surveillance reserve, for C4.5 to C4.8.
 
 Tasks come in groups of the thesis's number, ten. A group has tasks and noise of its own and, where models are
-learnt, a library of its own; all methods meet the same groups. Regret is expected library regret; `realised` is the
-regret of one draw of the chosen policy's pay against another draw of the best policy's.
+learnt, a library of its own; all methods meet the same groups. Regret is expected library regret; `realised`
+is the regret of one draw of the chosen policy's pay against another draw of the best policy's.
 
 Rules know exact models, or models learnt from `samples` deployments a pair, and observe the pay of each
 deployment; `peers.GIVEN` states what peers know. No method knows where the poachers are.
