@@ -20,7 +20,7 @@ def draw(result: Mapping) -> Figure:
         axes.plot(n_rewards, [row["table"][name] for row in rows], label=label, **look)
         if name != "performance":
             printed = [row["printed"][name] for row in rows]
-            axes.plot(n_rewards, printed, **look | {"ls": PRINTED}, label=f"{label}, printed formula")
+            axes.plot(n_rewards, printed, **look | {"ls": PRINTED}, zorder=3, label=f"{label}, printed formula")
     axes.axvline(n_states, color=INK, lw=0.8, ls=":")
     axes.text(n_states, 0.98, " |R| = |S|", transform=axes.get_xaxis_transform(), va="top", fontsize=8)
     axes.set(ylim=(0, None), xlabel="number of rewards |R|", ylabel="entries of the table")

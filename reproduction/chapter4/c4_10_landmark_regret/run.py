@@ -2,8 +2,8 @@
 
 Definition 4.3.3 calls tasks a type when no policy's utility differs by more than ε between any two of them. Tables
 of utilities are smooth ones, tasks on a line and each policy a sum of waves over it, as in Figure 4.1, and those
-of the surveillance reserve with the poachers at any cell near a hill. ε is a share of the table's range. Only tasks
-that share a type are counted. Thesis: §4.3.3, Def. 4.3.3, Figure 4.2(b).
+of the surveillance reserve with the poachers at any cell near a hill. ε is a share of the table's range. Tasks
+alone in their type are not counted. Thesis: §4.3.3, Def. 4.3.3, Figure 4.2(b).
 """
 
 from collections.abc import Mapping, Sequence
@@ -20,7 +20,7 @@ from reproduction.engine.estimates import exact_value, mean_or_unmeasured
 
 Array = NDArray[np.float64]
 EXAMPLE = ((10.0, 10.0), (9.0, 11.0))
-"""Two policies on two tasks within ε = 1 of each other: a policy that is best on the first costs the second 2 ε."""
+"""Two policies on two tasks within ε = 1 of each other: a best policy of the first costs 2 ε on the second."""
 SMOOTH, RESERVE = "smooth", "surveillance"
 BINS = 40
 """Bins of regret from 0 to 2 ε."""
