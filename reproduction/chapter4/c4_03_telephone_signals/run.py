@@ -111,7 +111,8 @@ def _serve(
     def signals(call: int, models: NDArray[np.int64]) -> NDArray[np.int64]:
         return signal_of[phone.path_of(uniforms[:, call], types, models)]
 
-    played = play_rule(BeliefSampling(), library, signals, *uniforms.shape, generator)
+    n_users, n_calls = uniforms.shape
+    played = play_rule(BeliefSampling(), library, signals, n_users, n_calls, generator)
     return library_regret(phone.mean[types], played.policies)
 
 

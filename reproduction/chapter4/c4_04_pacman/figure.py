@@ -1,26 +1,32 @@
-"""Returns of policy reuse, PRQ and Q-learning by episode (Figure 4.8)."""
+"""The maze, and returns of policy reuse, PRQ and Q-learning by episode (Figures 4.7 and 4.8)."""
 
 from collections.abc import Mapping
 
 import numpy as np
 
+from lifelore.domains.pacman.pacman import PacmanMaze, PacmanTask
+from lifelore.domains.pacman.picture import draw_pacman
 from lifelore.figures.style import INK, LIGHT, Figure, house_style, new_figure
 from reproduction.chapter4.reuse.looks import look_of
 
 
 @house_style()
 def draw(result: Mapping) -> Figure:
-    """Means of twenty tasks, one standard deviation shaded."""
-    *curves, level = result["rows"]
-    figure = new_figure(7.2, 3.9)
-    axes = figure.subplots()
-    episodes = (np.arange(len(curves[0]["mean"])) + 0.5) * result["settings"]["episodes"] / len(curves[0]["mean"])
+    """A task, the ghost in sight or not; means of twenty tasks, one standard deviation shaded."""
+    (*curves, level), settings = result["rows"], result["settings"]
+    figure = new_figure(9.4, 3.9)
+    left, axes = figure.subplots(1, 2, width_ratios=[0.62, 1.38])
+    task = PacmanTask(PacmanMaze(settings["rows"], settings["columns"]), tuple(level["foods"]), "clockwise")
+    left.imshow(draw_pacman(task, int(task.starts[0])))
+    left.set_axis_off()
+    left.set_title("A task")
+    episodes = (np.arange(len(curves[0]["mean"])) + 0.5) * settings["episodes"] / len(curves[0]["mean"])
     for row in curves:
         mean, deviation, look = np.array(row["mean"]), np.array(row["deviation"]), look_of(row["method"])
         axes.fill_between(episodes, mean - deviation, mean + deviation, color=look["color"], alpha=0.15, lw=0)
         axes.plot(episodes, mean, label=row["method"], **look)
     axes.axhline(level["best"], color=INK, ls=":", lw=1, label="library's best")
-    axes.set(xlim=(0, result["settings"]["episodes"]), xlabel="episode", ylabel="return")
+    axes.set(xlim=(0, settings["episodes"]), xlabel="episode", ylabel="return")
     axes.set_title(f"Pacman, {curves[0]['tasks']} tasks")
     axes.grid(axis="y", color=LIGHT)
     figure.legend(loc="outside right upper")

@@ -16,11 +16,11 @@ def draw(result: Mapping) -> Figure:
     figure = new_figure(6.4, 3.8)
     axes = figure.subplots()
     for name, label in NAMES.items():
-        look = look_of(label)
-        axes.plot(n_rewards, [row["table"][name] for row in rows], label=label, **look)
+        colour = look_of(label)["color"]
+        axes.plot(n_rewards, [row["table"][name] for row in rows], label=label, color=colour)
         if name != "performance":
             printed = [row["printed"][name] for row in rows]
-            axes.plot(n_rewards, printed, **look | {"ls": PRINTED}, zorder=3, label=f"{label}, printed formula")
+            axes.plot(n_rewards, printed, color=colour, ls=PRINTED, zorder=3, label=f"{label}, printed formula")
     axes.axvline(n_states, color=INK, lw=0.8, ls=":")
     axes.text(n_states, 0.98, " |R| = |S|", transform=axes.get_xaxis_transform(), va="top", fontsize=8)
     axes.set(ylim=(0, None), xlabel="number of rewards |R|", ylabel="entries of the table")

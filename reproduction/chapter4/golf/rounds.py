@@ -60,13 +60,14 @@ def play_greedily(
 
     `first`, if given, is the club of the first shot; `generator` chooses among equally good clubs.
     """
-    error = np.empty(luck.shape)
+    n_holes, n_shots = luck.shape
+    error = np.empty((n_holes, n_shots))
 
     def signals(shot: int, clubs: NDArray[np.int64]) -> NDArray[np.int64]:
         error[:, shot] = errors_of(clubs, distance, luck[:, shot])
         return category_of(error[:, shot])
 
-    played = play_rule(Greedy(), library, signals, *luck.shape, generator, first)
+    played = play_rule(Greedy(), library, signals, n_holes, n_shots, generator, first)
     return Round(played.policies, error, played.entropy)
 
 

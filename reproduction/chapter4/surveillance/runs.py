@@ -112,7 +112,7 @@ def run_method(settings: Mapping, cell: Mapping, seed: int) -> dict:
         ]
         found = _regrets(world, tasks, np.concatenate([policies for policies, _ in played]))
         if name in RULES:
-            entropy = np.concatenate([entropies for _, entropies in played])[: DRAWN[0]]
+            entropy = np.concatenate([entropies for _, entropies in played if entropies is not None])[: DRAWN[0]]
             found["entropy"] = entropy.mean(axis=0).round(4).tolist()
         if not best or np.mean(found["sums"]) < np.mean(best["sums"]):
             best = {**found, "tuned": tuned}
