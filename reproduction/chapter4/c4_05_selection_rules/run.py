@@ -4,7 +4,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from reproduction.chapter4.reuse.many_tasks import grouped_mean, grouped_quantile
-from reproduction.chapter4.reuse.rules import FORMS, RULES, STANDARD, in_form
+from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
 from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_group, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 
@@ -24,10 +24,14 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """Each form of the rules in each reserve, with exact models; learnt ones in the default."""
+    """Each form of the rules in each reserve, with exact models; learnt ones in the default.
+
+    PI as printed beside standard rules is a reading of PI's statement alone.
+    """
     for place, found in each_place(settings, results):
         for form in FORMS:
-            yield {"form": form, **place}, convergence(found, form)
+            numbers = convergence(found, form)
+            yield {"form": form, **place}, {"late_PI": numbers["late_PI"]} if form == PI_PRINTED else numbers
 
 
 def convergence(found: Mapping[str, Mapping], form: str) -> dict[str, Estimate]:

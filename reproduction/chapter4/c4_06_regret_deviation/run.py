@@ -1,11 +1,12 @@
 """C4.6: how much regret varies over ten surveillance tasks, by rule and episode. Thesis: §4.6.4, Table 4.3."""
 
 from collections.abc import Iterator, Mapping, Sequence
+from itertools import product
 
 import numpy as np
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from reproduction.chapter4.reuse.rules import FORMS, RULES, STANDARD, in_form
+from reproduction.chapter4.reuse.rules import FORMS, PI_PRINTED, RULES, STANDARD, in_form
 from reproduction.chapter4.surveillance.runs import DEFAULT, READ, by_method, each_place, reserve_cells
 from reproduction.chapter4.surveillance.runs import run_method as run_cell
 from reproduction.engine.estimates import share_of
@@ -45,11 +46,12 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
-    """Each form of the rules and meaning of regret in each reserve."""
+    """Each form of the rules and meaning of regret in each reserve; PI as printed for PI's statement alone."""
     for place, found in each_place(settings, results):
-        for form in FORMS:
-            for regret in REGRETS:
-                yield {"form": form, "regret": regret, **place}, pattern(found, form, regret)
+        for form, regret in product(FORMS, REGRETS):
+            numbers = pattern(found, form, regret)
+            numbers = {"more_PI": numbers["more_PI"]} if form == PI_PRINTED else numbers
+            yield {"form": form, "regret": regret, **place}, numbers
 
 
 def pattern(found: Mapping[str, Mapping], form: str, regret: str) -> dict[str, Estimate]:

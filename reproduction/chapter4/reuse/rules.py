@@ -29,7 +29,8 @@ PRINTED: dict[str, SelectionRule] = {
     "EI, printed": ExpectedImprovement(variant="thesis"),
 }
 RULES = STANDARD | PRINTED
-FORMS = ("standard", "PI as printed", "all as printed")
+PI_PRINTED = "PI as printed"
+FORMS = "standard", PI_PRINTED, "all as printed"
 
 
 def in_form(name: str, form: str) -> str:
