@@ -1,0 +1,46 @@
+"""Learning curves in the factory as the thesis draws them: rewards by episode, one standard deviation shaded."""
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from lifelore.figures.curves import draw_curves
+from lifelore.figures.style import GREY, Axes, Figure, new_figure
+
+Looks = Mapping[str, tuple[str, str]]
+"""Method → its label and colour, in the order of drawing."""
+
+
+def draw_rewards(axes: Axes, result: Mapping, rows: Sequence[Mapping], looks: Looks, title: str = "") -> None:
+    """Draw the rows with ``curve_of`` a method of `looks`, and the optimal reward; the axes are linear."""
+    episodes = result["settings"]["episodes"]
+    curves = {row["curve_of"]: row for row in rows if row.get("curve_of") in looks}
+    points = len(next(iter(curves.values()))["mean"])
+    draw_curves(
+        axes,
+        (np.arange(points) + 0.5) * episodes / points + 0.5,
+        {label: curves[method] for method, (label, _) in looks.items()},
+        looks={label: {"color": colour, "linewidth": 1.5} for label, colour in looks.values()},
+        title=title, xlabel="episode", ylabel="reward of an episode",
+        level=(result["measured"]["optimal_reward"]["value"], "optimal"), legend=False,
+    )  # fmt: skip
+    lowest = min(min(row["mean"]) for row in curves.values())
+    # Rewards are skewed: a standard deviation reaches far above what can be earned.
+    axes.set(xlim=(0, episodes), ylim=(1.15 * lowest, -0.06 * lowest))
+    axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
+
+
+def one_panel(result: Mapping, looks: Looks) -> Figure:
+    """A figure of one panel with the curves of the default."""
+    figure = new_figure(6.4, 4.2)
+    axes = figure.subplots()
+    draw_rewards(axes, result, result["rows"], looks)
+    axes.legend(loc="lower right")
+    figure.supxlabel(caption(result["settings"]), fontsize=8, color=GREY)
+    return figure
+
+
+def caption(settings: Mapping) -> str:
+    """The count of runs, and the meaning of the shades."""
+    tasks = f" of {settings['test_tasks']} tasks" if settings.get("test_tasks", 1) > 1 else ""
+    return f"{settings['runs']} runs{tasks}; shaded: one standard deviation across tasks."
