@@ -21,7 +21,7 @@ def draw(result: Mapping) -> Figure:
     figure = new_figure(4.9 * len(caps), 4.0)
     for axes, cap in zip(figure.subplots(1, len(caps), squeeze=False)[0], caps, strict=True):
         rows = [row for row in result["rows"] if row["max_steps"] == cap]
-        draw_rewards(axes, result, rows, LOOKS, f"episodes of at most {cap:,} steps")
+        draw_rewards(axes, result, rows, LOOKS, settings["episodes"][0], f"episodes of at most {cap:,} steps")
         axes.legend(loc="lower right")
     figure.supxlabel(caption(settings), fontsize=8, color=GREY)
     return figure

@@ -32,7 +32,7 @@ PAIRS = {
 
 def grid_of(settings: Mapping) -> Grid:
     """The grid; the hand-made priors do not read the code of states."""
-    keys = ("encoding", "schedule", "max_steps", "ties", "alpha0")
+    keys = ("encoding", "schedule", "max_steps", "ties", "alpha0", "episodes")
     return comparison.grid_of(settings, keys[:3], keys[3:], dict.fromkeys(ADVICE, keys[1:]))
 
 
@@ -49,7 +49,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         if method != UNIFORM:
             prior = learning.with_pseudo_count(priors[how["encoding"] or method], how["alpha0"])
             rows = learning.rows_of(problem, prior, how["encoding"], how["ties"])
-        schedule = schedule_of({**settings, "max_steps": how["max_steps"]}, how["schedule"])
+        schedule = schedule_of({**settings, **how}, how["schedule"])
         curve, learner = learning.learn_task(problem, rows, schedule)
         found = summary([curve], settings["early"], is_default(grid, how, but=["max_steps"]))
         return {**found, "solution": learning.greedy_return(problem, learner.q)}

@@ -104,7 +104,7 @@ class Sequences(NamedTuple):
         return self.gain[:, tasks].sum(axis=1) / self.distance[:, tasks].sum(axis=1)
 
     def numbers(self, settings: Mapping, seen: NDArray[np.bool_]) -> dict[str, Estimate]:
-        """Shares of the distance: the late gain, what it exceeds the first gain by, and late gains in new tasks."""
+        """Shares of the distance: the late gain, the late gain less the first, and the late gain in new tasks."""
         first, late = map(list, windows(settings))
         gain, room = self.gain[:, late].mean(axis=1), self.distance[:, late].mean(axis=1)
         found = {

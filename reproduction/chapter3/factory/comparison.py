@@ -33,13 +33,13 @@ def grid_of(
     """The grid of choices: all combinations of `crossed`, then every other value of `singly` alone.
 
     Each choice is a setting with a list of values, the first of them the default. `reads` names the choices that a
-    method reads; `UNIFORM` reads those of a learner without a prior.
+    method reads; `UNIFORM` reads those of a learner without a prior, and the number of episodes.
     """
     default = {key: settings[key][0] for key in (*crossed, *singly)}
     combinations = product(*(settings[key] for key in crossed))
     cells = [{**default, **dict(zip(crossed, values, strict=True))} for values in combinations]
     cells += [{**default, key: value} for key in singly for value in settings[key][1:]]
-    return Grid(default, tuple(cells), {UNIFORM: READ_WITHOUT_PRIOR, **(reads or {})})
+    return Grid(default, tuple(cells), {UNIFORM: (*READ_WITHOUT_PRIOR, "episodes"), **(reads or {})})
 
 
 def is_default(grid: Grid, cell: Cell, but: Sequence[str] = ()) -> bool:

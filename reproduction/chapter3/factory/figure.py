@@ -11,9 +11,10 @@ Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""
 
 
-def draw_rewards(axes: Axes, result: Mapping, rows: Sequence[Mapping], looks: Looks, title: str = "") -> None:
+def draw_rewards(
+    axes: Axes, result: Mapping, rows: Sequence[Mapping], looks: Looks, episodes: int, title: str = ""
+) -> None:
     """Draw the rows with ``curve_of`` a method of `looks`, and the optimal reward; the axes are linear."""
-    episodes = result["settings"]["episodes"]
     curves = {row["curve_of"]: row for row in rows if row.get("curve_of") in looks}
     points = len(next(iter(curves.values()))["mean"])
     draw_curves(
@@ -34,7 +35,7 @@ def one_panel(result: Mapping, looks: Looks) -> Figure:
     """A figure of one panel with the curves of the default."""
     figure = new_figure(6.4, 4.2)
     axes = figure.subplots()
-    draw_rewards(axes, result, result["rows"], looks)
+    draw_rewards(axes, result, result["rows"], looks, result["settings"]["episodes"])
     axes.legend(loc="lower right")
     figure.supxlabel(caption(result["settings"]), fontsize=8, color=GREY)
     return figure

@@ -19,8 +19,8 @@ from reproduction.chapter3.factory.modified_tasks import FULL_SET, N_ACTIONS, Pr
 
 FULL, SELECTED = "full", "selected"
 SOURCES = ("learnt", "learnt, all states", "exact", "exact, on the way")
-"""Policies that count, a choice left open: a learnt one in the states where it tried any action, or in all (with all
-six actions of a state never seen); an exact one in all states, or in those of an optimal way."""
+"""Policies that count, a choice left open. A learnt one counts in the states where it tried any action, or in all
+(with all six actions of a state never seen); an exact one in all states, or in those of an optimal way."""
 
 
 def counted(problem: Problem, learner: QLearner, source: str) -> NDArray[np.bool_]:
