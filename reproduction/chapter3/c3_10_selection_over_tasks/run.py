@@ -45,7 +45,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def numbers(masks: NDArray[np.int64], last: int) -> dict[str, Estimate]:
-    """Shares of runs with φ2 after each of the `last` tasks, with its rarest feature, and with the commonest other."""
+    """Shares of runs: φ2 after each of the `last` tasks; with its rarest feature; with the commonest other."""
     at_end = dict(zip(FULL_SET.names, shares(masks)[:, -1], strict=True))
     chosen = {name: (masks[:, -1] >> i & 1).tolist() for i, name in enumerate(FULL_SET.names)}
     rarest = min(CARDINALS, key=at_end.__getitem__)
