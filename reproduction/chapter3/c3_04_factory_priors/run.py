@@ -10,7 +10,7 @@ import numpy as np
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
 from lifelore.core.streams import stream
-from lifelore.domains.factory.knowledge import expert_actions, incorrect_actions, invariances
+from reproduction.chapter3.c3_04_factory_priors.knowledge import expert_actions, incorrect_actions, invariances
 from reproduction.chapter3.factory import comparison, learning
 from reproduction.chapter3.factory.comparison import UNIFORM, Comparison, is_default, summary
 from reproduction.chapter3.factory.learning import LEARNT, N_ACTIONS, Problem, contexts_of
@@ -20,8 +20,6 @@ from reproduction.engine.grid import Cell, Grid, run_grid
 ADVICE = {"expert": expert_actions, "incorrect": incorrect_actions}
 """Actions that a person advises, by name of the hand-made prior."""
 METHODS = (UNIFORM, LEARNT, *ADVICE)
-AVOIDED = ("wall moves", "uses elsewhere")
-"""Of the five invariances of §3.4.2 those whose actions a prior avoids; it favours those of the others."""
 PAIRS = {
     "learnt_minus_expert": (LEARNT, "expert", "early"),
     "learnt_minus_uniform": (LEARNT, UNIFORM, "early"),
@@ -77,8 +75,8 @@ def least_invariance(problem: Problem, prior: ActionPrior, default: Cell) -> flo
     contexts = contexts_of(problem, default["encoding"])
     probs = learning.with_pseudo_count(prior, default["alpha0"]).probs(contexts)
     even = np.full_like(probs, 1 / N_ACTIONS)
-    held = invariances(problem.solved.task).items()
-    return min((-1 if name in AVOIDED else 1) * (one.mass(probs) - one.mass(even)) for name, one in held)
+    held = invariances(problem.solved.task).values()
+    return min((1 if one.wanted else -1) * (one.mass(probs) - one.mass(even)) for one in held)
 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
