@@ -70,7 +70,7 @@ def _priors(settings: Mapping, training: list[tuple[int, ...]], problem: Problem
     return found
 
 
-def least_invariance(problem: Problem, prior: ActionPrior, default: Cell) -> float:
+def least_invariance(problem: Problem, prior: ActionPrior, default: Mapping) -> float:
     """The least, over the five invariances, by which the prior's mass beats a uniform one's on the right side."""
     contexts = contexts_of(problem, default["encoding"])
     probs = learning.with_pseudo_count(prior, default["alpha0"]).probs(contexts)
@@ -93,7 +93,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
         yield cell, _numbers(results, found, cell)
 
 
-def _numbers(results: Sequence[Mapping], found: Comparison, cell: Cell) -> dict[str, Estimate]:
+def _numbers(results: Sequence[Mapping], found: Comparison, cell: Mapping) -> dict[str, Estimate]:
     """Early rewards compared, and the policy learnt with the incorrect prior as a share of the optimal return."""
     optimal = np.array([result["optimal_return"] for result in results])
     incorrect, uniform = (found.values(method, cell, "solution") for method in ("incorrect", UNIFORM))

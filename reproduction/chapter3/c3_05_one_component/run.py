@@ -92,7 +92,7 @@ class Sequences(NamedTuple):
     """From scratch to the optimum."""
 
     @classmethod
-    def of(cls, results: Sequence[Mapping], grid: Grid, cell: Cell) -> "Sequences":
+    def of(cls, results: Sequence[Mapping], grid: Grid, cell: Mapping) -> "Sequences":
         """The sequences of `results`, all of the same number of components."""
         table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
         learnt, uniform = (table.values("rewards", **grid.where(m, cell)) for m in (LEARNT, UNIFORM))

@@ -35,7 +35,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
         yield cell, {**found, **_less_one_component(settings, results, cell)}
 
 
-def _less_one_component(settings: Mapping, results: Sequence[Mapping], cell: Cell) -> dict[str, Estimate]:
+def _less_one_component(settings: Mapping, results: Sequence[Mapping], cell: Mapping) -> dict[str, Estimate]:
     grid, late = grid_of(settings), windows(settings)[1]
     many, one = (
         Sequences.of(of_components(results, k), grid, cell).share(late) for k in settings["components"][:2]

@@ -86,14 +86,14 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
         yield cell, _gaps(results, cell)
 
 
-def _gaps(results: Sequence[Mapping], cell: Cell) -> dict[str, Estimate]:
+def _gaps(results: Sequence[Mapping], cell: Mapping) -> dict[str, Estimate]:
     """By how much the least of N, S, E, W exceeds the largest other, bits."""
     compared = {name: _least_and_largest(results, cell, *sets) for name, sets in GAPS.items()}
     return {name: mean_estimate(ours - others) for name, (ours, others) in compared.items()}
 
 
 def _least_and_largest(
-    results: Sequence[Mapping], cell: Cell, ours: str, theirs: str
+    results: Sequence[Mapping], cell: Mapping, ours: str, theirs: str
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The least Δ of N, S, E, W in a set, and the largest Δ of the other features of another, (n_runs,) each."""
     increases = _increases(results, cell)
@@ -102,7 +102,7 @@ def _least_and_largest(
     return np.array(least), np.array([max(run[theirs][feature] for feature in others) for run in increases])
 
 
-def _increases(results: Sequence[Mapping], cell: Cell) -> list[Mapping[str, Mapping[str, float]]]:
+def _increases(results: Sequence[Mapping], cell: Mapping) -> list[Mapping[str, Mapping[str, float]]]:
     table = ResultsTable.nested(results, "found", keys=KEYS).select(**cell)
     return [record["increase"] for record in table.records]
 

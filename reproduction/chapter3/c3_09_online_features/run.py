@@ -92,7 +92,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
         yield cell, _numbers(results, grid, table, cell)
 
 
-def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: Cell) -> dict[str, Estimate]:
+def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: Mapping) -> dict[str, Estimate]:
     """Differences of rewards as shares of the distance from no prior's first episode to the optimum."""
 
     def mean(method: str, part: str) -> NDArray[np.float64]:

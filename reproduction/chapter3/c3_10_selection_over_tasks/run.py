@@ -21,7 +21,7 @@ __all__ = ["measure", "readings", "rows", "run_cell", "shared"]
 GOAL = mask_of(CARDINALS)
 
 
-def masks_of(settings: Mapping, results: Sequence[Mapping], cell: Cell) -> NDArray[np.int64]:
+def masks_of(settings: Mapping, results: Sequence[Mapping], cell: Mapping) -> NDArray[np.int64]:
     """Sets chosen after each task in a cell of the grid as bit masks, (n_runs, n_tasks)."""
     where = grid_of(settings).where(SELECTED, cell)
     return table_of(settings, results).values("chosen", **where).astype(np.int64)

@@ -90,7 +90,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
         yield cell, _numbers(found, cell)
 
 
-def _numbers(found: Comparison, cell: Cell) -> dict[str, Estimate]:
+def _numbers(found: Comparison, cell: Mapping) -> dict[str, Estimate]:
     """Rewards compared, and the ratio of the early standard deviations across tasks."""
     softmax, proportion = (found.values(form, cell, "spread") for form in (SOFTMAX, PROPORTION))
     return {**found.shares(cell, PAIRS), "spread_ratio": ratio_estimate(softmax, proportion)}

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lifelore.core.learning.curve import Curve
 from lifelore.core.metrics import Estimate, mean_estimate, ratio_estimate
-from reproduction.engine.grid import READ_WITHOUT_PRIOR, Cell, Grid
+from reproduction.engine.grid import READ_WITHOUT_PRIOR, Grid
 from reproduction.engine.results_table import ResultsTable, curve_of
 
 UNIFORM = "uniform"
@@ -42,7 +42,7 @@ def grid_of(
     return Grid(default, tuple(cells), {UNIFORM: (*READ_WITHOUT_PRIOR, "episodes"), **(reads or {})})
 
 
-def is_default(grid: Grid, cell: Cell, but: Sequence[str] = ()) -> bool:
+def is_default(grid: Grid, cell: Mapping, but: Sequence[str] = ()) -> bool:
     """Whether a cell, as any method meets it, is the default in all choices `but` some."""
     return all(cell[key] in (None, value) for key, value in grid.default.items() if key not in but)
 
@@ -80,20 +80,20 @@ class Comparison:
         self.table = ResultsTable.nested(results, "found", keys=("method", *grid.default))
         self.optimal = np.array([result["optimal"] for result in results], float)
 
-    def values(self, method: str, cell: Cell, number: str = "all") -> NDArray[np.float64]:
+    def values(self, method: str, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """A number of a method, run by run."""
         return self.table.values(number, **self.grid.where(method, cell))
 
-    def distance(self, cell: Cell, number: str = "all") -> NDArray[np.float64]:
+    def distance(self, cell: Mapping, number: str = "all") -> NDArray[np.float64]:
         """From learning without a prior to the optimum, run by run."""
         return self.optimal - self.values(UNIFORM, cell, number)
 
-    def share(self, cell: Cell, ours: str, theirs: str, number: str = "all") -> Estimate:
+    def share(self, cell: Mapping, ours: str, theirs: str, number: str = "all") -> Estimate:
         """Our reward less theirs, as a share of the distance from no prior to the optimum."""
         difference = self.values(ours, cell, number) - self.values(theirs, cell, number)
         return ratio_estimate(difference, self.distance(cell, number))
 
-    def shares(self, cell: Cell, pairs: Pairs) -> dict[str, Estimate]:
+    def shares(self, cell: Mapping, pairs: Pairs) -> dict[str, Estimate]:
         """`share` of each pair."""
         return {name: self.share(cell, *pair) for name, pair in pairs.items()}
 
@@ -102,7 +102,7 @@ class Comparison:
         completed = np.mean([self.values(method, self.grid.default, "completed") for method in methods], axis=0)
         return {"optimal_reward": mean_estimate(self.optimal), "completed": mean_estimate(completed)}
 
-    def curve(self, method: str, cell: Cell) -> dict:
+    def curve(self, method: str, cell: Mapping) -> dict:
         """A row with a method's ``mean`` rewards and their standard ``deviation`` across the tasks of all runs."""
         records = self.table.select(**self.grid.where(method, cell)).records
         curves = [of_task for record in records for of_task in record["rewards"]]
