@@ -23,5 +23,5 @@ def draw(result: Mapping) -> Figure:
         rows = [row for row in result["rows"] if row["max_steps"] == cap]
         draw_rewards(axes, result, rows, LOOKS, settings["episodes"][0], f"episodes of at most {cap:,} steps")
         axes.legend(loc="lower right")
-    figure.supxlabel(caption(settings), fontsize=8, color=GREY)
+    figure.supxlabel(f"{caption(settings)}.", fontsize=8, color=GREY)
     return figure

@@ -95,6 +95,8 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
 
 def _numbers(results: Sequence[Mapping], found: Comparison, cell: Mapping) -> dict[str, Estimate]:
     """Early rewards compared, and the policy learnt with the incorrect prior as a share of the optimal return."""
+    if not found.is_own(cell, "incorrect"):
+        return found.shares(cell, PAIRS)
     optimal = np.array([result["optimal_return"] for result in results])
     incorrect, uniform = (found.values(method, cell, "solution") for method in ("incorrect", UNIFORM))
     return {

@@ -18,4 +18,4 @@ LOOKS = {
 @house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    return one_panel(result, LOOKS)
+    return one_panel(result, LOOKS, plain=("state", "phi1", "phi2", "phi4"))

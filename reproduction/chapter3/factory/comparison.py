@@ -94,8 +94,13 @@ class Comparison:
         return ratio_estimate(difference, self.distance(cell, number))
 
     def shares(self, cell: Mapping, pairs: Pairs) -> dict[str, Estimate]:
-        """`share` of each pair."""
-        return {name: self.share(cell, *pair) for name, pair in pairs.items()}
+        """`share` of each pair for which the cell is a reading of its own."""
+        return {name: self.share(cell, *pair) for name, pair in pairs.items() if self.is_own(cell, *pair[:2])}
+
+    def is_own(self, cell: Mapping, *methods: str) -> bool:
+        """Whether a cell differs from the default in nothing but what one of the methods reads."""
+        read = {key for method in methods for key in self.grid.reads.get(method, self.grid.default)}
+        return all(cell[key] == value for key, value in self.grid.default.items() if key not in read)
 
     def remarks(self, methods: Iterable[str]) -> dict[str, Estimate]:
         """At the default: the optimal reward, and the share of early episodes that end by a completed task."""

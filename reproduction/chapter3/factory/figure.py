@@ -1,6 +1,6 @@
 """Learning curves in the factory as the thesis draws them: rewards by episode, one standard deviation shaded."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
@@ -12,15 +12,27 @@ Looks = Mapping[str, tuple[str, str]]
 
 
 def draw_rewards(
-    axes: Axes, result: Mapping, rows: Sequence[Mapping], looks: Looks, episodes: int, title: str = ""
+    axes: Axes,
+    result: Mapping,
+    rows: Sequence[Mapping],
+    looks: Looks,
+    episodes: int,
+    title: str = "",
+    plain: Collection[str] = (),
 ) -> None:
-    """Draw the rows with ``curve_of`` a method of `looks`, and the optimal reward; the axes are linear."""
+    """Draw the rows with ``curve_of`` a method of `looks`, and the optimal reward; the axes are linear.
+
+    Methods in `plain` have no shade.
+    """
     curves = {row["curve_of"]: row for row in rows if row.get("curve_of") in looks}
     points = len(next(iter(curves.values()))["mean"])
     draw_curves(
         axes,
         (np.arange(points) + 0.5) * episodes / points + 0.5,
-        {label: curves[method] for method, (label, _) in looks.items()},
+        {
+            label: {"mean": curves[method]["mean"]} if method in plain else curves[method]
+            for method, (label, _) in looks.items()
+        },
         looks={label: {"color": colour, "linewidth": 1.5} for label, colour in looks.values()},
         title=title, xlabel="episode", ylabel="reward of an episode",
         level=(result["measured"]["optimal_reward"]["value"], "optimal"), legend=False,
@@ -31,17 +43,18 @@ def draw_rewards(
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
 
 
-def one_panel(result: Mapping, looks: Looks) -> Figure:
+def one_panel(result: Mapping, looks: Looks, plain: Collection[str] = ()) -> Figure:
     """A figure of one panel with the curves of the default."""
     figure = new_figure(6.4, 4.2)
     axes = figure.subplots()
-    draw_rewards(axes, result, result["rows"], looks, result["settings"]["episodes"])
+    draw_rewards(axes, result, result["rows"], looks, result["settings"]["episodes"], plain=plain)
     axes.legend(loc="lower right")
-    figure.supxlabel(caption(result["settings"]), fontsize=8, color=GREY)
+    shaded = ", ".join(label.partition(":")[0] for name, (label, _) in looks.items() if name not in plain)
+    figure.supxlabel(caption(result["settings"]) + (f" ({shaded})." if plain else "."), fontsize=8, color=GREY)
     return figure
 
 
 def caption(settings: Mapping) -> str:
-    """The count of runs, and the meaning of the shades."""
+    """The count of runs, and the meaning of the shades, without a full stop."""
     tasks = f" of {settings['test_tasks']} tasks" if settings.get("test_tasks", 1) > 1 else ""
-    return f"{settings['runs']} runs{tasks}; shaded: one standard deviation across tasks."
+    return f"{settings['runs']} runs{tasks}; shaded: one standard deviation across tasks"

@@ -81,6 +81,15 @@ def test_shares_of_the_distance_by_hand():
     assert row["deviation"] == [0.0, round(float(np.std([0, 2, 4, 6], ddof=1)), 1)]
 
 
+def test_a_cell_counts_once_for_each_pair():
+    grid = grid_of(SETTINGS, ("schedule", "ties"), ("alpha0",), {"prior": ("schedule", "ties")})
+    found = Comparison(made_up(), grid)
+    # Neither method reads α⁰: the last cell is the default once more.
+    assert [found.is_own(cell, "prior", "uniform") for cell in grid.cells] == [True] * 4 + [False]
+    assert [found.is_own(cell, "uniform") for cell in grid.cells] == [True, False, True, False, False]
+    assert found.is_own(grid.cells[-1], "prior", "another")
+
+
 def test_curves_are_drawn_as_stored_on_linear_axes():
     found = Comparison(made_up(), GRID)
     rows = [found.curve(method, GRID.default) for method in ("prior", "uniform")]
