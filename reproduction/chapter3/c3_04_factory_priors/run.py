@@ -101,7 +101,7 @@ def _numbers(results: Sequence[Mapping], found: Comparison, cell: Mapping) -> di
     incorrect, uniform = (found.values(method, cell, "solution") for method in ("incorrect", UNIFORM))
     return {
         **found.shares(cell, PAIRS),
-        "solution_incorrect_minus_uniform": ratio_estimate(incorrect - uniform, optimal),
+        "recovery": ratio_estimate(incorrect - uniform, optimal),
         "solution_incorrect": ratio_estimate(incorrect, optimal),
     }
 
