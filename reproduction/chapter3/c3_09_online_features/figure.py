@@ -6,6 +6,7 @@ import numpy as np
 
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, PURPLE, Figure, house_style, new_figure
+from reproduction.chapter3.c3_09_online_features.run import DRAWN
 
 METHODS = {
     "uniform": ("uniform prior", GREY),
@@ -22,7 +23,8 @@ def draw(result: Mapping) -> Figure:
     for row in result["rows"]:
         words, colour = METHODS[row["curve_of"]]
         label = f"{words}, episode {1 if row['part'] == 'first' else settings['episodes']}"
-        series[label] = row
+        # Shades of both bundles would hide one another.
+        series[label] = row if row["part"] == "first" else {"mean": row["mean"]}
         looks[label] = {"color": colour, "linewidth": 1.5, "linestyle": DASHES[row["part"]]}
     figure = new_figure(6.8, 4.4)
     axes = figure.subplots()
@@ -33,5 +35,6 @@ def draw(result: Mapping) -> Figure:
     axes.set(xlim=(1, settings["tasks"]), ylim=(1.1 * lowest, -0.06 * lowest))
     axes.yaxis.set_major_formatter(lambda value, _: f"{value:,.0f}".replace("-", "−"))
     figure.legend(*axes.get_legend_handles_labels(), loc="outside upper left", ncols=2)
-    figure.supxlabel(f"{settings['runs']} runs; shaded: one standard deviation.", fontsize=8, color=GREY)
+    runs = min(DRAWN, settings["runs"])
+    figure.supxlabel(f"{runs} runs; shaded: one standard deviation of the first episodes.", fontsize=8, color=GREY)
     return figure

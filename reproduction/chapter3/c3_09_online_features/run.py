@@ -20,6 +20,8 @@ from reproduction.engine.results_table import ResultsTable, curve_of
 
 METHODS = (UNIFORM, FULL, SELECTED)
 PARTS = ("first", "last")
+DRAWN = 10
+"""Runs in the figures, as many as in the thesis's; numbers rest on all runs."""
 PAIRS = {
     "first_selected_minus_full": (SELECTED, FULL, "first"),
     "first_full_minus_uniform": (FULL, UNIFORM, "first"),
@@ -108,7 +110,7 @@ def _numbers(results: Sequence[Mapping], grid: Grid, table: ResultsTable, cell: 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """Mean reward and its standard deviation in the first and the last episode of each task, by method."""
-    grid, table = grid_of(settings), table_of(settings, results)
+    grid, table = grid_of(settings), table_of(settings, results[:DRAWN])
     return [
         {
             "curve_of": method,

@@ -5,6 +5,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from lifelore.figures.style import GREY, INK, PAPER, VERMILION, Figure, house_style, new_figure
+from reproduction.chapter3.c3_09_online_features.run import DRAWN
 from reproduction.chapter3.factory.modified_tasks import FEATURES
 from reproduction.chapter3.figures.feature_words import features_in_words
 
@@ -28,7 +29,7 @@ def draw(result: Mapping) -> Figure:
     axes.set_xlabel("tasks")
     figure.colorbar(image, ax=axes, pad=0.02, label="share of runs")
     figure.supxlabel(
-        f"{result['settings']['runs']} runs. N to SE: cells around the robot's. Above the line: φ2.",
+        f"{min(DRAWN, result['settings']['runs'])} runs. N to SE: cells around the robot's. Above the line: φ2.",
         fontsize=8, color=GREY,
     )  # fmt: skip
     return figure

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.metrics import Estimate, mean_estimate
-from reproduction.chapter3.c3_09_online_features.run import grid_of, mask_of, run_cell, shared, table_of
+from reproduction.chapter3.c3_09_online_features.run import DRAWN, grid_of, mask_of, run_cell, shared, table_of
 from reproduction.chapter3.factory.comparison import is_default
 from reproduction.chapter3.factory.modified_tasks import CARDINALS, FULL_SET
 from reproduction.chapter3.factory.online_selection import SELECTED
@@ -67,7 +67,7 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[Ce
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The share of runs with each feature after each task at the default."""
-    found = shares(masks_of(settings, results, grid_of(settings).default))
+    found = shares(masks_of(settings, results[:DRAWN], grid_of(settings).default))
     return [
         {"feature": name, "shares": of_feature.tolist()}
         for name, of_feature in zip(FULL_SET.names, found, strict=True)
