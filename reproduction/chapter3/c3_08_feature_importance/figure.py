@@ -2,23 +2,25 @@
 
 from collections.abc import Mapping
 
+from lifelore.domains.factory.contexts import PHI
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import GREY, LIGHT, Figure, colour_of, house_style, new_figure
 from reproduction.chapter3.factory.modified_tasks import FEATURES
 from reproduction.chapter3.figures.feature_words import features_in_words
+
+COLOURS = {phi.replace("phi", "φ"): colour_of(phi) for phi in PHI}
+TICKS = features_in_words(FEATURES)
 
 
 @house_style()
 def draw(result: Mapping) -> Figure:
     """Bars of each feature, one for each set that contains it."""
     number = {(row["set"], row["feature"]): row for row in result["rows"]}
-    sets = list(dict.fromkeys(row["set"] for row in result["rows"]))
-    groups = {phi.replace("phi", "φ"): [number.get((phi, feature)) for feature in FEATURES] for phi in sets}
-    colours = {phi.replace("phi", "φ"): colour_of(phi) for phi in sets}
+    groups = {phi.replace("phi", "φ"): [number.get((phi, feature)) for feature in FEATURES] for phi in PHI}
     figure = new_figure(8.0, 3.8)
     axes = figure.subplots()
     draw_interval_bars(
-        axes, features_in_words(FEATURES), groups, colours=colours, horizontal=False, words=None,
+        axes, TICKS, groups, colours=COLOURS, horizontal=False, words=None,
         label="Δ, bits lost without the feature",
     )  # fmt: skip
     axes.axhline(0, color=GREY, linewidth=0.8)

@@ -6,13 +6,17 @@ import numpy as np
 
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import BLUE, GREY, PURPLE, Figure, house_style, new_figure
-from reproduction.chapter3.c3_09_online_features.run import DRAWN
+from reproduction.chapter3.c3_09_online_features.run import DRAWN, METHODS
+from reproduction.chapter3.factory.figure import looks_of
 
-METHODS = {
-    "uniform": ("uniform prior", GREY),
-    "full": ("all ten features", PURPLE),
-    "selected": ("selected features", BLUE),
-}
+LOOKS = looks_of(
+    METHODS,
+    {
+        "uniform": ("uniform prior", GREY),
+        "full": ("all ten features", PURPLE),
+        "selected": ("selected features", BLUE),
+    },
+)
 DASHES = {"first": "-", "last": (0, (4, 2))}
 
 
@@ -21,7 +25,7 @@ def draw(result: Mapping) -> Figure:
     """Two bundles of lines: first episodes, and the last ones above them."""
     settings, series, looks = result["settings"], {}, {}
     for row in result["rows"]:
-        words, colour = METHODS[row["curve_of"]]
+        words, colour = LOOKS[row["curve_of"]]
         label = f"{words}, episode {1 if row['part'] == 'first' else settings['episodes']}"
         # Shades of both bundles would hide one another.
         series[label] = row if row["part"] == "first" else {"mean": row["mean"]}

@@ -3,13 +3,17 @@
 from collections.abc import Mapping
 
 from lifelore.figures.style import BLUE, GREEN, VERMILION, Figure, house_style
-from reproduction.chapter3.factory.figure import one_panel
+from reproduction.chapter3.c3_11_forms_of_prior.run import FORMS
+from reproduction.chapter3.factory.figure import looks_of, one_panel
 
-LOOKS = {
-    "softmax": ("softmax", VERMILION),
-    "proportion": ("proportions", BLUE),
-    "dirichlet": ("Dirichlet", GREEN),
-}
+LOOKS = looks_of(
+    FORMS,
+    {
+        "softmax": ("softmax", VERMILION),
+        "proportion": ("proportions", BLUE),
+        "dirichlet": ("Dirichlet", GREEN),
+    },
+)
 
 
 @house_style()

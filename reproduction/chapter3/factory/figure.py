@@ -4,11 +4,19 @@ from collections.abc import Collection, Mapping, Sequence
 
 import numpy as np
 
+from lifelore.core.errors import InputError
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, Axes, Figure, new_figure
 
 Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""
+
+
+def looks_of(methods: Collection[str], looks: Looks) -> Looks:
+    """The looks; a method without one is refused when its figure is imported, before its cells have run."""
+    if missing := [method for method in methods if method not in looks]:
+        raise InputError(f"looks must have a label and a colour for each method, missing {', '.join(missing)}")
+    return looks
 
 
 def draw_rewards(

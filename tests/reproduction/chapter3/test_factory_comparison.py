@@ -3,10 +3,11 @@
 import numpy as np
 import pytest
 
+from lifelore.core.errors import InputError
 from lifelore.core.learning.curve import new_curve
 from lifelore.figures.style import new_figure
 from reproduction.chapter3.factory.comparison import Comparison, grid_of, in_blocks, is_default, summary
-from reproduction.chapter3.factory.figure import draw_rewards
+from reproduction.chapter3.factory.figure import draw_rewards, looks_of
 
 SETTINGS = {"schedule": ["printed", [0.1, 1.0, 0.1]], "ties": ["uniform", "prior"], "alpha0": [0.1, 1.0]}
 GRID = grid_of(SETTINGS, ("schedule", "ties"), ("alpha0",))
@@ -88,6 +89,11 @@ def test_a_cell_counts_once_for_each_pair():
     assert [found.is_own(cell, "prior", "uniform") for cell in grid.cells] == [True] * 4 + [False]
     assert [found.is_own(cell, "uniform") for cell in grid.cells] == [True, False, True, False, False]
     assert found.is_own(grid.cells[-1], "prior", "another")
+
+
+def test_a_method_without_a_look_is_refused():
+    with pytest.raises(InputError, match="missing another"):
+        looks_of(["prior", "another"], {"prior": ("a prior", "#000000")})
 
 
 def test_curves_are_drawn_as_stored_on_linear_axes():
