@@ -7,6 +7,7 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, Axes, Figure, new_figure
+from reproduction.chapter3.learning.schedules import schedule_in_words
 
 Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""
@@ -63,6 +64,7 @@ def one_panel(result: Mapping, looks: Looks, plain: Collection[str] = ()) -> Fig
 
 
 def caption(settings: Mapping) -> str:
-    """The count of runs, and the meaning of the shades, without a full stop."""
+    """The count of runs, the default's schedule, and the meaning of the shades, without a full stop."""
     tasks = f" of {settings['test_tasks']} tasks" if settings.get("test_tasks", 1) > 1 else ""
-    return f"{settings['runs']} runs{tasks}; shaded: one standard deviation across tasks"
+    schedule = schedule_in_words(settings["schedule"][0])
+    return f"{settings['runs']} runs{tasks}; {schedule}; shaded: one standard deviation across tasks"
