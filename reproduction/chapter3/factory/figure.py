@@ -7,7 +7,7 @@ import numpy as np
 from lifelore.core.errors import InputError
 from lifelore.figures.curves import draw_curves
 from lifelore.figures.style import GREY, Axes, Figure, new_figure
-from reproduction.chapter3.learning.schedules import schedule_in_words
+from reproduction.chapter3.learning.schedules import Epsilon
 
 Looks = Mapping[str, tuple[str, str]]
 """Method → its label and colour, in the order of drawing."""
@@ -68,3 +68,11 @@ def caption(settings: Mapping) -> str:
     tasks = f" of {settings['test_tasks']} tasks" if settings.get("test_tasks", 1) > 1 else ""
     schedule = schedule_in_words(settings["schedule"][0])
     return f"{settings['runs']} runs{tasks}; {schedule}; shaded: one standard deviation across tasks"
+
+
+def schedule_in_words(epsilon: Epsilon) -> str:
+    """A schedule as captions name it."""
+    if isinstance(epsilon, str):
+        return "ε = α = 0.5, less 0.5/N an episode"
+    first, decay, least = epsilon
+    return f"ε = {first:g}" if decay == 1 else f"ε = {first:g}, × {decay:g} an episode to {least:g}"
