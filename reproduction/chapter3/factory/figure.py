@@ -67,7 +67,7 @@ def caption(settings: Mapping) -> str:
     """The count of runs, the default's schedule, and the meaning of the shades, without a full stop."""
     tasks = f" of {settings['test_tasks']} tasks" if settings.get("test_tasks", 1) > 1 else ""
     schedule = schedule_in_words(settings["schedule"][0])
-    return f"{settings['runs']} runs{tasks}; {schedule}; shaded: one standard deviation across tasks"
+    return f"{settings['runs']} runs{tasks}; {schedule}.\nShaded: one standard deviation across tasks"
 
 
 def schedule_in_words(epsilon: Epsilon) -> str:
