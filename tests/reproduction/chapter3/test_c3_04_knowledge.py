@@ -6,9 +6,14 @@ import pytest
 from lifelore.core.planning.planning import best_actions
 from lifelore.domains.factory.contexts import TO_PROCURE, items_flag
 from lifelore.domains.factory.factory import ASSEMBLE, PROCURE
-from lifelore.domains.factory.knowledge import distances, expert_actions, incorrect_actions, invariances
 from lifelore.domains.factory.layout import factory
 from lifelore.domains.factory.modified_factory import modified_factory
+from reproduction.chapter3.c3_04_factory_priors.knowledge import (
+    distances,
+    expert_actions,
+    incorrect_actions,
+    invariances,
+)
 
 EAST, WEST = 2, 3
 WORLDS = {"thesis": factory(), "modified": modified_factory(np.random.default_rng(4))}
