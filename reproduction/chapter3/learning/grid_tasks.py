@@ -29,6 +29,8 @@ STATE, PLACE, PERCEPT = "state", "place", "percept"
 CHOICES = ("schedule", "ties", "form", "alpha0")
 """Settings with the values of the choices that the thesis leaves open; a reading has a value of each."""
 PLAIN = "q_learning"
+WINDOW = 10
+"""Episodes of the moving mean that must reach a percentage of the optimum."""
 BLOCKS = 100
 """Points of a drawn learning curve."""
 
@@ -118,7 +120,7 @@ def start_values(problem: Problem, n_episodes: int) -> NDArray[np.float64]:
     return problem.values[drawn_starts(problem.tables, problem.stream, n_episodes)]
 
 
-def summary(settings: Mapping, returns: NDArray[np.float64], best: NDArray[np.float64]) -> dict:
+def summary(returns: NDArray[np.float64], best: NDArray[np.float64]) -> dict:
     """A run's numbers from its mean curve and the best it could have been, both (n_episodes,).
 
     Percent of optimal are of the best from the same starts, over a moving window of episodes; a run that never
@@ -127,7 +129,7 @@ def summary(settings: Mapping, returns: NDArray[np.float64], best: NDArray[np.fl
     episodes = len(returns)
     found = {"first": float(returns[0]), "first_ten": float(returns[:10].mean()), "mean": float(returns.mean())}
     for percent in (50, 80):
-        reached = episodes_to_threshold(returns - percent / 100 * best, 0.0, min(settings["window"], episodes))
+        reached = episodes_to_threshold(returns - percent / 100 * best, 0.0, min(WINDOW, episodes))
         found[f"to_{percent}"] = episodes if reached is None else reached
     return found
 
@@ -156,7 +158,7 @@ def learnt_by_choice(
             returns[name] = returns_of(testing, rows_for, schedule)
         if not curves:
             curves = {name: block_curve(of_tasks) for name, of_tasks in returns.items()}
-        found.append({name: summary(settings, r.mean(axis=0), best) for name, r in returns.items()})
+        found.append({name: summary(r.mean(axis=0), best) for name, r in returns.items()})
     optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in testing]))
     return {"optimal": optimal, "choices": found, "curves": curves if number == 0 else {}}
 

@@ -6,6 +6,7 @@ import pytest
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.core.planning.planning import best_actions, greedy_policy, optimal_q
 from reproduction.chapter3.c3_02_lattice_prior.run import run_of
+from reproduction.chapter3.learning import grid_tasks
 from reproduction.chapter3.learning.grid_tasks import (
     PLAIN,
     STATE,
@@ -161,10 +162,11 @@ def test_comparison_by_hand():
     assert compared(results, 1, "a", "b")["first_gain"].n == 1
 
 
-def test_summary_by_hand():
+def test_summary_by_hand(monkeypatch):
+    monkeypatch.setattr(grid_tasks, "WINDOW", 2)
     best = np.full(20, 10.0)
     returns = np.array([-8.0] * 5 + [4.0, 6.0, 7.0] + [9.0] * 12)
-    found = summary({"window": 2}, returns, best)
+    found = summary(returns, best)
     assert found == {
         "first": -8.0,
         "first_ten": (5 * -8 + 4 + 6 + 7 + 9 + 9) / 10,
@@ -172,11 +174,12 @@ def test_summary_by_hand():
         "to_50": 7,  # the mean of the sixth and seventh return is 5
         "to_80": 9,  # the mean of 7 and 9 is 8
     }
-    assert summary({"window": 2}, np.zeros(20), best)["to_80"] == 20
+    assert summary(np.zeros(20), best)["to_80"] == 20
 
 
-def test_percent_of_optimal_is_of_the_best_from_the_same_starts():
-    lucky = summary({"window": 1}, np.array([0.0, 9.0, 40.0, 90.0]), np.array([10.0, 90.0, 90.0, 100.0]))
+def test_percent_of_optimal_is_of_the_best_from_the_same_starts(monkeypatch):
+    monkeypatch.setattr(grid_tasks, "WINDOW", 1)
+    lucky = summary(np.array([0.0, 9.0, 40.0, 90.0]), np.array([10.0, 90.0, 90.0, 100.0]))
     assert lucky["to_80"] == 4  # 9 of a possible 90 is not yet learning, whatever other starts would give
 
 
