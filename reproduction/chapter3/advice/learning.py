@@ -1,8 +1,8 @@
 """Q-learning on the errands of a maze, with advice in its ε branch and without, for claims C3.15 to C3.17.
 
-The advisor watches every step of the learner, over the episodes of a task. Where the learner explores, and condition
-3.16 holds at this step, it draws from θ, else from all actions alike. Episodes have at most 200 steps, so that a goal
-far away is seldom met by chance. Thesis: §3.7.2.2, Alg. 2.
+The advisor watches every step of the learner, over the episodes of a task. Where the learner explores, and
+condition 3.16 holds at this step, it draws from θ, else from all actions alike. Episodes have at most 200 steps:
+a goal far away is seldom met by chance. Thesis: §3.7.2.2, Alg. 2.
 """
 
 from collections.abc import Mapping

@@ -1,9 +1,9 @@
 """Mazes, experts, errands, agents and the thesis's advisor of claims C3.15 to C3.18, and estimates over mazes.
 
-The thesis draws one maze and prints neither how it loops nor where its experts began: readings cross loop densities
-with kinds of experts and α⁰, over many mazes. An interval is over mazes, since the errands of one maze share its
-experts. Experts take shortest paths, as converged policies do. There is one θ: it is advised, and it is M₁.
-Everything compared in an errand shares its start and its random numbers. Thesis: §3.7.2.
+The thesis draws one maze and prints neither how it loops nor where its experts began: readings cross loop
+densities with kinds of experts and α⁰, over many mazes. An interval is over mazes, since the errands of one maze
+share its experts. Experts take shortest paths, as converged policies do. There is one θ: it is advised, and it is
+M₁. Everything compared in an errand shares its start and its random numbers. Thesis: §3.7.2.
 """
 
 from collections.abc import Mapping, Sequence

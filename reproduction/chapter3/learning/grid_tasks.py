@@ -157,17 +157,25 @@ def learnt_by_choice(
 
             returns[name] = returns_of(testing, rows_for, schedule)
         if not curves:
-            curves = {name: block_curve(of_tasks) for name, of_tasks in returns.items()}
+            curves = {name: block_curve(even_blocks(r), settings["episodes"]) for name, r in returns.items()}
         found.append({name: summary(r.mean(axis=0), best) for name, r in returns.items()})
     optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in testing]))
     return {"optimal": optimal, "choices": found, "curves": curves if number == 0 else {}}
 
 
-def block_curve(returns: NDArray[np.float64]) -> dict[str, list[float]]:
-    """Mean and deviation over tasks (n_tasks, n_episodes) in even blocks, at their middle episodes `x`."""
-    n_blocks = min(BLOCKS, returns.shape[1])
-    ends = np.linspace(0, returns.shape[1], n_blocks + 1).astype(int)
-    blocks = np.add.reduceat(returns, ends[:-1], axis=1) / np.diff(ends)
+def even_blocks(curves: NDArray) -> NDArray[np.float64]:
+    """Means of curves (n, n_episodes) over at most `BLOCKS` even blocks of episodes, (n, n_blocks)."""
+    ends = _block_ends(curves.shape[1])
+    return np.add.reduceat(curves.astype(float), ends[:-1], axis=1) / np.diff(ends)
+
+
+def _block_ends(n_episodes: int) -> NDArray[np.int64]:
+    return np.linspace(0, n_episodes, min(BLOCKS, n_episodes) + 1).astype(np.int64)
+
+
+def block_curve(blocks: NDArray[np.float64], n_episodes: int) -> dict[str, list[float]]:
+    """Mean and deviation over tasks of `even_blocks` (n_tasks, n_blocks), at their middle episodes `x`."""
+    ends = _block_ends(n_episodes)
     numbers = {"x": (ends[:-1] + ends[1:] + 1) / 2, "mean": blocks.mean(axis=0), "deviation": blocks.std(axis=0)}
     return {name: np.round(of_blocks, 2).tolist() for name, of_blocks in numbers.items()}
 

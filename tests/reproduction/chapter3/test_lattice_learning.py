@@ -14,6 +14,7 @@ from reproduction.chapter3.learning.grid_tasks import (
     block_curve,
     choices_of,
     compared,
+    even_blocks,
     exact_prior,
     learn_task,
     learnt_by_choice,
@@ -184,8 +185,8 @@ def test_percent_of_optimal_is_of_the_best_from_the_same_starts(monkeypatch):
 
 
 def test_a_drawn_curve_has_even_blocks():
-    curve = block_curve(np.array([np.arange(200.0), np.arange(200.0) + 2]))
+    curve = block_curve(even_blocks(np.array([np.arange(200.0), np.arange(200.0) + 2])), 200)
     assert len(curve["x"]) == 100
     assert (curve["x"][:2], curve["mean"][:2]) == ([1.5, 3.5], [1.5, 3.5])
     assert set(curve["deviation"]) == {1.0}
-    assert block_curve(np.zeros((2, 7)))["x"] == [1, 2, 3, 4, 5, 6, 7]
+    assert block_curve(even_blocks(np.zeros((2, 7))), 7)["x"] == [1, 2, 3, 4, 5, 6, 7]
