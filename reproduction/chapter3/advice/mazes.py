@@ -27,6 +27,8 @@ from lifelore.domains.grids.grid_world import GridWorld
 
 EXPERTS = ("walks", "trips")
 """Walks to each goal from anywhere, or from other goals."""
+NO_PSEUDO_COUNT = 1e-9
+"""α⁰ of M₁ where θ has none: an action that no expert took is next to impossible, not impossible."""
 EXPERT_WALKS = 20
 """Walks of experts to each goal."""
 KAPPA, WINDOW = 0.5, 300
@@ -108,7 +110,8 @@ def goal_models_of(maze: Maze, experts: str, alpha0: float) -> list[GoalModel]:
         others = np.array([other for other in maze.errands if other != goal])
         starts = random.choice(others if experts == "trips" else found.tables.starts, EXPERT_WALKS)
         walks = [expert_walk(maze.world, found, int(start), random) for start in starts]
-        model = GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal], alpha0)
+        in_prior = max(alpha0, NO_PSEUDO_COUNT)
+        model = GoalModel.from_trajectories(walks, maze.world.n_states, 4, [goal], in_prior)
         models.append(replace(model, advised_alpha0=alpha0))
     return models
 
