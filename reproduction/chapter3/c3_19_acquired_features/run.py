@@ -95,7 +95,7 @@ def _numbers(settings: Mapping, testing: list[Counted], prior: ActionPrior | Non
     codes = {id(task.problem): POOL.coarser(task.codes, names) for task in testing}
 
     def rows_for(problem: Problem):
-        return prior and prior_rows(problem.tables, codes[id(problem)], prior.probs)
+        return None if prior is None else prior_rows(problem.tables, codes[id(problem)], prior.probs)
 
     rewards = rewards_of([task.problem for task in testing], rows_for, schedule_of(settings, settings["schedule"]))
     found: dict = {"rewards": np.round(rewards.mean(axis=0), 1).tolist()}
