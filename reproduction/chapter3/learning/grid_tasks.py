@@ -149,18 +149,20 @@ def learnt_by_choice(
         if key not in plain:
             plain[key] = returns_of(testing, lambda _: None, schedule)
         returns = {PLAIN: plain[key]}
-        for name, (kind, problems) in trained.items():
-            prior = exact_prior(problems, choice["alpha0"], kind)
-
-            def rows_for(problem: Problem, prior=prior, kind=kind, choice=choice) -> Rows:
-                return rows_of(problem, prior, choice["form"], choice["ties"], kind)
-
-            returns[name] = returns_of(testing, rows_for, schedule)
+        for name, one in trained.items():
+            returns[name] = _returns_with(testing, one, choice, schedule)
         if not curves:
             curves = {name: block_curve(even_blocks(r), settings["episodes"]) for name, r in returns.items()}
         found.append({name: summary(r.mean(axis=0), best) for name, r in returns.items()})
     optimal = float(np.mean([mean_start_value(p.tables, p.values) for p in testing]))
     return {"optimal": optimal, "choices": found, "curves": curves if number == 0 else {}}
+
+
+def _returns_with(
+    testing: Sequence[Problem], trained: Trained, choice: Mapping, schedule: Schedule
+) -> NDArray[np.float64]:
+    kind, prior = trained.kind, exact_prior(trained.problems, choice["alpha0"], trained.kind)
+    return returns_of(testing, lambda p: rows_of(p, prior, choice["form"], choice["ties"], kind), schedule)
 
 
 def even_blocks(curves: NDArray) -> NDArray[np.float64]:
