@@ -18,7 +18,7 @@ def numbers_of(cell: Mapping, size: int, n: int) -> range:
 
 def uses_real(settings: Mapping) -> bool:
     """Whether the settings ask for the real scenes and they are there."""
-    return settings["real"] and real_scenes_folder() is not None
+    return settings.get("real", False) and real_scenes_folder() is not None
 
 
 def real_lots(settings: Mapping, size: int, key: str, **head) -> list[dict]:
