@@ -19,7 +19,7 @@ THRESHOLD = 7
 """Fewest support vectors of a contact, as the thesis used (§2.3.4)."""
 THRESHOLDS = SCALED, FIXED = "scaled", "7"
 """Which contacts are dropped. The thesis's 7 "is somewhat dependent on the resolution". *Scaled*, it is 7 on
-points 3 mm apart, but never above the support of an object's strongest contact; a fixed 7 may drop every contact."""
+points 3 mm apart, but never above the support of an object's strongest contact; a fixed 7 may drop all."""
 WEIGHTS = ("equal", "inverse distance")
 BLOCK = 4_000_000
 """Distances computed at once; more costs memory, not time."""
