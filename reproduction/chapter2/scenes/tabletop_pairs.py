@@ -115,13 +115,14 @@ def pair_rows(name: str, cloud: LabelledCloud, truth: Sequence[PairLabel]) -> li
         kernel: of ``a`` and of ``b``, ``[x, y, z, support vectors]`` of each contact, strongest first, none
         dropped; empty where the pair is not near.
     """
-    bare = voxelised(without_table(cloud), DEFAULT_CONTACT_SETTINGS.voxel).cloud
+    bare = without_table(cloud)
     found = interfaces_by_settings(bare, [loose_settings(*kernel) for kernel in KERNELS])
+    thin = voxelised(bare, DEFAULT_CONTACT_SETTINGS.voxel).cloud
     rows = []
     for label in truth:
         if TABLE in (label.a, label.b) or label.confidence < LEAST_CONFIDENCE:
             continue
-        centres = bare.of(label.a).mean(axis=0) - bare.of(label.b).mean(axis=0)
+        centres = thin.of(label.a).mean(axis=0) - thin.of(label.b).mean(axis=0)
         row = {"scene": name, **vars(label), "centres": np.round(centres, 6).tolist(), "gap": None, "contacts": {}}
         for kernel, pairs in zip(KERNEL_NAMES, found, strict=True):
             for pair in pairs:
