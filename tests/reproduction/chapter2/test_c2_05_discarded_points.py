@@ -101,11 +101,6 @@ def plate(n: int, *corner: float, step: float = 0.004) -> np.ndarray:
     return np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1) + np.array(corner)
 
 
-def plate(n: int, *corner: float, step: float = 0.004) -> np.ndarray:
-    x, y = np.meshgrid(np.arange(n) * step, np.arange(n) * step)
-    return np.stack([x.ravel(), y.ravel(), 0 * x.ravel()], axis=1) + np.array(corner)
-
-
 def plates(n: int, step: float) -> LabelledCloud:
     """Plates 2 and 3, 6 mm apart."""
     points = np.concatenate([plate(n, 0, 0, 0, step=step), plate(n, 0, 0, 0.006, step=step)])
@@ -156,7 +151,11 @@ def scene(name, truth, *views, gap=0.001):
 
 
 def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
-    lessons = [scene("one", "on", UP), scene("two", "adjacent", ASIDE), scene("three", "both", [[0.5, 0.5, 0.5]] * 4)]
+    lessons = [
+        scene("one", "on", UP),
+        scene("two", "adjacent", ASIDE),
+        scene("three", "both", [[0.5, 0.5, 0.5]] * 4),
+    ]
     scenes = [
         scene("a", "on", UP[:1], ASIDE[:1]),
         scene("b", "adjacent", ASIDE[:1], []),
