@@ -23,12 +23,12 @@ def draw(result: Mapping) -> Figure:
     furthest = 1.05 * max(np.abs(row["mm"]).max() for row in rows)
     draw_displacements(whole, rows, "all displacements", furthest)
     draw_displacements(close, rows, f"within {CLOSE} mm", CLOSE)
-    whole.legend(loc="upper left")
+    whole.legend(loc="upper right")
     right, down = (place + 0.0 for place in rows[0]["middle_of_on"])
-    close.annotate(
-        f"middle of on ({right:.1f}, {down:.1f}) mm\nthesis: (0, −0.5), no unit", (right, down), (0.04, 0.04),
-        textcoords="axes fraction", fontsize=8, color=INK, arrowprops={"arrowstyle": "->", "color": INK},
-    )  # fmt: skip
+    close.plot(right, down, "+", ms=13, mew=2, color=INK, zorder=5)
+    words = f"+ middle of on ({right:.1f}, {down:.1f}) mm\nthesis: (0, −0.5), no unit".replace("-", "−")
+    box = {"facecolor": PAPER, "edgecolor": "none", "alpha": 0.8, "pad": 2}
+    close.annotate(words, (0.03, 0.03), xycoords="axes fraction", fontsize=8, color=INK, bbox=box, zorder=6)
     close.annotate("band of adjacent (thesis: above y = −0.1)", (0.04, 0.95), xycoords="axes fraction", fontsize=8)
     return figure
 

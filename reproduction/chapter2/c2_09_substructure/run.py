@@ -8,7 +8,7 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from lifelore.core.metrics import Estimate
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.substructure import find_substructure
+from lifelore.perception.topology.substructure import Reading, find_substructure
 from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import scene_row
 from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
@@ -16,7 +16,11 @@ from reproduction.chapter2.scenes.skeletons import perceived, reading
 from reproduction.engine.estimates import exact_share
 
 LOT = 10
-READINGS = {"objects": (False, "edges"), "with the ground": (True, "edges"), "connected": (False, "connected")}
+READINGS: dict[str, tuple[bool, Reading]] = {
+    "objects": (False, "edges"),
+    "with the ground": (True, "edges"),
+    "connected": (False, "connected"),
+}
 """Whether the ground's contacts take part, and what of a network a subgraph keeps."""
 STACK, TWO = "stack", "stack-two-contacts"
 CAPTIONS = {STACK: "a stack: its skeleton is part of …", TWO: "… that of a stack with two contacts"}

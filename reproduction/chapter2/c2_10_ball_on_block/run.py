@@ -43,7 +43,9 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         cloud = arranged("ball-on-block", seed, number, drawn).cloud
         rows.append(findings(cloud, BALL, BLOCK))
         if number == 0 and camera == CAMERAS[0]:
-            examples.append(scene_row(reading(perceived(cloud), ground=True), rows[-1]["said"]))
+            examples.append(
+                scene_row(reading(perceived(cloud), ground=True), f"ball A, block B, ground G: {rows[-1]['said']}")
+            )
     return {"camera": camera, "scenes": rows, "examples": examples}
 
 

@@ -26,7 +26,7 @@ def row(number, relation, rng):
     """A pair whose displacement is what its relation makes it, metres."""
     place = {ON: (0.0, 0.0, 0.06), BOTH: (0.0, 0.0, 0.062), ADJACENT: (0.07, 0.0, 0.0)}[relation]
     at = (np.array(place) + 0.001 * rng.normal(size=3)).tolist()
-    contacts = dict.fromkeys(KERNEL_NAMES, {"a": [[*at, 9]], "b": [[0.0, 0.0, 0.0, 9]]})
+    contacts = {name: {"a": [[*at, 9]], "b": [[0.0, 0.0, 0.0, 9]]} for name in KERNEL_NAMES}
     return {"scene": f"s{number}", "relation": relation, "gap": 0.002, "contacts": contacts}
 
 
