@@ -52,14 +52,15 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[di
 
 
 def measures(results: Sequence[Mapping], kernel: str) -> dict[str, Estimate]:
-    """Shares of scenes by the block's nodes, and of scenes told right by contact points and by centres."""
+    """Shares of scenes by the block's nodes, with *on* by contact points, and told right by either method."""
     sets = data_sets(results)
     found = [nodes(row, kernel) for row in sets[ON_BLOCK]]
-    told = {name: list(chain(*own.values())) for name, own in told_right(sets, kernel).items()}
+    told = told_right(sets, kernel)
     return {
         "rank_of_three_nodes": mean_or_unmeasured((len(own) < NODES) + 0.5 * (len(own) == NODES) for own in found),
         "topmost_alone_remains": exact_share(map(topmost_alone_remains, found)),
-        **{f"told_by_{name}": exact_share(answers) for name, answers in told.items()},
+        "on_by_contacts": exact_share(told["contacts"][ON_BLOCK]),
+        **{f"told_by_{name}": exact_share(chain(*own.values())) for name, own in told.items()},
     }
 
 

@@ -140,13 +140,9 @@ def network_pictures(worlds: Sequence[TabletopScene], rows: Sequence[Row]) -> li
     found = []
     for settings in (loose_settings(*DEFAULT_CONTACT_SETTINGS.scales[0]), DEFAULT_CONTACT_SETTINGS):
         between = interfaces(without_table(cloud), settings)
-        least, n = (
-            f"at least {settings.min_support:g} support vectors",
-            sum(len(one.contacts_a) for one in between),
-        )
-        found.append(
-            scene_row(Scene(cloud, between), f"{least if settings.min_support else 'every contact'}: {n}")
-        )
+        n = sum(len(one.contacts_a) for one in between)
+        kept = f"of at least {settings.min_support:g} support vectors" if settings.min_support else "every contact"
+        found.append(scene_row(Scene(cloud, between), f"{kept}: {n} node{'s' * (n != 1)} of the block"))
     return found
 
 

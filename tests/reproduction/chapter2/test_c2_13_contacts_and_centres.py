@@ -72,6 +72,7 @@ def test_measures_and_rows_by_hand():
     found = measure({}, results)
     assert found["rank_of_three_nodes"].value == pytest.approx((0.5 + 1 + 1) / 3)
     assert found["topmost_alone_remains"].value == pytest.approx(2 / 3)
+    assert (found["on_by_contacts"].value, found["on_by_contacts"].n) == (1, 3)
     assert (found["told_by_centres"].value, found["told_by_centres"].n) == (0.75, 4)
     *told, picture = rows({}, results)
     assert [(row["told by"], row["arrangement"]) for row in told] == [
