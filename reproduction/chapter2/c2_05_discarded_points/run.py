@@ -34,6 +34,7 @@ from reproduction.chapter2.scoring.relation_scoring import (
     share,
 )
 from reproduction.engine.estimates import UNMEASURED
+from reproduction.engine.results_table import computed_once
 
 THINNED, SCALED, FIXED = METHODS = ("thinned, threshold scaled", "raw, threshold scaled", "raw, 7 fixed")
 LOT = 6
@@ -113,13 +114,13 @@ def row(a: int, b: int, gap: float, first: Sequence | NDArray, second: Sequence 
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """The measures of the thinned method."""
-    return measures(judged(settings, results, THINNED))
+    return measures(judged(settings, results)[THINNED])
 
 
 def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
     """The measures of each method."""
-    for method in METHODS:
-        yield {"contacts": method}, measures(judged(settings, results, method))
+    for method, views in judged(settings, results).items():
+        yield {"contacts": method}, measures(views)
 
 
 def measures(views: Mapping[float, Sequence[JudgedPair]]) -> dict[str, Estimate]:
@@ -133,8 +134,9 @@ def measures(views: Mapping[float, Sequence[JudgedPair]]) -> dict[str, Estimate]
     }
 
 
-def judged(settings: Mapping, results: Sequence[Mapping], method: str) -> dict[float, list[JudgedPair]]:
-    """By share discarded, each labelled pair of the held-out scenes beside its predicted relation.
+@computed_once
+def judged(settings: Mapping, results: Sequence[Mapping]) -> dict[str, dict[float, list[JudgedPair]]]:
+    """By method and share discarded, each labelled pair of the held-out scenes beside its predicted relation.
 
     Pairs whose gap is so near the limit of *adjacent* that the gap alone decides are left out.
     """
@@ -142,16 +144,16 @@ def judged(settings: Mapping, results: Sequence[Mapping], method: str) -> dict[f
         [scene for result in results if result["kind"] == kind for scene in result["scenes"]]
         for kind in ("lessons", "scenes")
     )
-    model = RelationClassifier("displacement", symmetric=SYMMETRIC)
-    model.fit_pairs([scene_of(own["views"][0][method]) for own in lessons], list(map(labels_of, lessons)))
-    found: dict[float, list[JudgedPair]] = {}
-    for scene in scenes:
-        gaps = {frozenset((a, b)): gap for a, b, gap in scene["gaps"]}
-        for level, views in zip(levels_of(settings), scene["views"], strict=True):
-            pairs = views[method]
-            predicted = model.predict_pairs(scene_of(pairs)) if pairs else ()
-            own = judged_scene(scene["name"], labels_of(scene), predicted, gaps)
-            found.setdefault(level, []).extend(pair for pair in own if not pair.border)
+    found: dict[str, dict[float, list[JudgedPair]]] = {method: {} for method in METHODS}
+    for method, of_level in found.items():
+        model = RelationClassifier("displacement", symmetric=SYMMETRIC)
+        model.fit_pairs([scene_of(own["views"][0][method]) for own in lessons], list(map(labels_of, lessons)))
+        for scene in scenes:
+            gaps = {frozenset((a, b)): gap for a, b, gap in scene["gaps"]}
+            for level, views in zip(levels_of(settings), scene["views"], strict=True):
+                predicted = model.predict_pairs(scene_of(views[method])) if views[method] else ()
+                own = judged_scene(scene["name"], labels_of(scene), predicted, gaps)
+                of_level.setdefault(level, []).extend(pair for pair in own if not pair.border)
     return found
 
 
@@ -172,6 +174,6 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The exact share by method and share discarded."""
     return [
         {"method": method, "discarded": level, **share(pairs, lambda pair: pair.exact).to_dict()}
-        for method in METHODS
-        for level, pairs in judged(settings, results, method).items()
+        for method, views in judged(settings, results).items()
+        for level, pairs in views.items()
     ]

@@ -164,7 +164,7 @@ def test_pairs_are_told_by_the_lessons_and_those_on_the_border_left_out():
     ]
     results = [{"kind": "lessons", "scenes": lessons}, {"kind": "scenes", "scenes": scenes}]
     settings = {"discarded": [0.7]}
-    found = judged(settings, results, THINNED)
+    found = judged(settings, results)[THINNED]
     assert {level: [pair.relation for pair in pairs] for level, pairs in found.items()} == {
         0.0: ["on", "adjacent", "both"],
         0.7: ["adjacent", "none", "on"],
