@@ -21,7 +21,7 @@ def draw(result: Mapping) -> Figure:
     axes.axvline(1, color=GREY, lw=1, ls=(0, (4, 3)))
     axes.annotate("a second", (1, 3), (-4, 0), textcoords="offset points", ha="right", fontsize=8, color=GREY)
     axes.set(
-        xlabel="seconds of a picture, one core", ylabel="share of pictures (%)", xlim=(0, None), ylim=(0, 101)
+        xlabel="seconds of processor a picture", ylabel="share of pictures (%)", xlim=(0, None), ylim=(0, 101)
     )
     axes.grid(color=LIGHT)
     axes.legend(loc="lower right", bbox_to_anchor=(1, 0.12))

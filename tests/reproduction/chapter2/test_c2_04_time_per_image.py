@@ -22,7 +22,7 @@ def test_measures_and_rows_by_hand():
 
 def test_of_the_repeats_the_one_in_the_middle_counts(monkeypatch):
     takes = iter([0.3, 0.1, 0.2])
-    monkeypatch.setattr(image_timing, "timed_stages", lambda cloud, model: {STAGES[0]: next(takes)})
+    monkeypatch.setattr(image_timing, "timed_stages", lambda cloud, model, clock: {STAGES[0]: next(takes)})
     cloud = LabelledCloud(np.zeros((3, 3)), np.array([TABLE, 2, 3]))
     assert timed_image(cloud, None, 3) == {"points": 3, "seconds": 0.2}  # type: ignore[arg-type]
 
@@ -40,7 +40,7 @@ def test_a_cell_times_every_picture_after_a_warm_up(monkeypatch):
     pytest.importorskip("mujoco")
     seen = []
 
-    def stages(cloud, model):
+    def stages(cloud, model, clock=None):
         seen.append(len(cloud.points))
         return dict.fromkeys(STAGES, 0.01)
 
