@@ -24,5 +24,5 @@ def draw(result: Mapping) -> Figure:
         xlabel="seconds of processor a picture", ylabel="share of pictures (%)", xlim=(0, None), ylim=(0, 101)
     )
     axes.grid(color=LIGHT)
-    axes.legend(loc="lower right", bbox_to_anchor=(1, 0.12))
+    axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncols=2)
     return figure
