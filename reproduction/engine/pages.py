@@ -114,10 +114,11 @@ def section(result: Mapping) -> str:
     claim, measured = claim_of(result["claim"]), result["measured"]
     where = f" ({', '.join(map(figure_name, claim.figure))})" if claim.figure else ""
     folder = f"{LINK}/{claim.id}"
+    word = result["verdict"][0].upper() + result["verdict"][1:]
     lines = [
-        f"## {claim.id}", "",
-        f"**{claim.title}{where}: {result['verdict']}.** {claim.sentence} [Numbers]({folder}/result.json).",
-        "",
+        f'<a id="{anchor(claim.id)}"></a>', "",
+        f"## {claim.id} {claim.title}{where}", "",
+        f"**{word}.** {claim.sentence} [Numbers]({folder}/result.json).", "",
         "|statement|here|marks|", "|---|---|---|",
     ]  # fmt: skip
     for one in claim.statements:
@@ -176,8 +177,8 @@ def _pairs(shown: Sequence[tuple[str, str, str]]) -> list[str]:
 
 
 def anchor(claim_id: str) -> str:
-    """The anchor of a claim's heading."""
-    return claim_id.replace(".", "").lower()
+    """The anchor of a claim's section: ``c3-4``."""
+    return claim_id.replace(".", "-").lower()
 
 
 def _file(chapter: str) -> str:

@@ -32,8 +32,7 @@ def test_files_and_anchors_that_a_page_links_to_exist(name):
         path = (DOCS / name).parent / file
         assert path.is_file(), target
         if part:
-            headings = re.findall(r"^## (\S+)$", path.read_text(encoding="utf-8"), re.M)
-            assert part in map(anchor, headings), target
+            assert f'<a id="{part}"></a>' in path.read_text(encoding="utf-8"), target
 
 
 def test_every_claim_has_its_section_and_its_place_on_the_first_page():
@@ -41,7 +40,7 @@ def test_every_claim_has_its_section_and_its_place_on_the_first_page():
         claim = claim_of(result["claim"])
         chapter = chapter_of(claim.id)
         page = PAGES[f"reproduction/{'chapter' * chapter.isdigit()}{chapter}.md"]
-        assert f"\n## {claim.id}\n" in page
+        assert f'<a id="{anchor(claim.id)}"></a>\n\n## {claim.id} ' in page
         assert f"#{anchor(claim.id)})" in PAGES["reproduction/index.md"]
     assert len(CHAPTERS) == 5
 
