@@ -46,9 +46,7 @@ def draw(result: Mapping) -> Figure:
     panels = figure.subplots(1, 3, sharey=True)
     for axes, (world, title) in zip(panels, TITLES.items(), strict=True):
         own = [row for row in result["rows"] if row["world"] == world]
-        series = {
-            LABELS[row["agent"]]: {"mean": row["mean"], "error": 1.96 * np.array(row["error"])} for row in own
-        }
+        series = {LABELS[row["agent"]]: row for row in own}
         looks = {LABELS[agent]: look for agent, look in LOOKS.items()}
         n = len(own[0]["mean"])
         tasks = (np.arange(n) + 0.5) * settings["tasks"] / n
