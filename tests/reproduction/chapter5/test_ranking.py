@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sklearn.metrics import average_precision_score
 
 from lifelore.core.errors import InputError
-from reproduction.chapter5.c5_02_functional_roles.ranking import average_precision, mean_by_cluster
+from reproduction.chapter5.ranking import average_precision, mean_by_cluster
 
 
 def test_by_hand():
