@@ -114,8 +114,8 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """By role the mean average precision of each method; and pictures."""
     queries = judged_queries(results)
     table = []
-    for role in ROLES:
-        own = [query for query in queries if query["role"] == role]
+    for own_role in ROLES:
+        own = [query for query in queries if query["role"] == own_role]
         precision = {method: float(np.mean([query[method] for query in own])) for method in METHODS}
-        table.append({"role": role, "queries": len(own), **precision})
+        table.append({"role": own_role, "queries": len(own), **precision})
     return table + examples_in(results)
