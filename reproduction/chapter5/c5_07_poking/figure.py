@@ -9,12 +9,12 @@ COLUMNS = ("true objects", "local convexity", "after pushes")
 
 
 def draw(result: Mapping):
+    """The figure from the result."""
     pictures = []
     for row in result["rows"]:
-        if "example" in row:
-            truth, clouds = unpacked(row)
-            name = f"{row['example']}\n{_gain(result['measured'], row['example'])}"
-            pictures.append((name, truth, dict(zip(COLUMNS, clouds, strict=True))))
+        truth, clouds = unpacked(row)
+        name = f"{row['example']}\n{_gain(result['measured'], row['example'])}"
+        pictures.append((name, truth, dict(zip(COLUMNS, clouds, strict=True))))
     return draw_segmentations(pictures)
 
 

@@ -1,4 +1,7 @@
-"""Cells of claim C5.7: settled scenes, segmented by local convexity, poked in MuJoCo and segmented again.
+"""C5.7: scenes cut by local convexity, then every segment poked in MuJoCo, and segmented again.
+
+The camera takes a picture after each push; what moves together is merged, what moves apart is split. Both
+segmentations are scored on the first cloud with true labels, which the method does not read. Thesis: §2.4.3, §2.5.
 
 Three kinds of scene: *varied* (the tabletop's usual groups, piles, books and cartons), *flush* (blocks whose faces
 join without a crease, beside or on one another) and *occluded* (a long block whose middle is hidden, so that two
@@ -14,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
 from lifelore.domains.tabletop.poke import PokedTabletop
@@ -24,7 +28,8 @@ from lifelore.perception.segmentation.object_segmentation import SegmentationSet
 from lifelore.perception.segmentation.poking import PokedLabels, PokedSegments
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scoring.segmentation_scoring import overlaps
+from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
+from reproduction.engine.estimates import UNMEASURED
 
 LOT = 2
 KINDS = ("varied", "flush", "occluded")
@@ -38,7 +43,7 @@ TRIES = 4
 STILL_PICTURES = 3
 """Pictures of the control in which nothing is pushed."""
 SETTINGS = SegmentationSettings()
-DRAWN, DRAWN_POINTS = 10, 6000
+DRAWN, DRAWN_POINTS = 10, 4000
 """Scenes of a kind among which the example is looked for, and its largest number of points."""
 AROUND, GRID = 0.04, 0.0005
 """Metres of table around an example's objects, and to which its points are rounded."""
@@ -166,34 +171,11 @@ def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -
 def outcome(truth: NDArray[np.int64], trial: Trial, still: Trial) -> dict:
     """A scene as plain numbers; each object ``[points, IoU before, IoU after]``."""
     before, after = overlaps(truth, trial.before), overlaps(truth, trial.after.labels)
-    own = owners(truth, trial.before)
-    merges = [len({own[label] for label in group}) == 1 for group in trial.after.merged]
-    splits = [_parts_differ(truth, trial, label) for label in trial.after.split]
     return {
-        "pokes": trial.pokes,
-        "segments": len(own),
+        "segments": int((np.unique(trial.before) > TABLE).sum()),
         "objects": [[b.points, round(b.iou, 4), round(a.iou, 4)] for b, a in zip(before, after, strict=True)],
-        "merges": [int(sum(merges)), len(merges)],
-        "splits": [int(sum(splits)), len(splits)],
         "still": len(still.after.merged) + len(still.after.split),
     }
-
-
-def owners(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> dict[int, int]:
-    """The true object that most points of each segment belong to."""
-    return {int(s): _most(truth[labels == s]) for s in np.unique(labels) if s > TABLE}
-
-
-def _parts_differ(truth: NDArray[np.int64], trial: Trial, label: int) -> bool:
-    """Whether the parts of a split segment belong to different objects, part by part."""
-    rows = trial.before == label
-    parts = [_most(truth[rows & (trial.after.labels == part)]) for part in np.unique(trial.after.labels[rows])]
-    return len(set(parts)) == len(parts)
-
-
-def _most(values: Sequence[int] | NDArray[np.int64]) -> int:
-    found, counts = np.unique(values, return_counts=True)
-    return int(found[counts.argmax()])
 
 
 def example(kind: str, scene: TabletopScene, trial: Trial) -> dict:
@@ -218,3 +200,44 @@ def unpacked(example: Mapping) -> tuple[NDArray[np.int64], list[LabelledCloud]]:
     points, camera = np.asarray(table[:3].T * GRID, np.float64), np.array(example["camera"], float)
     labels = table[3:].astype(np.int64)
     return labels[0], [LabelledCloud(points, found, None, camera) for found in labels]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """All scenes together, and the objects found by kind; intervals resample scenes."""
+    scenes = [scene for result in results for scene in result["scenes"]]
+    found = measures_of(scenes)
+    for kind in KINDS:
+        own = measures_of([scene for scene in scenes if scene["kind"] == kind])
+        found |= {f"{name}_{kind}": own[name] for name in ("found_before", "found_after")}
+    return found
+
+
+def measures_of(scenes: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Gain of overlap; objects found before and after, their gain, those corrected and lost; the control."""
+    objects = [np.array(scene["objects"], float).reshape(-1, 3) for scene in scenes]
+    hit = [o[:, 1:] >= FOUND for o in objects]
+    n = [len(h) for h in hit]
+    return {
+        "overlap_gain": _share(
+            [(o[:, 0] * (o[:, 2] - o[:, 1])).sum() for o in objects], [o[:, 0].sum() for o in objects]
+        ),
+        "found_before": _share([h[:, 0].sum() for h in hit], n),
+        "found_after": _share([h[:, 1].sum() for h in hit], n),
+        "found_gain": _share([h[:, 1].sum() - float(h[:, 0].sum()) for h in hit], n),
+        "corrected": _share([(~h[:, 0] & h[:, 1]).sum() for h in hit], [(~h[:, 0]).sum() for h in hit]),
+        "spoiled": _share([(h[:, 0] & ~h[:, 1]).sum() for h in hit], [h[:, 0].sum() for h in hit]),
+        "changed_unpoked": _share([scene["still"] for scene in scenes], [scene["segments"] for scene in scenes]),
+    }
+
+
+def _share(parts: Sequence, wholes: Sequence) -> Estimate:
+    """Ratio of sums over scenes; `UNMEASURED` where there is nothing to divide by."""
+    whole = np.asarray(wholes, float)
+    return ratio_estimate(np.asarray(parts, float)[whole > 0], whole[whole > 0]) if whole.sum() > 0 else UNMEASURED
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """For each kind the data of a picture: the first scene that pushes changed, or the first."""
+    pictures = [example for result in results for example in result["examples"]]
+    own = ([p for p in pictures if p["example"] == kind] for kind in KINDS)
+    return [max(found, key=lambda p: p["changed"]) for found in own if found]
