@@ -40,8 +40,6 @@ LENGTH = 0.025
 """Of a push, metres."""
 TRIES = 4
 """Places that are tried until the fingertip has room."""
-STILL_PICTURES = 3
-"""Pictures of the control in which nothing is pushed."""
 SETTINGS = SegmentationSettings()
 DRAWN, DRAWN_POINTS = 10, 4000
 """Scenes of a kind among which the example is looked for, and its largest number of points."""
@@ -100,8 +98,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     for number in numbers_of(cell, LOT, settings["scenes"]):
         scene = drawn_scene(cell["kind"], seed, number)
         trial = poke_scene(scene, stream(seed, "C5.7", "pokes", cell["kind"], number), settings["rounds"])
-        still = still_scene(scene, stream(seed, "C5.7", "still", cell["kind"], number))
-        scenes.append({"kind": cell["kind"], **outcome(scene.cloud.labels, trial, still)})
+        scenes.append({"kind": cell["kind"], "objects": outcome(scene.cloud.labels, trial)})
         if number == 0 or (number < DRAWN and (trial.after.merged or trial.after.split)):
             examples.append(example(cell["kind"], scene, trial))
     return {"scenes": scenes, "examples": examples}
@@ -148,19 +145,6 @@ def poke_scene(scene: TabletopScene, rng: np.random.Generator, rounds: int) -> T
     return Trial(first.labels, known.corrected(), pokes)
 
 
-def still_scene(scene: TabletopScene, rng: np.random.Generator) -> Trial:
-    """The control: the same evidence is sought in pictures between which nothing was pushed."""
-    first = first_view(scene)
-    table, known = PokedTabletop(scene.shapes, scene.poses), PokedSegments(first)
-    poke = next(
-        (p for s in known.segments for p in [known.poke_at(s, rng, LENGTH, (0.0, 1.0))] if p is not None), None
-    )
-    for _ in range(STILL_PICTURES if poke is not None else 0):
-        assert poke is not None
-        known.observe(poke, seen(table, scene, rng))
-    return Trial(first.labels, known.corrected(), 0)
-
-
 def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud:
     """A picture in which only the table has a label, by height."""
     picture = table.picture(scene.view, CAMERA, rng)
@@ -168,14 +152,10 @@ def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -
     return LabelledCloud(picture.points, np.where(on_table, TABLE, 0), None, picture.camera)
 
 
-def outcome(truth: NDArray[np.int64], trial: Trial, still: Trial) -> dict:
-    """A scene as plain numbers; each object ``[points, IoU before, IoU after]``."""
+def outcome(truth: NDArray[np.int64], trial: Trial) -> list[list[float]]:
+    """``[points, IoU before, IoU after]`` of each object."""
     before, after = overlaps(truth, trial.before), overlaps(truth, trial.after.labels)
-    return {
-        "segments": int((np.unique(trial.before) > TABLE).sum()),
-        "objects": [[b.points, round(b.iou, 4), round(a.iou, 4)] for b, a in zip(before, after, strict=True)],
-        "still": len(still.after.merged) + len(still.after.split),
-    }
+    return [[b.points, round(b.iou, 4), round(a.iou, 4)] for b, a in zip(before, after, strict=True)]
 
 
 def example(kind: str, scene: TabletopScene, trial: Trial) -> dict:
@@ -213,7 +193,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def measures_of(scenes: Sequence[Mapping]) -> dict[str, Estimate]:
-    """Gain of overlap; objects found before and after, their gain, those corrected and lost; the control."""
+    """Gain of overlap; objects found before and after, their gain, those corrected and lost."""
     objects = [np.array(scene["objects"], float).reshape(-1, 3) for scene in scenes]
     hit = [o[:, 1:] >= FOUND for o in objects]
     n = [len(h) for h in hit]
@@ -226,7 +206,6 @@ def measures_of(scenes: Sequence[Mapping]) -> dict[str, Estimate]:
         "found_gain": _share([h[:, 1].sum() - float(h[:, 0].sum()) for h in hit], n),
         "corrected": _share([(~h[:, 0] & h[:, 1]).sum() for h in hit], [(~h[:, 0]).sum() for h in hit]),
         "spoiled": _share([(h[:, 0] & ~h[:, 1]).sum() for h in hit], [h[:, 0].sum() for h in hit]),
-        "changed_unpoked": _share([scene["still"] for scene in scenes], [scene["segments"] for scene in scenes]),
     }
 
 
