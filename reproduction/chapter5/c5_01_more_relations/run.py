@@ -27,8 +27,8 @@ from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
+from reproduction.chapter2.scenes.perturbation import part_of
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scenes.tabletop_pairs import without_table
 from reproduction.chapter5.c5_01_more_relations.view_words import (
     USER_WORD,
     WORDS,
@@ -116,7 +116,7 @@ def outlines(scene: TabletopScene) -> dict[int, Points]:
 
 def seen(scene: TabletopScene) -> dict:
     """Features of the near pairs, the labelled pairs, and the words that are true of them by the true shapes."""
-    bare, spans = without_table(scene.cloud), outlines(scene)
+    bare, spans = part_of(scene.cloud, scene.cloud.labels > TABLE), outlines(scene)
     features = pair_features(bare, interfaces(bare))
     pairs = [(min(t.a, t.b), max(t.a, t.b)) for t in scene.truth if TABLE not in (t.a, t.b)]
     assert scene.cloud.camera is not None
