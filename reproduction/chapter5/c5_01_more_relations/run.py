@@ -77,7 +77,7 @@ KINDS = ("mixed", "row", "angle", "cup", "corner", "leaning")
 
 
 def _sizes(settings: Mapping) -> dict[str, int]:
-    return {LESSON: max(settings["lessons"]), HELD_OUT: settings["scenes"], COMPOUND: settings["compound"]}
+    return {LESSON: settings["lessons"], HELD_OUT: settings["scenes"], COMPOUND: settings["compound"]}
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -169,18 +169,16 @@ def true_compounds(scene: TabletopScene) -> Facts:
 
 
 @computed_once
-def answers(settings: Mapping, results: Sequence[Mapping]) -> tuple[list[dict], dict[int, list[PairsByWord]]]:
-    """Held-out scenes, and the words predicted for them by number of lessons."""
+def learnt(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """F1 of each word in held-out scenes, after all lessons."""
     lessons, scenes = (
         [scene for result in results if result["kind"] == kind for scene in result["scenes"]]
         for kind in (LESSON, HELD_OUT)
     )
-    found = {}
-    for n in sorted(settings["lessons"]):
-        labels = [[PairLabel(a, b, word) for a, b, word in row["truth"]] for row in lessons[:n]]
-        model = RelationClassifier(multi_label=True).fit_pairs([scene_of(row) for row in lessons[:n]], labels)
-        found[n] = [predicted(model, scene) for scene in scenes]
-    return scenes, found
+    labels = [[PairLabel(a, b, word) for a, b, word in row["truth"]] for row in lessons]
+    model = RelationClassifier(multi_label=True).fit_pairs([scene_of(row) for row in lessons], labels)
+    predictions = [predicted(model, scene) for scene in scenes]
+    return {word: f1(word_counts(scenes, predictions, word)) for word in WORDS}
 
 
 def scene_of(row: Mapping) -> ScenePairs:
@@ -236,10 +234,9 @@ def share(parts: NDArray[np.float64], wholes: NDArray[np.float64]) -> Estimate:
 
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """F1 of the user's word and least F1 of the five; precision and recall of the rules."""
-    scenes, predictions = answers(settings, results)
-    learnt = {word: f1(word_counts(scenes, predictions[max(predictions)], word)) for word in WORDS}
-    found = {f"f1_{USER_WORD}": learnt.pop(USER_WORD)}
-    found["least_f1_of_the_five"] = min(learnt.values(), key=lambda score: score.value if score.n else 2.0)
+    words = dict(learnt(settings, results))
+    found = {f"f1_{USER_WORD}": words.pop(USER_WORD)}
+    found["least_f1_of_the_five"] = min(words.values(), key=lambda score: score.value if score.n else 2.0)
     for word in COMPOUNDS:
         right, said, true = compound_counts(results, word).T
         found |= {f"precision_{word}": share(right, said), f"recall_{word}": share(right, true)}
@@ -247,13 +244,8 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """F1 of each word by number of lessons; counts of between and in by kind of scene."""
-    scenes, predictions = answers(settings, results)
-    found: list[dict] = [
-        {"word": word, "lessons": n, "f1": f1(word_counts(scenes, own, word)).to_dict()}
-        for n, own in predictions.items()
-        for word in WORDS
-    ]
+    """F1 of each word; counts of between and in by kind of scene."""
+    found: list[dict] = [{"word": word, "f1": f1.to_dict()} for word, f1 in learnt(settings, results).items()]
     for word in COMPOUNDS:
         for kind in KINDS:
             right, said, true = compound_counts(results, word, (kind,)).sum(axis=0).astype(int).tolist()

@@ -13,7 +13,6 @@ NAMES = {
     "anywhere": "unseeded, anywhere",
     "above": "unseeded, middle from above",
     "carried": "carried by contact points",
-    "copied": "copied to the middle",
     "not carried": "not carried, anywhere",
     "above, not carried": "not carried, middle from above",
 }

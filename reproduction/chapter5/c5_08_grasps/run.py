@@ -25,7 +25,6 @@ from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,
     around,
     carried,
-    copied,
     from_above,
     from_seeds,
 )
@@ -41,7 +40,7 @@ ARRANGEMENTS = ("two", "tower", "bridge", "lean", "neighbours", "row", *HOLES)
 DRAWN = ("bridge", "lean", "hole-other")
 """Arrangements of the figure."""
 SEARCHES = ("seeded", "anywhere", "above")
-TRANSFERS = ("carried", "copied", "not carried", "above, not carried")
+TRANSFERS = ("carried", "not carried", "above, not carried")
 TRIES = 10
 """Most tries of a search."""
 LEARNT_TRIES = 100
@@ -104,7 +103,7 @@ def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Ge
 def transferred(
     worlds: list[GraspedTabletop], scenes: list[Scene], same: Substructure, label: int, rng: np.random.Generator
 ) -> dict:
-    """Tries of a grasp that worked on the corresponding object of the first scene, carried or copied over."""
+    """Tries of a grasp that worked on the corresponding object of the first scene, carried over."""
     source = next((a for a, b in same.objects.items() if b == label), None)
     if source is None:
         return {}
@@ -117,7 +116,6 @@ def transferred(
         return {}
     return {
         "carried": first_success(worlds[1], label, around(found, rng)),
-        "copied": first_success(worlds[1], label, around([copied(learnt, *points)], rng)),
         "not carried": first_success(worlds[1], label, anywhere(points[1], rng)),
         "above, not carried": first_success(worlds[1], label, from_above(points[1], rng)),
     }

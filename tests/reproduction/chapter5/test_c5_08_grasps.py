@@ -16,7 +16,6 @@ from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,
     around,
     carried,
-    copied,
     from_above,
     from_seeds,
 )
@@ -76,11 +75,6 @@ def test_contact_points_above_one_another_carry_nothing():
     assert carried(Grasp(np.zeros(3), DOWN, ALONG), upright, 2, upright, 2, {(2, k): (2, k) for k in (0, 1)}) == []
 
 
-def test_a_copy_moves_with_the_middle():
-    grasp = copied(Grasp(np.zeros(3), DOWN, ALONG), np.zeros((2, 3)), np.ones((2, 3)))
-    assert grasp.position == pytest.approx([1.0, 1.0, 1.0])
-
-
 def test_topology_is_equal_whatever_the_places():
     two, other = on_the_table((0, 0, 0), (0.1, 0, 0)), on_the_table((0, 0, 0), (0, 0.3, 0))
     assert equal_topology(two, other) is not None
@@ -89,12 +83,12 @@ def test_topology_is_equal_whatever_the_places():
 
 def test_measures_by_hand():
     row = {"scene": "a", "seeds": 1, "seeded": 1, "anywhere": None, "above": 4}
-    moved = {"carried": 2, "copied": 1, "not carried": None, "above, not carried": None}
+    moved = {"carried": 2, "not carried": None, "above, not carried": None}
     objects = [row | moved, {**row, "scene": "b", "seeded": 3, "above": None}, {**row, "seeds": 0, "anywhere": 1}]
     results = [{"objects": objects, "examples": []}]
     found = {name: number.value for name, number in measure({}, results).items()}
     assert (found["seeded"], found["anywhere"], found["above"]) == (1.0, 0.0, 0.5)
-    assert (found["carried"], found["copied"], found["not_carried"]) == (1.0, 1.0, 0.0)
+    assert (found["carried"], found["not_carried"]) == (1.0, 0.0)
     assert (found["seeded_less_anywhere"], found["carried_less_not_carried"]) == (1.0, 1.0)
     curves = {line["search"]: line["within"] for line in rows({}, results)}
     assert curves["seeded"] == [0.5, 0.5, *[1.0] * (TRIES - 2)]
