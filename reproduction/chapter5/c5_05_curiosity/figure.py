@@ -35,7 +35,7 @@ def draw(result: Mapping) -> Figure:
 
 def _draw_sign(axes: Axes, row: Mapping) -> None:
     """Spread of a sign in tasks of known types and in the first task of the late type."""
-    edges = np.linspace(0, max([*row["known"], *row["late"], 1e-9]), BINS + 1)
+    edges = np.linspace(0, max([*row["known"], *row["late"], 1e-9]), BINS + 1).tolist()
     for name, colour in (("known", GREY), ("late", VERMILION)):
         values = row[name]
         label = "known types" if name == "known" else "unseen type"

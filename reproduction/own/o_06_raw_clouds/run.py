@@ -24,8 +24,9 @@ from reproduction.engine.estimates import UNMEASURED
 LOT = 5
 SEED = 7021
 """Of the simulated scenes; the run's seed is added."""
-CONVEXITY, CLUSTERS, COLOUR = METHODS = ("convexity", "clusters", "colour")
+METHODS = {name: SegmentationSettings(method=name) for name in ("convexity", "clusters", "colour")}
 """The default, gaps of more than 12 mm, and the thesis's colour clusters (§2.3.3)."""
+CONVEXITY, CLUSTERS, COLOUR = METHODS
 SIMULATED, REAL = "simulated", "real"
 
 
@@ -61,7 +62,7 @@ def found_by_method(cloud: PointCloud, up: Up) -> dict[str, list[list[float]]]:
 def labels_by(cloud: PointCloud, up: Up, method: str) -> NDArray[np.int64]:
     """Labels (n,) that a method gives; no object where a scene shows too few colours to be cut by colour."""
     try:
-        return segmented_scene(cloud, up, SegmentationSettings(method=method)).cloud.labels
+        return segmented_scene(cloud, up, METHODS[method]).cloud.labels
     except InputError:
         if method != COLOUR:
             raise

@@ -4,9 +4,14 @@ from collections.abc import Mapping
 
 from lifelore.figures.interval_bars import draw_interval_bars
 from lifelore.figures.style import BLUE, GREY, LIGHT, SKY, Figure, house_style, new_figure
-from reproduction.own.o_07_unseen_scenes.run import METHODS
 
-MEASURES = ("exact_contacts", "exact_shipped", "exact_thesis", "exact_histogram", "exact_rule")
+LOOKS = {
+    "exact_contacts": ("contacts with scene logic", BLUE),
+    "exact_shipped": ("the shipped model", SKY),
+    "exact_thesis": ("thesis's displacements", GREY),
+    "exact_histogram": ("orientation histogram", GREY),
+    "exact_rule": ("bounding-box rule", GREY),
+}
 
 
 @house_style()
@@ -14,9 +19,10 @@ def draw(result: Mapping) -> Figure:
     """The figure from the result."""
     figure = new_figure(6.4, 2.6)
     axes = figure.subplots()
+    names, colours = zip(*LOOKS.values(), strict=True)
     draw_interval_bars(
-        axes, METHODS, {"": [result["measured"][name] for name in MEASURES]},
-        colours=[BLUE, SKY, GREY, GREY, GREY], words="{:.2f}".format,
+        axes, names, {"": [result["measured"][name] for name in LOOKS]},
+        colours=colours, words="{:.2f}".format,
         title="Relations of unseen shapes", label="share of pairs with the exact relation",
     )  # fmt: skip
     axes.set_xlim(0, 1.1)

@@ -21,15 +21,13 @@ from lifelore.perception.relations.relation import Relation
 from lifelore.perception.relations.relation_classifier import RelationClassifier, shipped_model
 from reproduction.chapter2.scoring.relation_scoring import judged_scene
 
-OURS, SHIPPED, THESIS, HISTOGRAM, RULE = METHODS = (
-    "contacts with scene logic", "the shipped model", "thesis's displacements", "orientation histogram",
-    "bounding-box rule",
-)  # fmt: skip
+OURS, SHIPPED, THESIS, HISTOGRAM, RULE = METHODS = ("contacts", "shipped", "thesis", "histogram", "rule")
+PEER = {HISTOGRAM: "orientation histogram", RULE: "bounding-box rule"}
+"""Name of a peer of `lifelore.perception.peers`."""
 MODELS: dict[str, Callable[[], Any]] = {
     OURS: RelationClassifier,
     THESIS: lambda: RelationClassifier("displacement"),
-    HISTOGRAM: PEERS[HISTOGRAM],
-    RULE: PEERS[RULE],
+    **{name: PEERS[peer] for name, peer in PEER.items()},
 }
 """Methods that learn in each round; `SHIPPED` has learnt before."""
 
@@ -45,7 +43,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         [seen(scene) for scene in _drawn(seed, cell["round"], shapes, settings[name])]
         for name, shapes in (("lessons", "training"), ("tests", "held-out"))
     )
-    models = {name: new() for name, new in MODELS.items()}
+    models: dict[str, Any] = {name: new() for name, new in MODELS.items()}
     for name, model in models.items():
         model.fit_pairs([views[name] for _, views in lessons], [scene.truth for scene, _ in lessons])
     models[SHIPPED] = shipped_model()
@@ -65,7 +63,7 @@ def _drawn(seed: int, number: int, shapes: str, n: int) -> list[TabletopScene]:
 def seen(scene: TabletopScene) -> tuple[TabletopScene, dict[str, Any]]:
     """A scene, and what each method sees of it."""
     contacts = scene_pairs(scene.cloud)
-    peers = {name: PEERS[name]().describe_pairs(scene.cloud) for name in (HISTOGRAM, RULE)}
+    peers = {name: PEERS[peer]().describe_pairs(scene.cloud) for name, peer in PEER.items()}
     return scene, {OURS: contacts, SHIPPED: contacts, THESIS: contacts, **peers}
 
 
@@ -92,12 +90,6 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
     right = {
         name: np.array([n for result in results for n in result["right"][name]], float)[some] for name in METHODS
     }
-    gains = {"thesis": THESIS, "histogram": HISTOGRAM, "rule": RULE}
-    names = dict(zip(METHODS, ("contacts", "shipped", "thesis", "histogram", "rule"), strict=True))
-    return {
-        **{f"exact_{names[name]}": ratio_estimate(own, asked[some]) for name, own in right.items()},
-        **{
-            f"more_than_{key}": ratio_estimate(right[OURS] - right[name], asked[some])
-            for key, name in gains.items()
-        },
-    }
+    gains = {f"more_than_{name}": right[OURS] - right[name] for name in (THESIS, HISTOGRAM, RULE)}
+    shares = {f"exact_{name}": own for name, own in right.items()}
+    return {name: ratio_estimate(own, asked[some]) for name, own in (shares | gains).items()}
