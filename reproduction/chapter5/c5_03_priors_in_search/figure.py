@@ -16,7 +16,7 @@ EVEN = ("pseudo-pulls spread evenly", VERMILION)
 @house_style()
 def draw(result: Mapping) -> Figure:
     """The figure from the result."""
-    figure = new_figure(12.4, 3.4)
+    figure = new_figure(12.4, 3.6)
     panels = figure.subplots(1, 4, width_ratios=(0.8, 0.8, 1, 1))
     searched = [row for row in result["rows"] if "reached" in row]
     words = (
@@ -43,7 +43,7 @@ def draw(result: Mapping) -> Figure:
             axes, result["settings"]["pulls"], [r for r in result["rows"] if r.get("index") == index], title
         )
     panels[2].set_ylabel("regret so far")
-    panels[3].legend(loc="upper left")
+    figure.legend(*panels[3].get_legend_handles_labels(), loc="outside lower right", ncols=4)
     return figure
 
 

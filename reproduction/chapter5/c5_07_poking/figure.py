@@ -23,9 +23,9 @@ def draw(result: Mapping) -> Figure:
     colours = {"local convexity": GREY, "after pushes": BLUE}
     draw_interval_bars(
         axes, list(KINDS.values()), groups, colours=colours, words="{:.2f}".format,
-        title="Objects found", label="share with an IoU of at least 0.5",
+        title="Objects found", label="share with an IoU of at least 0.5", legend=False,
     )  # fmt: skip
     axes.set_xlim(0, 1.12)
-    axes.legend(loc="lower left", bbox_to_anchor=(0, 1.06), ncols=2)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
     axes.grid(axis="x", color=LIGHT)
     return figure
