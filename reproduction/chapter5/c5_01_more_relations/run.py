@@ -5,7 +5,7 @@ The rules are applied to true relations, so that nothing but the rules is judged
 that show a compound relation or a counterexample. Intervals resample scenes. Thesis: §2.4.1, §5.2.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, permutations
 
 import numpy as np
@@ -21,7 +21,7 @@ from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import ball, box, cup
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.contacts.interface import interfaces
-from lifelore.perception.pairs.pair_features import COLUMNS, PairFeatures, pair_features
+from lifelore.perception.pairs.pair_features import pair_features
 from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.reasoning.compound_relations import compound_relations
 from lifelore.perception.relations.relation import Relation
@@ -38,15 +38,11 @@ from reproduction.chapter5.c5_01_more_relations.view_words import (
     words_of_pair,
 )
 from reproduction.engine.estimates import UNMEASURED
-from reproduction.engine.results_table import computed_once
 
 LOT = 10
-LESSON, HELD_OUT, COMPOUND = "lesson", "held-out", "compound"
-DIGITS = 5
+HELD_OUT = "held-out"
 COMPOUNDS = ("between", "in")
 Facts = set[tuple[str, tuple[int, ...]]]
-PairsByWord = dict[str, frozenset[tuple[int, int]]]
-"""By word the ordered pairs of a scene for which it holds."""
 
 
 def place_angle(rng: np.random.Generator) -> Group:
@@ -76,31 +72,29 @@ KINDS = ("mixed", "row", "angle", "cup", "corner", "leaning")
 """Of compound scenes: *row* shows between, *angle* does not; *cup* shows in, *corner* and *leaning* do not."""
 
 
-def _sizes(settings: Mapping) -> dict[str, int]:
-    return {LESSON: settings["lessons"], HELD_OUT: settings["scenes"], COMPOUND: settings["compound"]}
-
-
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of lessons, of held-out scenes, and of each kind of compound scenes."""
-    of = {LESSON: [""], HELD_OUT: [""], COMPOUND: KINDS}
-    return [
-        lot
-        for kind, n in _sizes(settings).items()
-        for scenes in of[kind]
-        for lot in lots(n, LOT, kind=kind, of=scenes)
-    ]
+    """The lesson in words, and each kind of compound scenes in lots."""
+    compound = [lot for kind in KINDS for lot in lots(settings["compound"], LOT, kind=kind)]
+    return [{"kind": "lesson"}, *compound]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """``{"kind", "of", "scenes": […]}``: features and true words, or facts of compound scenes."""
-    kind, of = cell["kind"], cell["of"]
-    numbers = numbers_of(cell, LOT, _sizes(settings)[kind])
-    if kind == COMPOUND:
-        scenes = [compound_facts(compound_scene(of, seed, number)) for number in numbers]
-    else:
-        shapes = "training" if kind == LESSON else HELD_OUT
-        scenes = [seen(_drawn(seed, shapes, number)) for number in numbers]
-    return {"kind": kind, "of": of, "scenes": scenes}
+    """Of the lesson the counts of each word in held-out scenes; of compound scenes their facts."""
+    if cell["kind"] == "lesson":
+        lessons, tests = (
+            [seen(_drawn(seed, shapes, number)) for number in range(settings[name])]
+            for name, shapes in (("lessons", "training"), ("scenes", HELD_OUT))
+        )
+        model = RelationClassifier(multi_label=True).fit_pairs(*map(list, zip(*lessons, strict=True)))
+        return {
+            "kind": "lesson",
+            "counts": [word_counts(words, predicted(model, pairs)) for pairs, words in tests],
+        }
+    numbers = numbers_of(cell, LOT, settings["compound"])
+    return {
+        "kind": cell["kind"],
+        "scenes": [compound_facts(compound_scene(cell["kind"], seed, n)) for n in numbers],
+    }
 
 
 def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
@@ -114,19 +108,34 @@ def outlines(scene: TabletopScene) -> dict[int, Points]:
     return {FIRST_OBJECT + k: pose.apply(shape.outline()) for k, (shape, pose) in enumerate(placed)}
 
 
-def seen(scene: TabletopScene) -> dict:
-    """Features of the near pairs, the labelled pairs, and the words that are true of them by the true shapes."""
-    bare, spans = part_of(scene.cloud, scene.cloud.labels > TABLE), outlines(scene)
-    features = pair_features(bare, interfaces(bare))
+def seen(scene: TabletopScene) -> tuple[ScenePairs, list[PairLabel]]:
+    """The near pairs of objects as the classifier sees them, and the words that are true; not its many points."""
+    bare = part_of(scene.cloud, scene.cloud.labels > TABLE)
+    return ScenePairs(pair_features(bare, interfaces(bare)), ()), true_words(scene)
+
+
+def true_words(scene: TabletopScene) -> list[PairLabel]:
+    """The words that are true of the labelled pairs of objects, by the true shapes."""
+    spans = outlines(scene)
     pairs = [(min(t.a, t.b), max(t.a, t.b)) for t in scene.truth if TABLE not in (t.a, t.b)]
     assert scene.cloud.camera is not None
-    labels = [label for a, b in pairs for label in words_of_pair(a, b, spans[a], spans[b], scene.cloud.camera)]
+    return [label for a, b in pairs for label in words_of_pair(a, b, spans[a], spans[b], scene.cloud.camera)]
+
+
+def predicted(model: RelationClassifier, pairs: ScenePairs) -> set[tuple[int, int, str]]:
+    """The words that the model predicts for a scene; symmetric words in both orders."""
+    relations = model.predict_pairs(pairs) if len(pairs.features.pairs) else ()
+    found = {(r.a, r.b, r.relation) for r in relations}
+    return found | {(r.b, r.a, r.relation) for r in relations if r.relation in model.symmetric_}
+
+
+def word_counts(truth: Sequence[PairLabel], said: set[tuple[int, int, str]]) -> dict[str, list[int]]:
+    """By word the ordered labelled pairs of a scene with the word rightly predicted, predicted and true."""
+    true = {(label.a, label.b, label.relation) for label in truth}
+    orders = {order for a, b, _ in true for order in ((a, b), (b, a))}
+    asked = {fact for fact in said if fact[:2] in orders}
     return {
-        "pairs": features.pairs.tolist(),
-        "gaps": np.round(features.gaps, DIGITS).tolist(),
-        "features": np.round(features.matrix, DIGITS).tolist(),
-        "labelled": pairs,
-        "truth": [[label.a, label.b, label.relation] for label in labels],
+        word: [sum(fact[2] == word for fact in facts) for facts in (true & asked, asked, true)] for word in WORDS
     }
 
 
@@ -168,54 +177,11 @@ def true_compounds(scene: TabletopScene) -> Facts:
     return between | inside
 
 
-@computed_once
-def learnt(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
-    """F1 of each word in held-out scenes, after all lessons."""
-    lessons, scenes = (
-        [scene for result in results if result["kind"] == kind for scene in result["scenes"]]
-        for kind in (LESSON, HELD_OUT)
-    )
-    labels = [[PairLabel(a, b, word) for a, b, word in row["truth"]] for row in lessons]
-    model = RelationClassifier(multi_label=True).fit_pairs([scene_of(row) for row in lessons], labels)
-    predictions = [predicted(model, scene) for scene in scenes]
-    return {word: f1(word_counts(scenes, predictions, word)) for word in WORDS}
-
-
-def scene_of(row: Mapping) -> ScenePairs:
-    """A scene's row as the classifier sees a scene."""
-    matrix = np.array(row["features"], float).reshape(-1, len(COLUMNS))
-    pairs = np.array(row["pairs"], np.int64).reshape(-1, 2)
-    return ScenePairs(PairFeatures(COLUMNS, matrix, pairs, np.array(row["gaps"], float)), ())
-
-
-def predicted(model: RelationClassifier, row: Mapping) -> PairsByWord:
-    """The words that the model predicts for a scene; symmetric words in both orders."""
-    relations = model.predict_pairs(scene_of(row)) if row["pairs"] else ()
-    both = [[r.b, r.a, r.relation] for r in relations if r.relation in model.symmetric_]
-    return pairs_by_word([*([r.a, r.b, r.relation] for r in relations), *both])
-
-
-def pairs_by_word(rows: Iterable[Sequence]) -> PairsByWord:
-    """Rows ``[a, b, word]`` by word."""
-    rows = list(rows)
-    return {word: frozenset((a, b) for a, b, name in rows if name == word) for word in WORDS}
-
-
-def word_counts(scenes: Sequence[Mapping], predictions: Sequence[PairsByWord], word: str) -> NDArray[np.float64]:
-    """Of each scene the ordered labelled pairs with the word rightly predicted, predicted and true, ``(n, 3)``."""
-    counts = []
-    for row, words in zip(scenes, predictions, strict=True):
-        orders = {order for a, b in row["labelled"] for order in ((a, b), (b, a))}
-        true, answered = pairs_by_word(row["truth"])[word], words[word] & orders
-        counts.append((len(true & answered), len(answered), len(true)))
-    return np.array(counts, float).reshape(-1, 3)
-
-
 def compound_counts(results: Sequence[Mapping], word: str, kinds: Sequence[str] = KINDS) -> NDArray[np.float64]:
     """Of each compound scene of the kinds: facts rightly found by the rule, found, true, ``(n, 3)``."""
     counts = []
     for result in results:
-        for scene in result["scenes"] if result["kind"] == COMPOUND and result["of"] in kinds else ():
+        for scene in result["scenes"] if result["kind"] in kinds else ():
             found, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in ("rule", "true"))
             counts.append((len(found & true), len(found), len(true)))
     return np.array(counts, float).reshape(-1, 3)
@@ -232,9 +198,15 @@ def share(parts: NDArray[np.float64], wholes: NDArray[np.float64]) -> Estimate:
     return ratio_estimate(parts[some], wholes[some]) if some.any() else UNMEASURED
 
 
+def learnt(results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """F1 of each word in held-out scenes, after all lessons."""
+    counts = next(result["counts"] for result in results if result["kind"] == "lesson")
+    return {word: f1(np.array([scene[word] for scene in counts], float)) for word in WORDS}
+
+
 def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
     """F1 of the user's word and least F1 of the five; precision and recall of the rules."""
-    words = dict(learnt(settings, results))
+    words = learnt(results)
     found = {f"f1_{USER_WORD}": words.pop(USER_WORD)}
     found["least_f1_of_the_five"] = min(words.values(), key=lambda score: score.value if score.n else 2.0)
     for word in COMPOUNDS:
@@ -245,7 +217,7 @@ def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """F1 of each word; counts of between and in by kind of scene."""
-    found: list[dict] = [{"word": word, "f1": f1.to_dict()} for word, f1 in learnt(settings, results).items()]
+    found: list[dict] = [{"word": word, "f1": score.to_dict()} for word, score in learnt(results).items()]
     for word in COMPOUNDS:
         for kind in KINDS:
             right, said, true = compound_counts(results, word, (kind,)).sum(axis=0).astype(int).tolist()

@@ -9,24 +9,20 @@ from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.core.relations import PairLabel
 from lifelore.domains.tabletop.pose import Pose
 from lifelore.domains.tabletop.shapes import ball, box, cup
-from lifelore.perception.pairs.pair_features import COLUMNS
 from lifelore.perception.relations.relation import Relation
 from reproduction.chapter5.c5_01_more_relations.run import (
     compound_counts,
     compound_facts,
     f1,
     outlines,
-    pairs_by_word,
     place_angle,
     place_in_cup,
     predicted,
-    scene_of,
     seen,
     share,
     true_compounds,
     word_counts,
 )
-from reproduction.chapter5.c5_01_more_relations.view_words import WORDS
 
 CUBE = box(0.06, 0.06, 0.06)
 
@@ -99,13 +95,11 @@ def test_outlines_are_where_the_things_are():
 
 def test_what_is_seen_of_a_row_of_two_by_hand():
     scene = made([at(-0.035, 0), at(0.035, 0)], [PairLabel(3, 2, "adjacent"), *ON_TABLE[:2]])
-    found = seen(scene)  # type: ignore[arg-type]
-    assert found["labelled"] == [(2, 3)]
     # The camera looks along +y, so that right is +x.
-    assert found["truth"] == [[2, 3, "left_of"], [3, 2, "right_of"]]
-    assert found["pairs"] == [[2, 3], [3, 2]]
-    assert found["gaps"] == pytest.approx([0.01, 0.01], abs=1e-4)
-    assert len(found["features"]) == 2
+    pairs, words = seen(scene)  # type: ignore[arg-type]
+    assert [(label.a, label.b, label.relation) for label in words] == [(2, 3, "left_of"), (3, 2, "right_of")]
+    assert pairs.features.pairs.tolist() == [[2, 3], [3, 2]]
+    assert pairs.features.gaps == pytest.approx([0.01, 0.01], abs=1e-4)
 
 
 def test_between_is_a_row_and_not_an_angle():
@@ -144,22 +138,15 @@ def test_between_needs_no_adjacent():
     assert (found["true"], found["rule"]) == ([["between", 3, 2, 4]], [])
 
 
-PAIRS = {
-    "pairs": [[2, 3], [3, 2]],
-    "gaps": [0.01, 0.01],
-    "features": np.zeros((2, len(COLUMNS))).tolist(),
-    "labelled": [[2, 3], [3, 4]],
-    "truth": [[2, 3, "left_of"], [3, 2, "right_of"], [3, 4, "left_of"], [4, 3, "right_of"], [4, 3, "dwarfs"]],
-}
-
-
 def test_a_word_is_counted_in_both_orders_of_every_labelled_pair():
-    said = pairs_by_word([[2, 3, "left_of"], [4, 3, "left_of"], [5, 6, "left_of"], [4, 3, "dwarfs"]])
+    truth = [PairLabel(2, 3, "left_of"), PairLabel(3, 2, "right_of"), PairLabel(3, 4, "left_of")]
+    truth += [PairLabel(4, 3, "right_of"), PairLabel(4, 3, "dwarfs")]
+    found = word_counts(truth, {(2, 3, "left_of"), (4, 3, "left_of"), (5, 6, "left_of"), (4, 3, "dwarfs")})
     # Of left: (2, 3) right, (4, 3) wrong, (3, 4) missed; (5, 6) nobody labelled.
-    assert word_counts([PAIRS], [said], "left_of").tolist() == [[1, 2, 2]]
-    assert word_counts([PAIRS], [said], "right_of").tolist() == [[0, 0, 2]]
-    assert word_counts([PAIRS], [said], "dwarfs").tolist() == [[1, 1, 1]]
-    assert word_counts([], [], "dwarfs").shape == (0, 3)
+    assert found["left_of"] == [1, 2, 2]
+    assert found["right_of"] == [0, 0, 2]
+    assert found["dwarfs"] == [1, 1, 1]
+    assert found["under"] == [0, 0, 0]
 
 
 def test_scores_by_hand():
@@ -171,31 +158,17 @@ def test_scores_by_hand():
 
 
 def test_facts_are_counted_by_kind_of_scene():
-    row = {"kind": "compound", "of": "row", "scenes": [{"true": [["between", 3, 2, 4]], "rule": []}] * 2}
-    angle = {"kind": "compound", "of": "angle", "scenes": [{"true": [], "rule": [["between", 3, 2, 4]]}]}
+    row = {"kind": "row", "scenes": [{"true": [["between", 3, 2, 4]], "rule": []}] * 2}
+    angle = {"kind": "angle", "scenes": [{"true": [], "rule": [["between", 3, 2, 4]]}]}
     assert compound_counts([row, angle], "between").tolist() == [[0, 0, 1], [0, 0, 1], [0, 1, 0]]
     assert compound_counts([row, angle], "between", ("angle",)).tolist() == [[0, 1, 0]]
     assert compound_counts([row, angle], "in").tolist() == [[0, 0, 0]] * 3
 
 
 def test_what_a_model_says_with_symmetric_words_both_ways():
-    said = (
-        Relation(3, 2, "under", 0.9, 0.0),
-        Relation(2, 3, "dwarfs", 0.9, 0.0),
-        Relation(2, 3, "near", 0.9, 0.0),
-    )
-    model = SimpleNamespace(predict_pairs=lambda scene: said, symmetric_=frozenset({"dwarfs", "near"}))
-    found = predicted(model, PAIRS)  # type: ignore[arg-type]
-    assert set(found) == set(WORDS)
-    assert found["under"] == {(3, 2)}
-    assert found["dwarfs"] == {(2, 3), (3, 2)}
-    assert found["left_of"] == frozenset()
-    assert not any(predicted(model, {**PAIRS, "pairs": []}).values())  # type: ignore[arg-type]
-
-
-def test_a_row_becomes_a_scene_again():
-    scene = scene_of({**PAIRS, "features": (np.arange(2 * len(COLUMNS)) / 7).reshape(2, -1).tolist()})
-    assert scene.features.pairs.tolist() == [[2, 3], [3, 2]]
-    assert scene.features.gaps.tolist() == [0.01, 0.01]
-    assert scene.features.matrix[1, 0] == pytest.approx(len(COLUMNS) / 7)
-    assert scene_of({"pairs": [], "gaps": [], "features": []}).features.matrix.shape == (0, len(COLUMNS))
+    said = (Relation(3, 2, "under", 0.9, 0.0), Relation(2, 3, "dwarfs", 0.9, 0.0))
+    model = SimpleNamespace(predict_pairs=lambda scene: said, symmetric_=frozenset({"dwarfs"}))
+    pairs = SimpleNamespace(features=SimpleNamespace(pairs=[[2, 3]]))
+    assert predicted(model, pairs) == {(3, 2, "under"), (2, 3, "dwarfs"), (3, 2, "dwarfs")}  # type: ignore[arg-type]
+    pairs.features.pairs = []
+    assert predicted(model, pairs) == set()  # type: ignore[arg-type]
