@@ -20,5 +20,5 @@ def draw(result: Mapping) -> Figure:
     axes.set(xlabel="error at the objects (mm)", ylabel="error of the turn (degrees)")
     axes.set(title="Registrations of two views", xlim=(0, None), ylim=(0, None))
     axes.grid(color=LIGHT)
-    axes.legend(loc="upper center")
+    axes.legend(loc="center right", bbox_to_anchor=(0.93, 0.5))
     return figure
