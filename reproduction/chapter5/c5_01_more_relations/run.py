@@ -1,44 +1,47 @@
-"""Cells of claim C5.1: scenes to learn words of space from, held-out scenes from two sides, compound relations.
+"""C5.1: words of space learnt from labelled scenes, and the thesis's rules for `between` and `in`.
 
-Cells of *lessons* and of held-out scenes store the features of every near pair and all its true words by
-`view_words`; held-out scenes also as a camera on the other side of the table sees them. Cells of *compound* scenes
-store the facts of the thesis's `between` and `in`, and of our own definitions, for purposely arranged scenes.
+A classifier learns the words of `view_words` from simulated scenes and predicts them for scenes of other shapes.
+The rules are applied to true relations, so that nothing but the rules is judged, in usual scenes and in scenes
+that show a compound relation or a counterexample. Intervals resample scenes. Thesis: §2.4.1, §5.2.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations, permutations
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.core.errors import InputError
-from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.labelled_cloud import TABLE
+from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.relations import ADJACENT, BOTH, PairLabel
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.depth_camera import CAMERAS
 from lifelore.domains.tabletop.layout import Group, put_beside, stand
-from lifelore.domains.tabletop.photograph import FIRST_OBJECT, photograph
-from lifelore.domains.tabletop.physics import Tabletop
+from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.shapes import ball, box, cup
 from lifelore.domains.tabletop.tabletop import TabletopScene, TabletopSettings, sample_scene
 from lifelore.perception.contacts.interface import interfaces
 from lifelore.perception.pairs.pair_features import pair_features
-from lifelore.perception.perceived_scene import perceived_scene
+from lifelore.perception.pairs.scene_pairs import ScenePairs
 from lifelore.perception.reasoning.compound_relations import compound_relations
-from lifelore.perception.reasoning.geometric_relations import geometric_relations
 from lifelore.perception.relations.relation import Relation
-from lifelore.perception.relations.relation_classifier import shipped_model
+from lifelore.perception.relations.relation_classifier import RelationClassifier
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
+from reproduction.chapter2.scenes.perturbation import part_of
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scenes.skeletons import shipped_model_digest
-from reproduction.chapter2.scenes.tabletop_pairs import without_table
-from reproduction.chapter5.c5_01_more_relations.view_words import Points, is_between, is_in, words_of_pair
+from reproduction.chapter5.c5_01_more_relations.view_words import (
+    USER_WORD,
+    WORDS,
+    Points,
+    is_between,
+    is_in,
+    words_of_pair,
+)
+from reproduction.engine.estimates import UNMEASURED
 
-LOT = {"lesson": 8, "held-out": 8, "compound": 10}
-LESSON, HELD_OUT, COMPOUND = LOT
-DIGITS = 5
-BY_POINTS = {"enclosed_between": "between", "contained": "in"}
-"""Names of `geometric_relations` → the thesis's."""
+LOT = 10
+HELD_OUT = "held-out"
+COMPOUNDS = ("between", "in")
 Facts = set[tuple[str, tuple[int, ...]]]
 
 
@@ -69,36 +72,29 @@ KINDS = ("mixed", "row", "angle", "cup", "corner", "leaning")
 """Of compound scenes: *row* shows between, *angle* does not; *cup* shows in, *corner* and *leaning* do not."""
 
 
-def _sizes(settings: Mapping) -> dict[str, int]:
-    return {LESSON: max(settings["lessons"]), HELD_OUT: settings["scenes"], COMPOUND: settings["compound"]}
-
-
 def cells(settings: Mapping) -> list[dict]:
-    """Lots of lessons, of held-out scenes, and of each kind of compound scenes."""
-    of_kinds = [{"of": kind, "model": shipped_model_digest()} for kind in KINDS]
-    heads = {LESSON: [{}], HELD_OUT: [{}], COMPOUND: of_kinds}
-    return [
-        lot
-        for kind, n in _sizes(settings).items()
-        for head in heads[kind]
-        for lot in lots(n, LOT[kind], kind=kind, **head)
-    ]
+    """The lesson in words, and each kind of compound scenes in lots."""
+    compound = [lot for kind in KINDS for lot in lots(settings["compound"], LOT, kind=kind)]
+    return [{"kind": "lesson"}, *compound]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """``{"kind", "of", "scenes": […]}``."""
-    kind, of = cell["kind"], cell.get("of", "")
-    scenes = []
-    for number in numbers_of(cell, LOT[kind], _sizes(settings)[kind]):
-        if kind == COMPOUND:
-            scenes.append(compound_facts(compound_scene(of, seed, number)))
-        else:
-            scene = _drawn(seed, "training" if kind == LESSON else HELD_OUT, number)
-            scenes.append(seen(scene, scene.cloud))
-            if kind == HELD_OUT:
-                behind = from_the_other_side(scene, stream(seed, "word scenes", "other side", number))
-                scenes[-1]["other_side"] = seen(scene, behind) if behind is not None else None
-    return {"kind": kind, "of": of, "scenes": scenes}
+    """Of the lesson the counts of each word in held-out scenes; of compound scenes their facts."""
+    if cell["kind"] == "lesson":
+        lessons, tests = (
+            [seen(_drawn(seed, shapes, number)) for number in range(settings[name])]
+            for name, shapes in (("lessons", "training"), ("scenes", HELD_OUT))
+        )
+        model = RelationClassifier(multi_label=True).fit_pairs(*map(list, zip(*lessons, strict=True)))
+        return {
+            "kind": "lesson",
+            "counts": [word_counts(words, predicted(model, pairs)) for pairs, words in tests],
+        }
+    numbers = numbers_of(cell, LOT, settings["compound"])
+    return {
+        "kind": cell["kind"],
+        "scenes": [compound_facts(compound_scene(cell["kind"], seed, n)) for n in numbers],
+    }
 
 
 def _drawn(seed: int, shapes: str, number: int) -> TabletopScene:
@@ -112,34 +108,34 @@ def outlines(scene: TabletopScene) -> dict[int, Points]:
     return {FIRST_OBJECT + k: pose.apply(shape.outline()) for k, (shape, pose) in enumerate(placed)}
 
 
-def from_the_other_side(scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud | None:
-    """The same objects from a camera carried half round the table; None where it does not see all of them."""
-    spans = list(outlines(scene).values())
-    every = np.concatenate(spans)
-    middle = np.append((every.min(axis=0) + every.max(axis=0))[:2] / 2, 0.0)
-    view = scene.view.moved(-middle).turned(np.pi).moved(middle)
-    photo = photograph(Tabletop(scene.shapes, scene.poses), spans, view, CAMERAS["kinect"], rng)
-    return None if photo is None else photo.cloud
+def seen(scene: TabletopScene) -> tuple[ScenePairs, list[PairLabel]]:
+    """The near pairs of objects as the classifier sees them, and the words that are true; not its many points."""
+    bare = part_of(scene.cloud, scene.cloud.labels > TABLE)
+    return ScenePairs(pair_features(bare, interfaces(bare)), ()), true_words(scene)
 
 
-def seen(scene: TabletopScene, cloud: LabelledCloud) -> dict:
-    """Features of the near pairs; words true of all labelled pairs; words by the visible points alone."""
-    bare = without_table(cloud)
-    features = pair_features(bare, interfaces(bare))
+def true_words(scene: TabletopScene) -> list[PairLabel]:
+    """The words that are true of the labelled pairs of objects, by the true shapes."""
+    spans = outlines(scene)
     pairs = [(min(t.a, t.b), max(t.a, t.b)) for t in scene.truth if TABLE not in (t.a, t.b)]
+    assert scene.cloud.camera is not None
+    return [label for a, b in pairs for label in words_of_pair(a, b, spans[a], spans[b], scene.cloud.camera)]
 
-    def words(points: Mapping[int, Points]) -> list[list]:
-        assert cloud.camera is not None
-        labels = [label for a, b in pairs for label in words_of_pair(a, b, points[a], points[b], cloud.camera)]
-        return [[label.a, label.b, label.relation] for label in labels]
 
+def predicted(model: RelationClassifier, pairs: ScenePairs) -> set[tuple[int, int, str]]:
+    """The words that the model predicts for a scene; symmetric words in both orders."""
+    relations = model.predict_pairs(pairs) if len(pairs.features.pairs) else ()
+    found = {(r.a, r.b, r.relation) for r in relations}
+    return found | {(r.b, r.a, r.relation) for r in relations if r.relation in model.symmetric_}
+
+
+def word_counts(truth: Sequence[PairLabel], said: set[tuple[int, int, str]]) -> dict[str, list[int]]:
+    """By word the ordered labelled pairs of a scene with the word rightly predicted, predicted and true."""
+    true = {(label.a, label.b, label.relation) for label in truth}
+    orders = {order for a, b, _ in true for order in ((a, b), (b, a))}
+    asked = {fact for fact in said if fact[:2] in orders}
     return {
-        "pairs": features.pairs.tolist(),
-        "gaps": np.round(features.gaps, DIGITS).tolist(),
-        "features": np.round(features.matrix, DIGITS).tolist(),
-        "labelled": pairs,
-        "truth": words(outlines(scene)),
-        "by_rule": words({label: bare.of(label) for label in bare.objects}),
+        word: [sum(fact[2] == word for fact in facts) for facts in (true & asked, asked, true)] for word in WORDS
     }
 
 
@@ -154,24 +150,13 @@ def compound_scene(kind: str, seed: int, number: int) -> TabletopScene:
 
 
 def compound_facts(scene: TabletopScene) -> dict[str, list]:
-    """The facts ``[word, objects…]`` that are true by geometry, and those that each way finds.
-
-    *thesis*: its rules on true relations; *thesis_perceived*: on perceived ones; *lifelore*: `geometric_relations`
-    of the perceived scene.
-    """
-    perceived = perceived_scene(scene.cloud, shipped_model())
-
-    def by_rules(relations: Iterable[Relation]) -> Facts:
-        facts = compound_relations(tuple(relations), scene.cloud.objects)
-        return {(fact.name, fact.arguments) for fact in facts if fact.name in BY_POINTS.values()}
-
-    ways = {
-        "true": true_compounds(scene),
-        "thesis": by_rules(Relation(t.a, t.b, t.relation, 1.0, 0.0) for t in scene.truth),
-        "thesis_perceived": by_rules(perceived.relations),
-        "lifelore": {(BY_POINTS[fact.name], fact.arguments) for fact in geometric_relations(perceived)},
+    """The facts ``[word, objects…]`` that are true by geometry, and those of the rules on true relations."""
+    relations = tuple(Relation(t.a, t.b, t.relation, 1.0, 0.0) for t in scene.truth)
+    by_rule = {
+        (f.name, f.arguments) for f in compound_relations(relations, scene.cloud.objects) if f.name in COMPOUNDS
     }
-    return {way: sorted([word, *objects] for word, objects in facts) for way, facts in ways.items()}
+    facts = {"true": true_compounds(scene), "rule": by_rule}
+    return {way: sorted([word, *objects] for word, objects in found) for way, found in facts.items()}
 
 
 def true_compounds(scene: TabletopScene) -> Facts:
@@ -192,11 +177,49 @@ def true_compounds(scene: TabletopScene) -> Facts:
     return between | inside
 
 
-def labels_of(rows: Sequence[Sequence]) -> list[PairLabel]:
-    """Rows ``[a, b, word]`` as labels."""
-    return [PairLabel(int(a), int(b), str(word)) for a, b, word in rows]
+def compound_counts(results: Sequence[Mapping], word: str, kinds: Sequence[str] = KINDS) -> NDArray[np.float64]:
+    """Of each compound scene of the kinds: facts rightly found by the rule, found, true, ``(n, 3)``."""
+    counts = []
+    for result in results:
+        for scene in result["scenes"] if result["kind"] in kinds else ():
+            found, true = ({tuple(fact) for fact in scene[key] if fact[0] == word} for key in ("rule", "true"))
+            counts.append((len(found & true), len(found), len(true)))
+    return np.array(counts, float).reshape(-1, 3)
 
 
-def check(settings: Mapping) -> None:
-    if sorted(settings["lessons"]) != list(settings["lessons"]):
-        raise InputError(f"lessons must rise, got {settings['lessons']}")
+def f1(counts: NDArray[np.float64]) -> Estimate:
+    """2 right / (predicted + true)."""
+    return share(2 * counts[:, 0], counts[:, 1] + counts[:, 2])
+
+
+def share(parts: NDArray[np.float64], wholes: NDArray[np.float64]) -> Estimate:
+    """Ratio of sums over scenes; `UNMEASURED` where there is nothing to divide by."""
+    some = wholes > 0
+    return ratio_estimate(parts[some], wholes[some]) if some.any() else UNMEASURED
+
+
+def learnt(results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """F1 of each word in held-out scenes, after all lessons."""
+    counts = next(result["counts"] for result in results if result["kind"] == "lesson")
+    return {word: f1(np.array([scene[word] for scene in counts], float)) for word in WORDS}
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """F1 of the user's word and least F1 of the five; precision and recall of the rules."""
+    words = learnt(results)
+    found = {f"f1_{USER_WORD}": words.pop(USER_WORD)}
+    found["least_f1_of_the_five"] = min(words.values(), key=lambda score: score.value if score.n else 2.0)
+    for word in COMPOUNDS:
+        right, said, true = compound_counts(results, word).T
+        found |= {f"precision_{word}": share(right, said), f"recall_{word}": share(right, true)}
+    return found
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """F1 of each word; counts of between and in by kind of scene."""
+    found: list[dict] = [{"word": word, "f1": score.to_dict()} for word, score in learnt(results).items()]
+    for word in COMPOUNDS:
+        for kind in KINDS:
+            right, said, true = compound_counts(results, word, (kind,)).sum(axis=0).astype(int).tolist()
+            found.append({"compound": word, "scenes": kind, "right": right, "said": said, "true": true})
+    return found

@@ -1,121 +1,38 @@
-"""Cells of claim C5.2: objects in known roles; a role follows from the placement and from the settled physics.
+"""C5.2: objects in known roles, ranked by the likeness of their use.
 
-All objects are flat pieces of the same range of sizes, whatever their role, so shape does not reveal the role; two
-pools have no kind of shape in common. Ten roles: *alone*; *base*, *middle* and *top* of a stack; *span* and
-*pillar* of a bridge; *leaner* and *leant on*; *neighbour*; *between* two neighbours.
+Every object is a query; the objects of the other pool of shapes are ranked, and those in the same role should come
+first. Scores are average precisions; intervals resample scenes. Thesis: §5.2.
 """
 
 from collections import Counter
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import partial
+from collections.abc import Mapping, Sequence
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from lifelore.core.labelled_cloud import TABLE
-from lifelore.core.relations import ADJACENT, BOTH, NONE, ON
+from lifelore.core.metrics import Estimate
+from lifelore.core.relations import ADJACENT, NONE
 from lifelore.core.streams import stream
-from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
-from lifelore.domains.tabletop.pose import about
-from lifelore.domains.tabletop.shapes import Shape, box, cross, cylinder, paddle, prism
 from lifelore.perception.scene import Scene
-from lifelore.perception.topology.functional_similarity import role, shape_distribution
-from reproduction.chapter2.scenes.arranged_scenes import Placement, settled, turned
+from lifelore.perception.topology.functional_similarity import overlap, role, shape_distribution
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scenes.skeletons import NEAR, perceived, reading
+from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
+from reproduction.chapter2.scenes.skeletons import perceived, reading
+from reproduction.chapter5.ranking import average_precision, mean_by_cluster
+from reproduction.chapter5.role_scenes import PARTS, POOLS, role_scene
 
 LOT = 10
-Draw = Callable[[np.random.Generator], Shape]
-
-
-def _paddle(rng: np.random.Generator) -> Shape:
-    broad = rng.uniform(0.07, 0.1)
-    return paddle(rng.uniform(0.12, 0.18), broad, 0.7 * broad, rng.uniform(0.03, 0.05))
-
-
-POOLS: dict[str, tuple[Draw, ...]] = {
-    "first": (
-        lambda rng: box(*rng.uniform((0.12, 0.06, 0.03), (0.18, 0.09, 0.05))),
-        lambda rng: cross(*rng.uniform((0.12, 0.05, 0.03), (0.16, 0.08, 0.05))),
-    ),
-    "second": (
-        _paddle,
-        lambda rng: prism(int(rng.integers(5, 9)), rng.uniform(0.06, 0.08), rng.uniform(0.03, 0.05)),
-        lambda rng: cylinder(rng.uniform(0.055, 0.075), rng.uniform(0.03, 0.05)),
-    ),
-}
-"""Flat pieces: bars and crosses; paddles, plates of five to eight sides, and discs."""
-
-
-@dataclass(frozen=True)
-class Part:
-    """A kind of scene: roles of its objects in the order of labels, from 2; placement; labels that must hold."""
-
-    roles: tuple[str, ...]
-    place: Callable[[np.random.Generator, Draw], Group]
-    true: frozenset[tuple[int, int, str]]
-
-
-def _piece(rng: np.random.Generator, draw: Draw, height: float = 0.0) -> Placed:
-    return stand(draw(rng).centred(), about(2, rng.normal(0, 0.15)), height)
-
-
-def place_tower(n: int, rng: np.random.Generator, draw: Draw) -> Group:
-    """`n` pieces on one another, nearly over one another."""
-    group: Group = []
-    for _ in range(n):
-        x, y = rng.uniform(-0.015, 0.015, 2)
-        group.append(_piece(rng, draw, top(group) if group else 0.0).moved(float(x), float(y)))
-    return turned(rng, group)
-
-
-def place_bridge(rng: np.random.Generator, draw: Draw) -> Group:
-    """A piece across two of one height, a finger or two apart."""
-    pillar = draw(rng).centred()
-    pillars = [stand(pillar, about(2, np.pi / 2))]
-    pillars += put_beside(pillars, [stand(pillar, about(2, np.pi / 2))], 0.0, float(rng.uniform(0.025, 0.04)))
-    middle = float(np.mean([placed.pose.position[0] for placed in pillars]))
-    return turned(rng, [*pillars, stand(draw(rng).centred(), height=top(pillars)).moved(middle, 0.0)])
-
-
-def place_leaner(rng: np.random.Generator, draw: Draw) -> Group:
-    """A piece put slantwise over the edge of another, its foot on the table."""
-    support, slope = _piece(rng, draw), rng.uniform(0.4, 0.7)
-    outline, slanted = support.outline(), stand(draw(rng).centred(), about(1, slope))
-    points = slanted.outline()
-    edge = outline[np.abs(outline[:, 1]) < 0.03][:, 0].max() if (np.abs(outline[:, 1]) < 0.03).any() else 0.05
-    foot = edge + outline[:, 2].max() / np.tan(slope)
-    return turned(rng, [support, slanted.moved(float(foot - points[points[:, 2].argmin(), 0] + 0.002), 0.0)])
-
-
-def place_neighbours(n: int, rng: np.random.Generator, draw: Draw) -> Group:
-    """`n` pieces side by side in a row."""
-    group: Group = [_piece(rng, draw)]
-    for _ in range(n - 1):
-        group += put_beside(group[-1:], [_piece(rng, draw)], 0.0, float(rng.uniform(0.0005, 0.012)))
-    return turned(rng, group)
-
-
-def _part(roles: str, place: Callable[[np.random.Generator, Draw], Group], *true: tuple[int, int, str]) -> Part:
-    return Part(tuple(roles.split(", ")), place, frozenset(true))
-
-
-PARTS = {
-    "alone": _part("alone", partial(place_tower, 1), (2, TABLE, ON)),
-    "two": _part("base, top", partial(place_tower, 2), (3, 2, ON), (3, TABLE, NONE)),
-    "tower": _part("base, middle, top", partial(place_tower, 3), (3, 2, ON), (4, 3, ON), (4, TABLE, NONE)),
-    "bridge": _part("pillar, pillar, span", place_bridge, (4, 2, ON), (4, 3, ON), (4, TABLE, NONE)),
-    "lean": _part("leant on, leaner", place_leaner, (3, 2, BOTH), (2, TABLE, ON), (3, TABLE, ON)),
-    "neighbours": _part(
-        "neighbour, neighbour", partial(place_neighbours, 2), (2, 3, ADJACENT), (2, TABLE, ON), (3, TABLE, ON)
-    ),
-    "row": _part(
-        "neighbour, between, neighbour", partial(place_neighbours, 3),
-        (2, 3, ADJACENT), (3, 4, ADJACENT), (2, TABLE, ON), (3, TABLE, ON), (4, TABLE, ON),
-    ),
-}  # fmt: skip
 ROLES = tuple(dict.fromkeys(role for part in PARTS.values() for role in part.roles))
+BAGS = ("topology", "predicates")
+METHODS = {
+    "topology": "topology of networks",
+    "predicates": "relations alone",
+    "shape": "shape (D2)",
+    "chance": "chance",
+}
+DRAWN = ("tower", "bridge", "lean")
+"""Kinds of scene of the figure."""
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -125,32 +42,23 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """The objects of a lot of scenes, each with its role and all descriptors; a picture from the first lot."""
-    part, draws, name = PARTS[cell["part"]], POOLS[cell["pool"]], f"{cell['pool']} {cell['part']}"
-
-    def any_shape(rng: np.random.Generator) -> Shape:
-        return draws[int(rng.integers(len(draws)))](rng)
-
-    placement = Placement(lambda rng: part.place(rng, any_shape), part.true)
+    name = f"{cell['pool']} {cell['part']}"
     objects, examples = [], []
     for number in numbers_of(cell, LOT, settings["scenes"]):
-        scene = perceived(settled(placement, name, seed, number).cloud)
+        scene = perceived(role_scene(cell["part"], cell["pool"], name, seed, number).cloud)
         rng = stream(seed, "pairs of points", name, number)
-        for label, own_role in enumerate(part.roles, start=2):
+        for label, own_role in enumerate(PARTS[cell["part"]].roles, start=2):
             objects.append({"scene": f"{name} {number}", "role": own_role, **descriptors(scene, label, rng)})
-        if number == 0 and cell["pool"] == "second" and cell["part"] in ("tower", "bridge", "lean"):
-            examples.append(scene_row(reading(scene), ", ".join(part.roles)))
+        if number == 0 and cell["pool"] == "second" and cell["part"] in DRAWN:
+            examples.append(scene_row(reading(scene), ", ".join(PARTS[cell["part"]].roles)))
     return {"pool": cell["pool"], "things": objects, "examples": examples}
 
 
 def descriptors(scene: Scene, label: int, rng: np.random.Generator) -> dict:
-    """The use of an object: its network among related pairs (`topology`) and among all near pairs (`near`), its
-    predicates alone (`predicates`), each a bag of tokens; and its `shape`, a histogram.
+    """The use of an object: its network among related pairs (`topology`) and its relations alone (`predicates`),
+    each a bag of tokens; and its `shape`, a histogram.
     """
-    bags = {
-        "topology": role(reading(scene, ground=True), label),
-        "near": role(reading(scene, NEAR, ground=True), label),
-        "predicates": predicate_bag(scene, label),
-    }
+    bags = {"topology": role(reading(scene, ground=True), label), "predicates": predicate_bag(scene, label)}
     found = {
         name: {" ".join(map(str, token)): n for token, n in sorted(bag.items(), key=str)}
         for name, bag in bags.items()
@@ -167,3 +75,47 @@ def predicate_bag(scene: Scene, label: int) -> Counter:
             place = "either" if found.relation == ADJACENT else "first" if found.a == label else "second"
             bag[found.relation, place, "table" if other == TABLE else "thing"] += 1
     return bag
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Mean average precision by method, and differences to the other methods on the same queries."""
+    queries = judged_queries(results)
+    scenes = [query["scene"] for query in queries]
+    found = {f"map_{name}": mean_by_cluster([q[name] for q in queries], scenes) for name in METHODS}
+    for name in ("shape", "chance"):
+        found[f"topology_less_{name}"] = mean_by_cluster([q["topology"] - q[name] for q in queries], scenes)
+    return found
+
+
+def judged_queries(results: Sequence[Mapping]) -> list[dict]:
+    """For each object its scene, its role, and by method the average precision among the other pool's objects."""
+    first, second = (
+        [item for result in results if result["pool"] == pool for item in result["things"]]
+        for pool in ("first", "second")
+    )
+    queries = []
+    for items, others in ((first, second), (second, first)):
+        bags = {name: [Counter(other[name]) for other in others] for name in BAGS}
+        shapes = np.array([other["shape"] for other in others])
+        for item in items:
+            relevant = [other["role"] == item["role"] for other in others]
+            scores: dict[str, ArrayLike] = {
+                name: [overlap(Counter(item[name]), bag) for bag in bags[name]] for name in BAGS
+            }
+            # As `functional_similarity.shape_similarity`, from two histograms.
+            scores["shape"] = 1 - np.abs(shapes - np.array(item["shape"])).sum(axis=1) / 2
+            scores["chance"] = np.zeros(len(others))
+            precision = {name: average_precision(scores[name], relevant) for name in METHODS}
+            queries.append({"scene": item["scene"], "role": item["role"], **precision})
+    return queries
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """By role the mean average precision of each method; and pictures."""
+    queries = judged_queries(results)
+    table = []
+    for own_role in ROLES:
+        own = [query for query in queries if query["role"] == own_role]
+        precision = {method: float(np.mean([query[method] for query in own])) for method in METHODS}
+        table.append({"role": own_role, "queries": len(own), **precision})
+    return table + examples_in(results)

@@ -2,11 +2,11 @@
 
 A cell is one maze with a held-out goal. A prior on *places* comes from other goals of the same maze, one on
 *percepts* from other mazes, a goal in each; neither has met the goal in question. What is compared within a maze
-meets the same starts, worlds and payoffs. A bandit here is one place of the maze: its arms are the moves, and a
-pull says whether the move is on a shortest way, wrongly in some cases. Thesis: §3.8, §5.2.
+meets the same starts, worlds and payoffs. Searches know the maze. A bandit here is one place of the maze: its arms
+are the moves, and a pull says whether the move is on a shortest way, wrongly in some cases. Thesis: §3.8, §5.2.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from typing import NamedTuple
 
@@ -15,29 +15,28 @@ from numpy.typing import NDArray
 
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.search import bandit
-from lifelore.action.search.depth_first import depth_first, iterative_deepening, preferences
+from lifelore.action.search.depth_first import depth_first, preferences
 from lifelore.action.search.tree_search import SearchSettings, play, search_guidance
-from lifelore.core.errors import InputError
 from lifelore.core.mdp import Tables
+from lifelore.core.metrics import Estimate
 from lifelore.core.planning.planning import best_actions, optimal_q
 from lifelore.core.streams import stream
 from lifelore.domains.grids.grid_world import GridWorld
 from lifelore.domains.grids.noise_maze import noise_maze
+from reproduction.engine.results_table import BAND, ResultsTable
 
 PLACE, PERCEPT = KINDS = ("place", "percept")
-TREE, BOTH = GUIDES = ("tree", "tree and rollouts")
+FORMS = ("proportion", "dirichlet", "softmax", "support")
+GUIDES = ("tree and rollouts", "tree")
 """Parts of the search that the prior guides; without it, rollouts are uniform."""
-MOST, MEAN = "most tried", "best mean"
-WAYS = ((BOTH, MOST), (TREE, MOST), (BOTH, MEAN))
-"""The guided part and the move that follows a search: the default, and each choice alone made otherwise."""
-PLAIN = "uniform"
-PRUNED = "pruned"
-UCB1, BETA, GAUSSIAN = INDICES = ("ucb1", "beta", "gaussian")
-FLAT, EVEN = "flat", "even"
-"""Starts of a bandit without the prior: no pseudo-counts, and as many spread evenly."""
-SEARCH_FORM = "support"
-ORDER_FORM = ARMS_FORM = "proportion"
-"""Form whose order is pruned and deepened, and whose arms start at other strengths too."""
+ORDERS = ("preferred", "pruned")
+"""Preferred actions first; or only those that the prior does not exclude, and all of them where that fails."""
+DEFAULT = {"kind": PLACE, "form": "proportion"}
+"""The thesis's prior over states, as the proportion of counts."""
+NONE = {"kind": None, "form": "uniform"}
+EVEN = {"kind": None, "form": "even"}
+"""Without a prior; and for bandits, as many pseudo-pulls spread evenly."""
+INDICES = {"ucb1": bandit.ucb1, "beta": bandit.beta_thompson}
 BLOCKS = 20
 """Points of a stored curve of regret."""
 
@@ -65,7 +64,6 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     names = (seed, "C5.3", cell["maze"])
     maze = maze_of(settings, names)
     return {
-        **cell,
         "search": list(_searches(settings, maze, names)),
         "depth_first": list(_depth_first_searches(settings, maze, names)),
         "bandit": list(_bandits(settings, maze, names)),
@@ -92,13 +90,13 @@ def maze_of(settings: Mapping, names: tuple) -> Maze:
     contexts_of = {PLACE: np.arange(world.n_states), PERCEPT: world.percepts}
     probs_of = {
         (kind, form): _rows(settings, priors[kind], contexts_of[kind], form, (*names, kind))
-        for kind, form in product(KINDS, settings["forms"])
+        for kind, form in product(KINDS, FORMS)
     }
     return Maze(tables, best, start, starts, probs_of)
 
 
 def _world(settings: Mapping, random: np.random.Generator) -> GridWorld:
-    density = float(random.uniform(*settings["density"]))
+    density = float(random.uniform(*sorted(settings["density"])))
     return noise_maze(random, settings["size"], density, discount=settings["discount"])
 
 
@@ -119,87 +117,121 @@ def _rows(settings: Mapping, prior: ActionPrior, contexts, form: str, names: tup
     """Probabilities by state; ``dirichlet`` draws θ once for each context."""
     codes, row = np.unique(contexts, return_inverse=True)
     random = stream(*names, "dirichlet")
-    beta = settings["tempering"] if form == "tempered" else 1.0
-    return prior.probs(codes, form, generator=random, beta=beta, escape=settings["escape"])[row]
+    return prior.probs(codes, form, generator=random, escape=settings["escape"])[row]
 
 
 def _searches(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
-    """Monte-Carlo tree search: an episode each way."""
-    ways: list[tuple] = [(None, PLAIN, None, move) for move in (MOST, MEAN)]
-    ways += [(*which, *way) for which, way in product(maze.probs_of, WAYS)]
-    for simulations, (kind, form, guides, move) in product(settings["simulations"], ways):
-        probs = None if kind is None else maze.probs_of[kind, form]
-        guide = search_guidance(maze.tables, probs, rollout="prior" if guides == BOTH else "uniform")
-        numbers = settings["depth"], settings["exploration"], settings["discount"]
-        how = SearchSettings(simulations, *numbers, by_mean=move == MEAN)
+    """Monte-Carlo tree search: whether an episode reaches the goal, without a prior and each way with one."""
+    numbers = (settings[name] for name in ("simulations", "depth", "exploration", "discount"))
+    how = SearchSettings(*numbers)
+
+    def reached(probs, guides: str) -> bool:
+        guide = search_guidance(maze.tables, probs, rollout="prior" if guides == GUIDES[0] else "uniform")
         randoms = stream(*names, "world"), stream(*names, "search")
-        played = play(maze.tables, guide, maze.start, how, settings["max_steps"], *randoms)
-        about = {"kind": kind, "form": form, "guides": guides, "move": move, "simulations": simulations}
-        yield {**about, "reached": played.reached, "steps": played.steps, "collisions": played.collisions}
+        return play(maze.tables, guide, maze.start, how, settings["max_steps"], *randoms).reached
+
+    yield {**NONE, "guides": None, "reached": reached(None, GUIDES[1])}
+    for ((kind, form), probs), guides in product(maze.probs_of.items(), GUIDES):
+        yield {"kind": kind, "form": form, "guides": guides, "reached": reached(probs, guides)}
 
 
 def _depth_first_searches(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
-    """Depth-first search in each order, pruned and deepened in one; means over the starts."""
-    flat = np.full(maze.best.shape, 1 / maze.best.shape[1])
+    """Nodes that depth-first search expands in each order, the mean over the starts."""
 
-    def means(search, probs, prune=0.0) -> dict:
+    def expanded(probs, prune: float = 0.0) -> tuple[NDArray, NDArray]:
         orders = (preferences(probs, stream(*names, "order", n), prune) for n in range(len(maze.starts)))
-        found = [search(maze.tables, start, o) for start, o in zip(maze.starts.tolist(), orders, strict=True)]
-        sums = {"expanded": [f.expanded for f in found], "reached": [f.reached for f in found]}
-        sums["moves"] = [len(f.actions) for f in found]
-        return {key: float(np.mean(values)) for key, values in sums.items()}
+        found = [depth_first(maze.tables, start, o) for start, o in zip(maze.starts.tolist(), orders, strict=True)]
+        return np.array([f.expanded for f in found]), np.array([f.reached for f in found])
 
-    for search_name, search in (("depth first", depth_first), ("deepening", iterative_deepening)):
-        yield {"search": search_name, "kind": None, "form": PLAIN, **means(search, flat)}
-        for (kind, form), probs in maze.probs_of.items():
-            if search is depth_first or form == ORDER_FORM:
-                yield {"search": search_name, "kind": kind, "form": form, **means(search, probs)}
+    plain, _ = expanded(np.full(maze.best.shape, 1 / maze.best.shape[1]))
+    yield {**NONE, "order": None, "expanded": float(plain.mean())}
     for (kind, form), probs in maze.probs_of.items():
-        if form == ORDER_FORM:
-            yield {"search": PRUNED, "kind": kind, "form": form, **means(depth_first, probs, settings["prune"])}
+        for order, prune in zip(ORDERS, (0.0, settings["prune"]), strict=True):
+            nodes, reached = expanded(probs, prune)
+            mean = float(np.where(reached, nodes, nodes + plain).mean())
+            yield {"kind": kind, "form": form, "order": order, "expanded": mean}
 
 
 def _bandits(settings: Mapping, maze: Maze, names: tuple) -> Iterator[dict]:
     """Regret from each start of the arms, the mean over the places; its curve where it is drawn."""
     slip, horizon = settings["slip"], settings["pulls"]
     means = np.where(maze.best[maze.starts], 1 - slip, slip)
-    random = stream(*names, "payoffs")
-    shape = (len(means), horizon, means.shape[1])
-    yes_no = (random.random(shape) < means[:, None]).astype(float)
-    noise = float(np.sqrt(slip * (1 - slip)))  # as much as a payoff of yes or no has
-    normal = means[:, None] + noise * random.standard_normal(shape)
-    index_of = {UCB1: bandit.ucb1, BETA: bandit.beta_thompson, GAUSSIAN: bandit.gaussian_thompson(noise)}
+    payoffs = (stream(*names, "payoffs").random((len(means), horizon, means.shape[1])) < means[:, None]).astype(
+        float
+    )
     begun = list(_arms(settings, maze))
     every = bandit.Arms(*(np.concatenate(part) for part in zip(*(arms for _, arms in begun), strict=True)))
     at = np.unique(np.linspace(0, horizon - 1, BLOCKS).astype(int))
-    for name, index in index_of.items():
-        payoffs = np.tile(normal if name == GAUSSIAN else yes_no, (len(begun), 1, 1))
-        pulled = bandit.play(index, every, payoffs, stream(*names, "pulls", name))
+    for name, index in INDICES.items():
+        pulled = bandit.play(index, every, np.tile(payoffs, (len(begun), 1, 1)), stream(*names, "pulls", name))
         lost = bandit.regret(pulled, np.tile(means, (len(begun), 1))).reshape(len(begun), len(means), horizon)
         for (about, _), curve in zip(begun, lost.mean(axis=1), strict=True):
             found = {"index": name, **about, "regret": float(curve[-1])}
-            drawn = about["form"] in (FLAT, EVEN, ARMS_FORM) and about["strength"] in (0.0, settings["strength"])
-            yield {**found, "curve": np.round(curve[at], 4).tolist()} if drawn else found
+            drawn = about["kind"] is None or about["form"] == DEFAULT["form"]
+            yield {**found, "curve": np.round(curve[at], 3).tolist()} if drawn else found
 
 
 def _arms(settings: Mapping, maze: Maze) -> Iterator[tuple[dict, bandit.Arms]]:
-    """Starts of the arms: pseudo-counts of the moves at each place before the first pull."""
+    """Starts of the arms: pseudo-pulls of the moves at each place before the first pull."""
     shape = (len(maze.starts), maze.best.shape[1])
-    flat = np.full(shape, 1 / shape[1])
-    strength = settings["strength"]
-    yield {"kind": None, "form": FLAT, "strength": 0.0}, bandit.flat_arms(*shape)
-    yield {"kind": None, "form": EVEN, "strength": strength}, bandit.prior_arms(flat, strength)
+    yield NONE, bandit.flat_arms(*shape)
+    yield EVEN, bandit.prior_arms(np.full(shape, 1 / shape[1]), settings["strength"])
     for (kind, form), probs in maze.probs_of.items():
-        other = [s for s in settings["other_strengths"] if form == ARMS_FORM]
-        for pseudo_pulls in (strength, *other):
-            about = {"kind": kind, "form": form, "strength": pseudo_pulls}
-            yield about, bandit.prior_arms(probs[maze.starts], pseudo_pulls)
+        yield {"kind": kind, "form": form}, bandit.prior_arms(probs[maze.starts], settings["strength"])
 
 
-def check(settings: Mapping) -> None:
-    missing = [form for form in (SEARCH_FORM, ORDER_FORM) if form not in settings["forms"]]
-    if missing:
-        raise InputError(f"forms must include the defaults, {SEARCH_FORM} and {ORDER_FORM}; add {missing[0]}")
-    density = settings["density"]
-    if density[0] > density[1]:
-        raise InputError(f"density must be two shares of obstacles, rising, got {density}")
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Gain of tree search, ratio of nodes, ratios of regret, paired by maze; at the default."""
+    search, order, arms = _tables(results)
+    return {
+        "search_gain": _gain(search, DEFAULT, GUIDES[0]),
+        "nodes_ratio": _nodes_ratio(order, DEFAULT, ORDERS[0]),
+        **{f"{index}_ratio": arms.ratio("regret", DEFAULT, NONE, index=index) for index in INDICES},
+        **{f"{index}_even_ratio": arms.ratio("regret", DEFAULT, EVEN, index=index) for index in INDICES},
+    }
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The same for every kind and form of the prior, part of the search that it guides, and use of its order."""
+    search, order, arms = _tables(results)
+    for kind, form in product(KINDS, FORMS):
+        prior = {"kind": kind, "form": form}
+        for guides in GUIDES:
+            yield {**prior, "guides": guides}, {"search_gain": _gain(search, prior, guides)}
+        for use in ORDERS:
+            yield {**prior, "order": use}, {"nodes_ratio": _nodes_ratio(order, prior, use)}
+        yield prior, {f"{index}_ratio": arms.ratio("regret", prior, NONE, index=index) for index in INDICES}
+
+
+def _tables(results: Sequence[Mapping]) -> tuple[ResultsTable, ResultsTable, ResultsTable]:
+    return (
+        ResultsTable.nested(results, "search", ("kind", "form", "guides")),
+        ResultsTable.nested(results, "depth_first", ("kind", "form", "order")),
+        ResultsTable.nested(results, "bandit", ("index", "kind", "form")),
+    )
+
+
+def _gain(table: ResultsTable, prior: Mapping, guides: str) -> Estimate:
+    return table.difference("reached", {**prior, "guides": guides}, {**NONE, "guides": None})
+
+
+def _nodes_ratio(table: ResultsTable, prior: Mapping, order: str) -> Estimate:
+    return table.ratio("expanded", {**prior, "order": order}, {**NONE, "order": None})
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Goals reached by tree search, nodes expanded, and curves of regret; without a prior and with each kind."""
+    search, order, arms = _tables(results)
+    form = DEFAULT["form"]
+    uses = [(NONE, None, None), *(({"kind": kind, "form": form}, GUIDES[0], ORDERS[0]) for kind in KINDS)]
+    found = [
+        {
+            "kind": prior["kind"],
+            "reached": search.mean("reached", **prior, guides=guides).to_dict(),
+            "expanded": order.mean("expanded", **prior, order=use).to_dict(),
+        }
+        for prior, guides, use in uses
+    ]
+    for index, prior in product(INDICES, [NONE, EVEN, *(prior for prior, *_ in uses[1:])]):
+        found.append({"index": index, **prior, **arms.curve("curve", 3, BAND, index=index, **prior)})
+    return found

@@ -23,19 +23,13 @@ TITLES = {
     DRIFT: "The same, drawn again every {steady_for} tasks",
 }
 LOOKS = {
-    LIBRARY: {"color": GREY},
-    LEARNT: {"color": SKY},
-    CONTEXT: {"color": BLUE, "linewidth": 2.2},
-    NO_DECAY: {"color": ORANGE},
-    TRUE: {"color": INK, "linestyle": "--"},
+    LIBRARY: ("library's prior", {"color": GREY}),
+    LEARNT: ("learnt, contexts ignored", {"color": SKY}),
+    CONTEXT: ("learnt by context", {"color": BLUE, "linewidth": 2.2}),
+    NO_DECAY: ("learnt by context, no decay", {"color": ORANGE}),
+    TRUE: ("true popularity", {"color": INK, "linestyle": "--"}),
 }
-LABELS = {
-    LIBRARY: "library's prior",
-    LEARNT: "learnt, contexts ignored",
-    CONTEXT: "learnt by context",
-    NO_DECAY: "learnt by context, no decay",
-    TRUE: "true popularity",
-}
+"""Label and line of each agent."""
 
 
 @house_style()
@@ -46,14 +40,17 @@ def draw(result: Mapping) -> Figure:
     panels = figure.subplots(1, 3, sharey=True)
     for axes, (world, title) in zip(panels, TITLES.items(), strict=True):
         own = [row for row in result["rows"] if row["world"] == world]
-        series = {
-            LABELS[row["agent"]]: {"mean": row["mean"], "error": 1.96 * np.array(row["error"])} for row in own
-        }
-        looks = {LABELS[agent]: look for agent, look in LOOKS.items()}
+        series = {LOOKS[row["agent"]][0]: row for row in own}
         n = len(own[0]["mean"])
         tasks = (np.arange(n) + 0.5) * settings["tasks"] / n
         draw_curves(
-            axes, tasks, series, looks=looks, title=title.format(**settings), xlabel="tasks lived", legend=False
+            axes,
+            tasks,
+            series,
+            looks=dict(LOOKS.values()),
+            title=title.format(**settings),
+            xlabel="tasks lived",
+            legend=False,
         )
         axes.grid(axis="y", color=LIGHT)
     panels[0].set_ylim(0, None)

@@ -1,14 +1,16 @@
 """C5.4: lives of tasks whose types are popular by Zipf's law, under five priors. Thesis: §5.2.
 
-Lives run side by side, task by task: all agents of a life meet the same contexts, types and noise.
+Lives run side by side, task by task: all agents of a life meet the same contexts, types and noise. Early regret
+is that of a task's first episodes; it is judged in the second half of the life.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.agent.long_lived.type_prior import HALF_LIVES, TypePrior
+from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.surveillance.surveillance import Surveillance
 from lifelore.interaction.beliefs.belief import log_prior
@@ -17,6 +19,7 @@ from lifelore.interaction.library.policy_library import PolicyLibrary
 from lifelore.interaction.reuse.regret import library_regret
 from lifelore.interaction.reuse.reuse_algorithm import LEAST_SCORED, ReuseAlgorithm
 from lifelore.interaction.selection import default_rule
+from reproduction.engine.results_table import BAND, curve_of
 
 Array = NDArray[np.float64]
 
@@ -26,6 +29,8 @@ LIBRARY, LEARNT, CONTEXT, NO_DECAY, TRUE = "library", "learnt", "context", "no d
 AGENTS = (LIBRARY, LEARNT, CONTEXT, NO_DECAY, TRUE)
 """The prior of each agent: the library's, learnt in all contexts alike, learnt by context, that without decay,
 and the true popularity."""
+BLOCKS = 20
+"""Parts of a life in the curves of the rows."""
 
 
 def cells(settings: Mapping) -> list[dict]:
@@ -88,5 +93,35 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
         if cell["agent"] not in (LIBRARY, TRUE):
             for own, context, belief in zip(learnt, seen, np.exp(log_belief), strict=True):
                 own.learn(int(context), belief / belief.sum(), date)
-        early[:, task] = library_regret(mean, policies)[:, : settings["early"]].sum(axis=1)
+        early[:, task] = library_regret(mean, policies)[:, : min(settings["early"], n_episodes)].sum(axis=1)
     return {**cell, "early": early.round(3).tolist()}
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Ratios of early regret, paired by life."""
+
+    def ratio(world: str, agent: str, other: str) -> Estimate:
+        late = {
+            result["agent"]: np.array(result["early"])[:, settings["tasks"] // 2 :].mean(axis=1)
+            for result in results
+            if result["world"] == world
+        }
+        return ratio_estimate(late[agent], late[other])
+
+    return {
+        "learnt_over_library_steady": ratio(STEADY, LEARNT, LIBRARY),
+        "context_over_learnt_contexts": ratio(CONTEXTS, CONTEXT, LEARNT),
+        "decay_over_none_drift": ratio(DRIFT, CONTEXT, NO_DECAY),
+        "decay_over_none_steady": ratio(STEADY, CONTEXT, NO_DECAY),
+    }
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """A row an agent and world: mean early regret over lives in parts of the life, with its 95 % interval."""
+    found = []
+    for result in results:
+        early = np.array(result["early"])
+        parts = np.array_split(early, min(BLOCKS, early.shape[1]), axis=1)
+        means = np.array([part.mean(axis=1) for part in parts]).T
+        found.append({"world": result["world"], "agent": result["agent"], **curve_of(means, 2, BAND)})
+    return found

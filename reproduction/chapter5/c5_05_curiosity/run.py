@@ -1,80 +1,80 @@
-"""C5.5: spare time spent by curiosity or uniform replay, and lives in which a type arrives late. Thesis: §5.2."""
+"""C5.5: what entropy and belief say about what to learn next, in lives of factory orders with hidden customers.
 
-from collections.abc import Mapping, Sequence
+In spare time after a life, contexts to practise are chosen by the entropy of the prior over types, or as often as
+they came. In other lives a type arrives late: does a belief that is spread over the known types tell its first
+task from those of known types, does the detector of unexplained effects, and is the type added? The area under the
+curve (AUC) is the probability that a sign is stronger in the late type's task than in one of a known type.
+Thesis: §3.3.2, §5.2.
+"""
+
+from collections import Counter
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from lifelore.agent.long_lived.curiosity import context_to_practise, curious_contexts
+from lifelore.agent.long_lived.curiosity import context_to_practise
 from lifelore.agent.long_lived.families.factory_customers import FactoryFamily
 from lifelore.agent.long_lived.knowledge import Knowledge
 from lifelore.agent.long_lived.live_task import LivingSettings, attempt_task, live_task
 from lifelore.agent.long_lived.task_family import AGENTS
+from lifelore.agent.long_lived.task_log import TaskLog
+from lifelore.core.metrics import Estimate, entropy, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.factory.customer_orders import CUSTOMERS
 from lifelore.domains.task_stream import TaskStream
-from reproduction.chapter5.c5_05_curiosity.late_type import LateTypeLife, live_with_late_type
+from reproduction.engine.estimates import UNMEASURED, exact_share
+from reproduction.engine.results_table import BAND, curve_of
 
-UNIFORM, CURIOUS, LEARNABLE = "uniform", "curious", "learnable"
-CHOOSERS = (UNIFORM, CURIOUS, LEARNABLE)
+UNIFORM, CURIOUS = CHOOSERS = ("uniform", "curious")
 """How the context of a spare order is chosen."""
-LATE = "late type"
 SPARE_NUMBER, TEST_NUMBER = 10_000, 20_000
 """Numbers of the first spare and of the first test order: their layouts are those of no order of the life."""
-ONCE = LivingSettings(n_episodes=1)
+FULL, ONCE = AGENTS["full"], LivingSettings(n_episodes=1)
+MET = 2
+"""Tasks of a type after which it counts as known."""
+GAIN = 0.8
+"""Share of what uniform replay gains, at which orders are compared."""
+RESAMPLES = 1000
+"""Resamples of an interval; more costs time, not accuracy."""
+SIGNS = ("spread at the end", "mean spread", "alarm")
+"""Signs of a new type in a task: entropy of the belief in the known types after the task, its mean over the task's
+decisions, and the largest score of the detector."""
 
 
 def cells(settings: Mapping) -> list[dict]:
-    """Every life; each is lived with all choosers."""
+    """Every life with spare time, lived with both choosers; every life with a late type."""
     spare = [{"part": "spare time", "life": life} for life in range(settings["lives"])]
-    return spare + [{"part": LATE, "life": life} for life in range(settings["late_lives"])]
+    return spare + [{"part": "late type", "life": life} for life in range(settings["late_lives"])]
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """A life of spare time: mean points missed after each span of spare orders. Or a life with a late type."""
-    if cell["part"] == LATE:
-        found = live_with_late_type(1000 * seed + cell["life"], settings["orders"], settings["arrival"])
-        return {**cell, **vars(found)}
+    """Mean points missed after each span of spare orders by chooser; or the signs of tasks in a life."""
+    if cell["part"] == "late type":
+        return {**cell, **late_type(1000 * seed + cell["life"], settings["arrival"], settings["late_episodes"])}
     family = FactoryFamily(TaskStream(tuple(CUSTOMERS), 1000 * seed + cell["life"], settings["contexts"]), seed)
     best = [family.best_return(number) for number in _tests(settings)]
-    return {
-        **cell,
-        **{chooser: _spare_time(settings, family, best, chooser, cell["life"], seed) for chooser in CHOOSERS},
-    }
-
-
-def late_lives(results: list[Mapping]) -> list[LateTypeLife]:
-    """The lives with a late type."""
-    names = LateTypeLife.__dataclass_fields__
-    return [LateTypeLife(**{name: one[name] for name in names}) for one in results if one["part"] == LATE]
+    return {**cell, **{name: _spare_time(settings, family, best, name, cell["life"], seed) for name in CHOOSERS}}
 
 
 def _spare_time(
     settings: Mapping, family: FactoryFamily, best: Sequence[float], chooser: str, life: int, seed: int
 ) -> list[float]:
-    knowledge, abilities = Knowledge.empty(family), AGENTS["full"]
-    living = LivingSettings(n_episodes=settings["episodes"])
+    knowledge, living = Knowledge.empty(family), LivingSettings(n_episodes=settings["episodes"])
     for number in range(settings["lived"]):
-        live_task(knowledge, *family.meet(number, abilities), abilities, living, f"lived.{number}", seed)
+        live_task(knowledge, *family.meet(number, FULL), FULL, living, f"lived.{number}", seed)
     random = stream(seed, "C5.5", "spare time", life)
     missed = [_missed(settings, knowledge, best)]
-    for number in range(SPARE_NUMBER, SPARE_NUMBER + settings["spare"]):
-        context = _chosen(knowledge, family, chooser, settings["lived"], random)
+    for number in range(SPARE_NUMBER, SPARE_NUMBER + settings["spans"] * settings["span"]):
+        if chooser == CURIOUS:
+            context = context_to_practise(knowledge, random)
+        else:
+            context = family.stream.draw(int(random.integers(settings["lived"]))).context
         # The date goes on from task to task: spare orders are the latest.
-        drawn, task = family.meet(number, abilities, context)
-        live_task(knowledge, drawn, task, abilities, living, f"spare.{number}", seed)
-        if (number + 1 - SPARE_NUMBER) % settings["every"] == 0:
+        live_task(knowledge, *family.meet(number, FULL, context), FULL, living, f"spare.{number}", seed)
+        if (number + 1 - SPARE_NUMBER) % settings["span"] == 0:
             missed.append(_missed(settings, knowledge, best))
     return missed
-
-
-def _chosen(
-    knowledge: Knowledge, family: FactoryFamily, chooser: str, lived: int, random: np.random.Generator
-) -> int:
-    if chooser == UNIFORM:
-        return family.stream.draw(int(random.integers(lived))).context
-    if chooser == CURIOUS:
-        return context_to_practise(knowledge, random)
-    return max(curious_contexts(knowledge), key=lambda one: (one.learnable, -one.context)).context
 
 
 def _tests(settings: Mapping) -> range:
@@ -84,9 +84,107 @@ def _tests(settings: Mapping) -> range:
 
 def _missed(settings: Mapping, knowledge: Knowledge, best: Sequence[float]) -> float:
     """Mean points that the first episodes of new orders miss of their `best`; nothing is learnt from them."""
-    family, abilities, missed = knowledge.family, AGENTS["full"], []
+    missed = []
     for number, most in zip(_tests(settings), best, strict=True):
-        drawn, task = family.meet(number, abilities)
-        lived, _ = attempt_task(knowledge, drawn, task, abilities, ONCE, "test")
+        lived, _ = attempt_task(knowledge, *knowledge.family.meet(number, FULL), FULL, ONCE, "test")
         missed.append(most - lived.returns[0])
     return round(float(np.mean(missed)), 4)
+
+
+def late_type(life: int, arrival: int, episodes: int) -> dict:
+    """A life up to the first task of a type that arrives late: ``{"known", "late", "learnt"}``.
+
+    *known* has the `SIGNS` of each task of a type that was met in `MET` tasks or more, *late* those of the late
+    type's first task; *learnt*: it became a type of its own there. The number of the life draws the late type.
+    """
+    types = tuple(CUSTOMERS)
+    late = types[life % len(types)]
+    family = FactoryFamily(TaskStream(types, life, len(types), arrivals={late: arrival}), life)
+    knowledge, living = Knowledge.empty(family), LivingSettings(n_episodes=episodes)
+    met, known = Counter[str](), []
+    for number in range(arrival):
+        drawn, task = family.meet(number, FULL)
+        lived, _ = live_task(knowledge, drawn, task, FULL, living, f"agent.{number}", life)
+        if met[drawn.hidden_type] >= MET:
+            known.append(signs(lived))
+        met[drawn.hidden_type] += 1
+    last, _ = live_task(knowledge, *family.meet(arrival, FULL), FULL, living, "late", life)
+    return {"known": known, "late": signs(last), "learnt": last.learnt == "late"}
+
+
+def signs(lived: TaskLog) -> list[float]:
+    """The `SIGNS` of a task; a belief's last entry, an unknown type, is left out."""
+    beliefs = np.array([decision.belief[:-1] for decisions in lived.decisions for decision in decisions])
+    sums = beliefs.sum(axis=1, keepdims=True)
+    spread = entropy(np.divide(beliefs, sums, out=np.full_like(beliefs, 1 / beliefs.shape[1]), where=sums > 0))
+    return [round(float(x), 5) for x in (spread[-1], spread.mean(), lived.alarm_score)]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Ratio of orders needed; AUC of the belief's spread and of the alarm; late types learnt."""
+    missed = curves(results)
+    start, end = missed[UNIFORM][:, 0], missed[UNIFORM][:, -1]
+    goals = start - GAIN * np.maximum(start - end, 0.0)
+    needed = [
+        [orders_needed(settings["span"], own, goal) for own, goal in zip(missed[name], goals, strict=True)]
+        for name in (CURIOUS, UNIFORM)
+    ]
+    late = [result for result in results if result["part"] == "late type"]
+    return {
+        "curious_over_uniform_orders": ratio_estimate(*needed),
+        "spread_auc": auc_over_lives(late, SIGNS[0]),
+        "alarm_auc": auc_over_lives(late, SIGNS[2]),
+        "late_type_learnt": exact_share(life["learnt"] for life in late),
+    }
+
+
+def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterator[tuple[dict, dict[str, Estimate]]]:
+    """The belief's spread at the end of the task, and its mean over the task."""
+    late = [result for result in results if result["part"] == "late type"]
+    for sign in SIGNS[:2]:
+        yield {"belief": sign}, {"spread_auc": auc_over_lives(late, sign)}
+
+
+def curves(results: Sequence[Mapping]) -> dict[str, NDArray[np.float64]]:
+    """Points missed after each span of spare orders, (n_lives, n_spans + 1), by chooser."""
+    return {name: np.array([one[name] for one in results if name in one]) for name in CHOOSERS}
+
+
+def orders_needed(span: int, missed: NDArray[np.float64], goal: float) -> float:
+    """Spare orders until no more than `goal` is missed, between spans by a straight line; all, if never."""
+    reached = np.flatnonzero(missed <= goal)
+    if not len(reached):
+        return float(span * (len(missed) - 1))
+    last = int(reached[0])
+    if last == 0:
+        return 0.0
+    above, below = missed[last - 1], missed[last]
+    return float(span * (last - 1 + (above - goal) / (above - below)))
+
+
+def auc_over_lives(lives: Sequence[Mapping], sign: str) -> Estimate:
+    """The area under the curve of all lives' signs; its interval resamples lives (percentiles)."""
+    at = SIGNS.index(sign)
+    pairs = [(np.array([task[at] for task in life["known"]]), life["late"][at]) for life in lives]
+    known, late = [known for known, _ in pairs], np.array([late for _, late in pairs])
+    if not sum(map(len, known)):
+        return UNMEASURED
+    # Wins of each late task over the known tasks of each life; ties count half.
+    wins = np.array([[(np.sign(one - other) / 2 + 0.5).sum() for other in known] for one in late])
+    n = np.array([len(other) for other in known])
+    draws = stream(len(lives), "lives resampled").integers(len(lives), size=(RESAMPLES, len(lives)))
+    draws = draws[n[draws].sum(axis=1) > 0]
+    found = [wins[np.ix_(draw, draw)].sum() / (len(lives) * n[draw].sum()) for draw in draws]
+    low, high = np.quantile(found, [0.025, 0.975])
+    value = wins.sum() / (len(lives) * n.sum())
+    return Estimate(float(value), float(np.median(found)), (float(low), float(high)), len(lives))
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """A row a chooser: points missed after each span of spare orders; and a row of each sign's values."""
+    late = [result for result in results if result["part"] == "late type"]
+    found: list[dict] = [{"chooser": name, **curve_of(own, 3, BAND)} for name, own in curves(results).items()]
+    for at in (0, 2):
+        known = [task[at] for life in late for task in life["known"]]
+        found.append({"sign": SIGNS[at], "known": known, "late": [life["late"][at] for life in late]})
+    return found

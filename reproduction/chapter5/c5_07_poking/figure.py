@@ -1,24 +1,31 @@
-"""A scene of each kind: true objects, segments before the pushes, and objects after them."""
+"""Share of objects found before and after pushes, by kind of scene."""
 
 from collections.abc import Mapping
 
-from lifelore.figures.scenes.segmentation_panels import draw_segmentations
-from reproduction.chapter5.c5_07_poking.run import unpacked
+from lifelore.figures.interval_bars import draw_interval_bars
+from lifelore.figures.style import BLUE, GREY, LIGHT, Figure, house_style, new_figure
 
-COLUMNS = ("true objects", "local convexity", "after pushes")
-
-
-def draw(result: Mapping):
-    pictures = []
-    for row in result["rows"]:
-        if "example" in row:
-            truth, clouds = unpacked(row)
-            name = f"{row['example']}\n{_gain(result['measured'], row['example'])}"
-            pictures.append((name, truth, dict(zip(COLUMNS, clouds, strict=True))))
-    return draw_segmentations(pictures)
+KINDS = {
+    "": "all", "_varied": "varied: groups,\npiles, books", "_flush": "flush: blocks\nwithout a crease",
+    "_occluded": "occluded: a block\nseen in two parts",
+}  # fmt: skip
 
 
-def _gain(measured: Mapping, kind: str) -> str:
-    """Shares of objects found, such as ``found 45 → 68 %``."""
-    before, after = (measured[f"found_{when}_{kind}"]["value"] for when in ("before", "after"))
-    return f"found {100 * before:.0f} → {100 * after:.0f} %"
+@house_style()
+def draw(result: Mapping) -> Figure:
+    """The figure from the result."""
+    figure = new_figure(6.2, 3.4)
+    axes = figure.subplots()
+    groups = {
+        words: [result["measured"][f"found_{when}{kind}"] for kind in KINDS]
+        for when, words in (("before", "local convexity"), ("after", "after pushes"))
+    }
+    colours = {"local convexity": GREY, "after pushes": BLUE}
+    draw_interval_bars(
+        axes, list(KINDS.values()), groups, colours=colours, words="{:.2f}".format,
+        title="Objects found", label="share with an IoU of at least 0.5", legend=False,
+    )  # fmt: skip
+    axes.set_xlim(0, 1.12)
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower right", ncols=2)
+    axes.grid(axis="x", color=LIGHT)
+    return figure

@@ -1,19 +1,20 @@
-"""Cells of claim C5.7: settled scenes, segmented by local convexity, poked in MuJoCo and segmented again.
+"""C5.7: scenes cut by local convexity, then every segment poked in MuJoCo, and segmented again.
+
+The camera takes a picture after each push; what moves together is merged, what moves apart is split. Both
+segmentations are scored on the first cloud with true labels, which the method does not read. Thesis: §2.4.3, §2.5.
 
 Three kinds of scene: *varied* (the tabletop's usual groups, piles, books and cartons), *flush* (blocks whose faces
 join without a crease, beside or on one another) and *occluded* (a long block whose middle is hidden, so that two
 parts of it are seen).
 """
 
-import base64
-import zlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
+from lifelore.core.metrics import Estimate, ratio_estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.layout import Group, Placed, put_beside, stand, top
 from lifelore.domains.tabletop.poke import PokedTabletop
@@ -21,10 +22,11 @@ from lifelore.domains.tabletop.pose import about
 from lifelore.domains.tabletop.settings import TabletopScene, TabletopSettings
 from lifelore.domains.tabletop.shapes import box
 from lifelore.perception.segmentation.object_segmentation import SegmentationSettings, segmented
-from lifelore.perception.segmentation.poking import PokedLabels, PokedSegments
+from lifelore.perception.segmentation.poking import PokedSegments
 from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled, turned
 from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
-from reproduction.chapter2.scoring.segmentation_scoring import overlaps
+from reproduction.chapter2.scoring.segmentation_scoring import FOUND, overlaps
+from reproduction.engine.estimates import UNMEASURED
 
 LOT = 2
 KINDS = ("varied", "flush", "occluded")
@@ -35,13 +37,7 @@ LENGTH = 0.025
 """Of a push, metres."""
 TRIES = 4
 """Places that are tried until the fingertip has room."""
-STILL_PICTURES = 3
-"""Pictures of the control in which nothing is pushed."""
 SETTINGS = SegmentationSettings()
-DRAWN, DRAWN_POINTS = 10, 6000
-"""Scenes of a kind among which the example is looked for, and its largest number of points."""
-AROUND, GRID = 0.04, 0.0005
-"""Metres of table around an example's objects, and to which its points are rounded."""
 
 
 def place_flush(rng: np.random.Generator) -> Group:
@@ -90,16 +86,13 @@ def cells(settings: Mapping) -> list[dict]:
 
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
-    """Outcomes of a lot's scenes; pictures of the first scene of a kind."""
-    scenes, examples = [], []
+    """``{"kind", "scenes": […]}``: the outcomes of a lot's scenes."""
+    scenes = []
     for number in numbers_of(cell, LOT, settings["scenes"]):
         scene = drawn_scene(cell["kind"], seed, number)
-        trial = poke_scene(scene, stream(seed, "C5.7", "pokes", cell["kind"], number), settings["rounds"])
-        still = still_scene(scene, stream(seed, "C5.7", "still", cell["kind"], number))
-        scenes.append({"kind": cell["kind"], **outcome(scene.cloud.labels, trial, still)})
-        if number == 0 or (number < DRAWN and (trial.after.merged or trial.after.split)):
-            examples.append(example(cell["kind"], scene, trial))
-    return {"scenes": scenes, "examples": examples}
+        random = stream(seed, "C5.7", "pokes", cell["kind"], number)
+        scenes.append(outcome(scene.cloud.labels, *poke_scene(scene, random, settings["rounds"])))
+    return {"kind": cell["kind"], "scenes": scenes}
 
 
 def drawn_scene(kind: str, seed: int, number: int) -> TabletopScene:
@@ -110,15 +103,6 @@ def drawn_scene(kind: str, seed: int, number: int) -> TabletopScene:
     return arranged("varied", own_seed, number, TabletopSettings(shapes="all", camera=CAMERA))
 
 
-@dataclass(frozen=True, eq=False)
-class Trial:
-    """A poked scene: labels of its first cloud before and after the pokes, and the number of pokes."""
-
-    before: NDArray[np.int64]
-    after: PokedLabels
-    pokes: int
-
-
 def first_view(scene: TabletopScene) -> LabelledCloud:
     """The first cloud as local convexity cuts it; true labels are not read."""
     cloud = scene.cloud
@@ -126,10 +110,12 @@ def first_view(scene: TabletopScene) -> LabelledCloud:
     return LabelledCloud(cloud.points, labels, None, cloud.camera)
 
 
-def poke_scene(scene: TabletopScene, rng: np.random.Generator, rounds: int) -> Trial:
-    """Poke every segment once a round, and photograph the scene after each poke."""
+def poke_scene(
+    scene: TabletopScene, rng: np.random.Generator, rounds: int
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    """Labels of the first cloud before and after every segment was poked once a round."""
     first = first_view(scene)
-    table, known, pokes = PokedTabletop(scene.shapes, scene.poses), PokedSegments(first), 0
+    table, known = PokedTabletop(scene.shapes, scene.poses), PokedSegments(first)
     for number in range(rounds):
         for segment in known.segments:
             for _ in range(TRIES):
@@ -138,22 +124,8 @@ def poke_scene(scene: TabletopScene, rng: np.random.Generator, rounds: int) -> T
                     break
                 if table.poke(poke.place, poke.push):
                     known.observe(poke, seen(table, scene, rng))
-                    pokes += 1
                     break
-    return Trial(first.labels, known.corrected(), pokes)
-
-
-def still_scene(scene: TabletopScene, rng: np.random.Generator) -> Trial:
-    """The control: the same evidence is sought in pictures between which nothing was pushed."""
-    first = first_view(scene)
-    table, known = PokedTabletop(scene.shapes, scene.poses), PokedSegments(first)
-    poke = next(
-        (p for s in known.segments for p in [known.poke_at(s, rng, LENGTH, (0.0, 1.0))] if p is not None), None
-    )
-    for _ in range(STILL_PICTURES if poke is not None else 0):
-        assert poke is not None
-        known.observe(poke, seen(table, scene, rng))
-    return Trial(first.labels, known.corrected(), 0)
+    return first.labels, known.corrected().labels
 
 
 def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -> LabelledCloud:
@@ -163,58 +135,41 @@ def seen(table: PokedTabletop, scene: TabletopScene, rng: np.random.Generator) -
     return LabelledCloud(picture.points, np.where(on_table, TABLE, 0), None, picture.camera)
 
 
-def outcome(truth: NDArray[np.int64], trial: Trial, still: Trial) -> dict:
-    """A scene as plain numbers; each object ``[points, IoU before, IoU after]``."""
-    before, after = overlaps(truth, trial.before), overlaps(truth, trial.after.labels)
-    own = owners(truth, trial.before)
-    merges = [len({own[label] for label in group}) == 1 for group in trial.after.merged]
-    splits = [_parts_differ(truth, trial, label) for label in trial.after.split]
+def outcome(truth: NDArray[np.int64], before: NDArray[np.int64], after: NDArray[np.int64]) -> list[list[float]]:
+    """``[points, IoU before, IoU after]`` of each object."""
+    both = zip(overlaps(truth, before), overlaps(truth, after), strict=True)
+    return [[old.points, round(old.iou, 4), round(new.iou, 4)] for old, new in both]
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """All scenes together, and the objects found by kind; intervals resample scenes."""
+
+    def of(kinds: Sequence[str]) -> dict[str, Estimate]:
+        return measures_of([scene for result in results if result["kind"] in kinds for scene in result["scenes"]])
+
+    own = {kind: of((kind,)) for kind in KINDS}
+    shares = ("found_before", "found_after")
+    return of(KINDS) | {f"{name}_{kind}": own[kind][name] for kind in KINDS for name in shares}
+
+
+def measures_of(scenes: Sequence[Sequence]) -> dict[str, Estimate]:
+    """Gain of overlap; objects found before and after, their gain, those corrected and lost."""
+    objects = [np.array(scene, float).reshape(-1, 3) for scene in scenes]
+    hit = [o[:, 1:] >= FOUND for o in objects]
+    n = [len(h) for h in hit]
     return {
-        "pokes": trial.pokes,
-        "segments": len(own),
-        "objects": [[b.points, round(b.iou, 4), round(a.iou, 4)] for b, a in zip(before, after, strict=True)],
-        "merges": [int(sum(merges)), len(merges)],
-        "splits": [int(sum(splits)), len(splits)],
-        "still": len(still.after.merged) + len(still.after.split),
+        "overlap_gain": _share(
+            [(o[:, 0] * (o[:, 2] - o[:, 1])).sum() for o in objects], [o[:, 0].sum() for o in objects]
+        ),
+        "found_before": _share([h[:, 0].sum() for h in hit], n),
+        "found_after": _share([h[:, 1].sum() for h in hit], n),
+        "found_gain": _share([h[:, 1].sum() - float(h[:, 0].sum()) for h in hit], n),
+        "corrected": _share([(~h[:, 0] & h[:, 1]).sum() for h in hit], [(~h[:, 0]).sum() for h in hit]),
+        "spoiled": _share([(h[:, 0] & ~h[:, 1]).sum() for h in hit], [h[:, 0].sum() for h in hit]),
     }
 
 
-def owners(truth: NDArray[np.int64], labels: NDArray[np.int64]) -> dict[int, int]:
-    """The true object that most points of each segment belong to."""
-    return {int(s): _most(truth[labels == s]) for s in np.unique(labels) if s > TABLE}
-
-
-def _parts_differ(truth: NDArray[np.int64], trial: Trial, label: int) -> bool:
-    """Whether the parts of a split segment belong to different objects, part by part."""
-    rows = trial.before == label
-    parts = [_most(truth[rows & (trial.after.labels == part)]) for part in np.unique(trial.after.labels[rows])]
-    return len(set(parts)) == len(parts)
-
-
-def _most(values: Sequence[int] | NDArray[np.int64]) -> int:
-    found, counts = np.unique(values, return_counts=True)
-    return int(found[counts.argmax()])
-
-
-def example(kind: str, scene: TabletopScene, trial: Trial) -> dict:
-    """A picture's data: the camera, and thinned points in half millimetres with true, first and last labels."""
-    cloud, objects = scene.cloud, scene.cloud.points[scene.cloud.labels > TABLE]
-    low, high = objects.min(axis=0)[:2] - AROUND, objects.max(axis=0)[:2] + AROUND
-    rows = np.flatnonzero(((cloud.points[:, :2] >= low) & (cloud.points[:, :2] <= high)).all(axis=1))
-    rows = rows[:: -(-len(rows) // DRAWN_POINTS)]
-    labels = [found[rows] for found in (cloud.labels, trial.before, trial.after.labels)]
-    table = np.vstack([np.round(cloud.points[rows] / GRID).T, *labels]).astype(np.int16)
-    packed = base64.b64encode(zlib.compress(np.ascontiguousarray(table).tobytes(), 9)).decode()
-    assert cloud.camera is not None
-    changed = bool(trial.after.merged or trial.after.split)
-    return {
-        "example": kind, "changed": changed, "camera": [round(float(x), 4) for x in cloud.camera], "points": packed
-    }  # fmt: skip
-
-
-def unpacked(example: Mapping) -> tuple[NDArray[np.int64], list[LabelledCloud]]:
-    """True labels ``(n,)`` of an `example`, and its cloud with true, first and last labels."""
-    table = np.frombuffer(zlib.decompress(base64.b64decode(example["points"])), np.int16).reshape(6, -1)
-    points, camera = np.asarray(table[:3].T * GRID, np.float64), np.array(example["camera"], float)
-    labels = table[3:].astype(np.int64)
-    return labels[0], [LabelledCloud(points, found, None, camera) for found in labels]
+def _share(parts: Sequence, wholes: Sequence) -> Estimate:
+    """Ratio of sums over scenes; `UNMEASURED` where there is nothing to divide by."""
+    whole = np.asarray(wholes, float)
+    return ratio_estimate(np.asarray(parts, float)[whole > 0], whole[whole > 0]) if whole.sum() > 0 else UNMEASURED

@@ -6,14 +6,13 @@ from lifelore.figures.gallery import gallery_above
 from lifelore.figures.scenes.object_palette import method_palette
 from lifelore.figures.style import LIGHT, house_style
 from reproduction.chapter2.scenes.scene_example import examples_of
-from reproduction.chapter5.c5_08_grasps.measure import SEARCHES, TRANSFERS
+from reproduction.chapter5.c5_08_grasps.run import SEARCHES, TRANSFERS
 
 NAMES = {
     "seeded": "from seeds",
     "anywhere": "unseeded, anywhere",
     "above": "unseeded, middle from above",
     "carried": "carried by contact points",
-    "copied": "copied to the middle",
     "not carried": "not carried, anywhere",
     "above, not carried": "not carried, middle from above",
 }

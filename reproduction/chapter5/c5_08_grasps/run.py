@@ -1,35 +1,36 @@
-"""Cells of claim C5.8: pairs of settled scenes of one arrangement; grasps are sought in both with few tries.
+"""C5.8: grasps sought with few tries in pairs of settled scenes of one arrangement.
 
 A try is a pose of the gripper chosen from the perceived scene alone; the simulator's true objects tell whether it
-is reached and holds. Labels of the clouds are given.
+is reached and holds. Labels of the clouds are given. Thesis: §2.1, §2.4.2, §2.5.
 """
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from itertools import islice
 
 import numpy as np
 
+from lifelore.core.metrics import Estimate
 from lifelore.core.streams import stream
 from lifelore.domains.tabletop.parallel_gripper import Grasp, GraspedTabletop
 from lifelore.domains.tabletop.photograph import FIRST_OBJECT
 from lifelore.domains.tabletop.settings import TabletopScene
-from lifelore.domains.tabletop.shapes import Shape
 from lifelore.perception.scene import Scene
 from lifelore.perception.topology.grasp_seeds import grasp_seeds
 from lifelore.perception.topology.substructure import Substructure, find_substructure, skeleton
-from reproduction.chapter2.scenes.arranged_scenes import Placement, arranged, settled
+from reproduction.chapter2.scenes.arranged_scenes import arranged
 from reproduction.chapter2.scenes.scene_example import scene_row
-from reproduction.chapter2.scenes.scene_lots import lots, numbers_of
+from reproduction.chapter2.scenes.scene_lots import examples_in, lots, numbers_of
 from reproduction.chapter2.scenes.skeletons import perceived, reading
-from reproduction.chapter5.c5_02_functional_roles.run import PARTS, POOLS
 from reproduction.chapter5.c5_08_grasps.searches import (
     anywhere,
     around,
     carried,
-    copied,
     from_above,
     from_seeds,
 )
+from reproduction.chapter5.ranking import mean_by_cluster
+from reproduction.chapter5.role_scenes import POOLS, role_scene
+from reproduction.engine.estimates import UNMEASURED
 
 LOT = 5
 HOLES = ("hole-other", "hole-hinged")
@@ -38,6 +39,8 @@ ARRANGEMENTS = ("two", "tower", "bridge", "lean", "neighbours", "row", *HOLES)
 """Kinds of scene; the others are those of C5.2, the two scenes of a pair from pools without a common shape."""
 DRAWN = ("bridge", "lean", "hole-other")
 """Arrangements of the figure."""
+SEARCHES = ("seeded", "anywhere", "above")
+TRANSFERS = ("carried", "not carried", "above, not carried")
 TRIES = 10
 """Most tries of a search."""
 LEARNT_TRIES = 100
@@ -51,13 +54,12 @@ def cells(settings: Mapping) -> list[dict]:
 
 def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
     """Tries until success, by object and search; None where no try of `TRIES` succeeds."""
-    name, objects, examples, equal = cell["arrangement"], [], [], []
+    name, objects, examples = cell["arrangement"], [], []
     for number in numbers_of(cell, LOT, settings["pairs"]):
         pair = [drawn_scene(name, pool, seed, number) for pool in POOLS]
         scenes = [perceived(scene.cloud) for scene in pair]
         networks = [reading(scene, ground=True) for scene in scenes]
         same = equal_topology(*networks)
-        equal.append(same is not None)
         worlds = [GraspedTabletop(scene.shapes, scene.poses) for scene in pair]
         for label in scenes[1].objects:
             rng = stream(seed, "C5.8", name, number, label)
@@ -67,7 +69,7 @@ def run_cell(settings: Mapping, cell: Mapping, seed: int) -> dict:
             objects.append(row)
         if number == 0 and name in DRAWN:
             examples.append(scene_row(networks[1], name))
-    return {"arrangement": name, "objects": objects, "equal": equal, "examples": examples}
+    return {"objects": objects, "examples": examples}
 
 
 def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
@@ -75,13 +77,7 @@ def drawn_scene(name: str, pool: str, seed: int, number: int) -> TabletopScene:
     if name in HOLES:
         own_seed = int(stream(seed, "C5.8", "scenes", pool).integers(2**31))
         return arranged(name, own_seed, number)
-    part, draws = PARTS[name], POOLS[pool]
-
-    def any_shape(rng: np.random.Generator) -> Shape:
-        return draws[int(rng.integers(len(draws)))](rng)
-
-    placement = Placement(lambda rng: part.place(rng, any_shape), part.true)
-    return settled(placement, f"C5.8 {pool} {name}", seed, number)
+    return role_scene(name, pool, f"C5.8 {pool} {name}", seed, number)
 
 
 def equal_topology(first: Scene, second: Scene) -> Substructure | None:
@@ -107,7 +103,7 @@ def searched(world: GraspedTabletop, scene: Scene, label: int, rng: np.random.Ge
 def transferred(
     worlds: list[GraspedTabletop], scenes: list[Scene], same: Substructure, label: int, rng: np.random.Generator
 ) -> dict:
-    """Tries of a grasp that worked on the corresponding object of the first scene, carried or copied over."""
+    """Tries of a grasp that worked on the corresponding object of the first scene, carried over."""
     source = next((a for a, b in same.objects.items() if b == label), None)
     if source is None:
         return {}
@@ -120,7 +116,6 @@ def transferred(
         return {}
     return {
         "carried": first_success(worlds[1], label, around(found, rng)),
-        "copied": first_success(worlds[1], label, around([copied(learnt, *points)], rng)),
         "not carried": first_success(worlds[1], label, anywhere(points[1], rng)),
         "above, not carried": first_success(worlds[1], label, from_above(points[1], rng)),
     }
@@ -131,3 +126,51 @@ def first_success(world: GraspedTabletop, label: int, grasps: Iterable[Grasp]) -
     return next(
         (n for n, g in enumerate(islice(grasps, TRIES), start=1) if world.succeeds(g, label - FIRST_OBJECT)), None
     )
+
+
+def measure(settings: Mapping, results: Sequence[Mapping]) -> dict[str, Estimate]:
+    """Shares within `TRIES` tries, and differences on the same objects; intervals resample scenes."""
+    seeded, moved = objects_with_seeds(results), objects_carried(results)
+    found = {name: share(seeded, name) for name in SEARCHES}
+    found |= {name.replace(", ", "_").replace(" ", "_"): share(moved, name) for name in TRANSFERS}
+    found["seeded_less_anywhere"] = difference(seeded, "seeded", "anywhere")
+    return found | {"carried_less_not_carried": difference(moved, "carried", "not carried")}
+
+
+def objects_with_seeds(results: Sequence[Mapping]) -> list[Mapping]:
+    """Objects that have a seed; on these alone searches are compared."""
+    return [row for result in results for row in result["objects"] if row["seeds"]]
+
+
+def objects_carried(results: Sequence[Mapping]) -> list[Mapping]:
+    """Objects to which a grasp that worked on their counterpart could be carried."""
+    return [row for result in results for row in result["objects"] if "carried" in row]
+
+
+def share(rows: Sequence[Mapping], name: str, tries: int = TRIES) -> Estimate:
+    """Share of objects that a search grasps within a number of tries."""
+    return _mean([_within(row, name, tries) for row in rows], rows)
+
+
+def difference(rows: Sequence[Mapping], name: str, other: str) -> Estimate:
+    """Share of one search less that of another on the same objects."""
+    return _mean([_within(row, name, TRIES) - _within(row, other, TRIES) for row in rows], rows)
+
+
+def _within(row: Mapping, name: str, tries: int) -> float:
+    return float(row[name] is not None and row[name] <= tries)
+
+
+def _mean(values: Sequence[float], rows: Sequence[Mapping]) -> Estimate:
+    return mean_by_cluster(values, [row["scene"] for row in rows]) if rows else UNMEASURED
+
+
+def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
+    """Shares within 1, 2, … tries by search; pictures."""
+    curves = [
+        {"search": name, "within": [share(own, name, n).value for n in range(1, TRIES + 1)]}
+        for own, names in ((objects_with_seeds(results), SEARCHES), (objects_carried(results), TRANSFERS))
+        for name in names
+        if own
+    ]
+    return curves + examples_in(results)

@@ -95,11 +95,6 @@ def carried(
     return both
 
 
-def copied(grasp: Grasp, before: NDArray[np.float64], after: NDArray[np.float64]) -> Grasp:
-    """A grasp moved from the middle of some points to that of others, without a turn: carried without topology."""
-    return Grasp(grasp.position + after.mean(axis=0) - before.mean(axis=0), grasp.approach, grasp.closing)
-
-
 def _frame(along: NDArray[np.float64]) -> NDArray[np.float64] | None:
     level = along * [1, 1, 0]
     length = float(np.linalg.norm(level))

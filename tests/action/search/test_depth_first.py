@@ -1,14 +1,13 @@
-"""Depth-first search by hand, against a plain twin and networkx's shortest ways."""
+"""Depth-first search by hand and against a plain twin."""
 
 from types import SimpleNamespace
 
-import networkx as nx
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from lifelore.action.search.depth_first import Preferences, depth_first, iterative_deepening, preferences
+from lifelore.action.search.depth_first import Preferences, depth_first, preferences
 from lifelore.core.errors import InputError
 from lifelore.core.mdp import TERMINAL, Tables
 
@@ -33,15 +32,6 @@ def test_by_hand_the_order_decides_what_is_expanded():
     assert (wrong.reached, wrong.expanded, wrong.actions.tolist()) == (True, 5, [1, 0])
     right = depth_first(FORK, 0, listed([[1, 0]] + [[0, 1]] * 5))
     assert (right.reached, right.expanded, right.actions.tolist()) == (True, 2, [1, 0])
-
-
-def test_by_hand_deepening_sums_over_its_limits():
-    # Limit 1 expands state 0; limit 2 expands 0, then 1, then 4, which reaches the goal.
-    found = iterative_deepening(FORK, 0, listed([[0, 1]] * 6))
-    assert (found.reached, found.expanded, found.actions.tolist()) == (True, 1 + 3, [1, 0])
-    found = iterative_deepening(FORK, 0, listed([[1, 0]] + [[0, 1]] * 5))
-    assert found.expanded == 1 + 2
-    assert not iterative_deepening(FORK, 0, listed([[0, 1]] * 6), max_depth=1).reached
 
 
 def test_pruned_actions_may_miss_the_way():
@@ -97,25 +87,6 @@ def test_it_is_the_recursive_twin(seed, n_states, prune):
     assert found.expanded == expanded <= n_states
 
 
-@given(st.integers(0, 10**6), st.integers(1, 14))
-def test_deepening_finds_a_shortest_way_where_there_is_one(seed, n_states):
-    random = np.random.default_rng(seed)
-    next_state = random.integers(0, n_states, (n_states, 2))
-    tables, start = tables_of(next_state, goal=0), int(random.integers(n_states))
-    found = iterative_deepening(tables, start, preferences(random.random((n_states, 2)), random))
-    # A way has at least one move: the goal is entered, not stood on.
-    graph = nx.DiGraph([(s, "goal" if t == 0 else int(t)) for s in range(n_states) for t in next_state[s]])
-    graph.add_nodes_from([start, "goal"])
-    if nx.has_path(graph, start, "goal"):
-        assert len(found.actions) == nx.shortest_path_length(graph, start, "goal")
-        state = start
-        for action in found.actions.tolist():
-            state = int(next_state[state, action])
-        assert state == 0
-    else:
-        assert not found.reached
-
-
 def test_each_broken_rule_is_one_clear_line():
     preferred, random = listed([[0, 1]] * 6), np.random.default_rng(0)
     chance = FORK._replace(outcome_cum=np.array([0.5, 1.0]))
@@ -123,7 +94,6 @@ def test_each_broken_rule_is_one_clear_line():
         (lambda: depth_first(chance, 0, preferred), "needs a deterministic world"),
         (lambda: depth_first(FORK, 6, preferred), "start must lie in"),
         (lambda: depth_first(FORK, 0, listed([[0, 1]])), "preferred must have an order of shape"),
-        (lambda: iterative_deepening(FORK, 0, preferred, max_depth=0), "max_depth must be at least 1"),
         (lambda: preferences(np.ones(3), random), "probs must be"),
         (lambda: preferences(np.ones((1, 3)), random, prune=2.0), "prune must lie in"),
     ):

@@ -8,9 +8,8 @@ import pytest
 from lifelore.core.labelled_cloud import TABLE, LabelledCloud
 from lifelore.perception.relations.relation import Relation
 from lifelore.perception.scene import Scene
-from reproduction.chapter2.scenes.arranged_scenes import Placement, settled
-from reproduction.chapter5.c5_02_functional_roles.measure import judged_queries
-from reproduction.chapter5.c5_02_functional_roles.run import PARTS, POOLS, ROLES, predicate_bag
+from reproduction.chapter5.c5_02_functional_roles.run import ROLES, judged_queries, predicate_bag
+from reproduction.chapter5.role_scenes import PARTS, POOLS, role_scene
 
 pytest.importorskip("mujoco")
 
@@ -24,9 +23,7 @@ def test_there_are_ten_roles_and_two_pools_without_a_kind_in_common():
 
 @pytest.mark.parametrize("name", PARTS)
 def test_every_part_settles_with_a_role_for_each_thing(name):
-    part, draws = PARTS[name], POOLS["first"]
-    world = settled(Placement(lambda rng: part.place(rng, draws[0]), part.true), name, 3, 0)
-    assert len(world.cloud.objects) == len(part.roles)
+    assert len(role_scene(name, "first", name, 3, 0).cloud.objects) == len(PARTS[name].roles)
 
 
 def test_predicates_of_a_middle_by_hand():
@@ -38,7 +35,7 @@ def test_predicates_of_a_middle_by_hand():
 
 def thing(scene, role, token, shape):
     bag = {token: 1}
-    return {"scene": scene, "role": role, "topology": bag, "near": {"same": 1}, "predicates": bag, "shape": shape}
+    return {"scene": scene, "role": role, "topology": bag, "predicates": bag, "shape": shape}
 
 
 def test_queries_by_hand():
@@ -50,4 +47,4 @@ def test_queries_by_hand():
     assert all(query["topology"] == 1.0 for query in queries)
     assert all(query["shape"] == 0.5 for query in queries)
     # One of two by chance: first or second, (1 + 1/2) / 2.
-    assert all(query["chance"] == query["near"] == 0.75 for query in queries)
+    assert all(query["chance"] == 0.75 for query in queries)

@@ -6,8 +6,8 @@ in each row. Use it to measure how much an action prior saves in a bandit: play 
 same payoffs, and compare their `regret`. Thesis: §3.8.
 
 UCB1 (Auer et al., 2002) pulls the arm of the largest mean + √(2 ln t / n), where n and t count pseudo-pulls too.
-Thompson sampling draws the value of each arm from its posterior and pulls the largest: Beta(1 + paid, 1 + not
-paid), or a normal around the mean of the payoffs and of a weak guess.
+Thompson sampling draws the value of each arm from its posterior, Beta(1 + paid, 1 + not paid), and pulls the
+largest.
 """
 
 from collections.abc import Callable
@@ -17,9 +17,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lifelore.core.errors import InputError
-
-GUESS, GUESS_PULLS = 0.5, 0.25
-"""Mean and weight in pulls of the normal belief about an arm never pulled: its deviation is twice the noise's."""
 
 
 class Arms(NamedTuple):
@@ -81,19 +78,6 @@ def beta_thompson(arms: Arms, generator: np.random.Generator) -> NDArray[np.floa
     return generator.beta(1 + arms.paid, 1 + np.maximum(arms.pulls - arms.paid, 0.0))
 
 
-def gaussian_thompson(noise: float) -> ArmIndex:
-    """Thompson sampling for payoffs with a normal noise of known deviation `noise` > 0."""
-    if not noise > 0:
-        raise InputError(f"noise must be positive, got {noise}")
-
-    def index(arms: Arms, generator: np.random.Generator) -> NDArray[np.float64]:
-        pulls = arms.pulls + GUESS_PULLS
-        mean = (arms.paid + GUESS_PULLS * GUESS) / pulls
-        return generator.normal(mean, noise / np.sqrt(pulls))
-
-    return index
-
-
 def play(
     index: ArmIndex, arms: Arms, payoffs: NDArray[np.float64], generator: np.random.Generator
 ) -> NDArray[np.int64]:
@@ -102,7 +86,7 @@ def play(
     Parameters
     ----------
     index : callable
-        `ucb1`, `beta_thompson` or ``gaussian_thompson(noise)``; ties are broken at random.
+        `ucb1` or `beta_thompson`; ties are broken at random.
     arms : Arms
         The arms before the first pull; not changed.
     payoffs : (n_problems, horizon, n_arms) float

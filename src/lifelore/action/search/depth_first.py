@@ -1,9 +1,7 @@
 """Depth-first search that tries actions in the order of a prior.
 
-Plain depth-first search never enters a state twice. Iterative deepening searches below a depth limit that grows by
-one until it finds a path, which is then a shortest path; below a limit, a state is entered again only at a smaller
-depth. A prior may also prune: actions with a probability below a threshold are not tried, and the search may then
-miss all paths. Thesis: §3.8.
+No state is entered twice. A prior may also prune: actions with a probability below a threshold are not tried, and
+the search may then miss all paths. Thesis: §3.8.
 """
 
 from typing import NamedTuple
@@ -68,32 +66,11 @@ def depth_first(tables: Tables, start: int, preferred: Preferences) -> DepthFirs
         The world is not deterministic, or `start` or `preferred` do not fit it.
     """
     _check(tables, start, preferred)
-    return _found(tables, int(start), preferred, tables.n_states, shortest=False)
-
-
-def iterative_deepening(
-    tables: Tables, start: int, preferred: Preferences, max_depth: int | None = None
-) -> DepthFirstResult:
-    """Depth-first search below limits of 1, 2, … moves; nodes expanded are summed over all limits.
-
-    Parameters
-    ----------
-    tables, start, preferred
-        As in `depth_first`.
-    max_depth : int, optional
-        Last limit tried; default: the number of states, which no shortest path exceeds.
-    """
-    _check(tables, start, preferred)
-    most = tables.n_states if max_depth is None else max_depth
-    if most < 1:
-        raise InputError(f"max_depth must be at least 1, got {max_depth}")
-    expanded = 0
-    for limit in range(1, most + 1):
-        found = _found(tables, int(start), preferred, limit, shortest=True)
-        expanded += found.expanded
-        if found.reached:
-            return found._replace(expanded=expanded)
-    return DepthFirstResult(False, expanded, np.empty(0, np.int32))
+    path = np.empty(tables.n_states, np.int32)
+    reached, expanded, length = _descend(
+        tables.next_state, tables.event, preferred.order, preferred.n_tried, start, path
+    )
+    return DepthFirstResult(bool(reached), int(expanded), path[:length].copy())
 
 
 def _check(tables: Tables, start: int, preferred: Preferences) -> None:
@@ -106,25 +83,16 @@ def _check(tables: Tables, start: int, preferred: Preferences) -> None:
         raise InputError(f"preferred must have an order of shape {shape}, got {preferred.order.shape}")
 
 
-def _found(tables: Tables, start: int, preferred: Preferences, limit: int, shortest: bool) -> DepthFirstResult:
-    entered = np.full(tables.n_states, limit + 1, np.int64)
-    path = np.empty(limit, np.int32)
-    reached, expanded, length = _descend(
-        tables.next_state, tables.event, preferred.order, preferred.n_tried, start, limit, shortest, entered, path
-    )
-    return DepthFirstResult(bool(reached), int(expanded), path[:length].copy())
-
-
 @kernel
-def _descend(next_state, event, order, n_tried, start, limit, shortest, entered, path):
-    """Depth-first below `limit` moves; `entered` holds the least depth at which each state was entered."""
-    states = np.empty(limit + 1, np.int64)
-    at = np.zeros(limit + 1, np.int64)
-    states[0], entered[start] = start, 0
+def _descend(next_state, event, order, n_tried, start, path):
+    n_states = len(path)
+    entered = np.zeros(n_states, np.bool_)
+    states, at = np.empty(n_states, np.int64), np.zeros(n_states, np.int64)
+    states[0], entered[start] = start, True
     depth, expanded = 0, 1
     while depth >= 0:
         state = states[depth]
-        if at[depth] == n_tried[state] or depth == limit:
+        if at[depth] == n_tried[state]:
             depth -= 1
             continue
         action = order[state, at[depth]]
@@ -133,11 +101,9 @@ def _descend(next_state, event, order, n_tried, start, limit, shortest, entered,
         if event[state, action, 0] & TERMINAL:
             return True, expanded, depth + 1
         following = next_state[state, action, 0]
-        # Plain search enters a state once; below a limit, an entry at a smaller depth may lead farther.
-        unseen = entered[following] == limit + 1
-        if unseen or (shortest and depth + 1 < entered[following]):
-            entered[following] = depth + 1
+        if not entered[following]:
+            entered[following] = True
             depth += 1
             states[depth], at[depth] = following, 0
-            expanded += depth < limit
+            expanded += 1
     return False, expanded, 0

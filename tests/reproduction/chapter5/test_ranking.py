@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from sklearn.metrics import average_precision_score
 
 from lifelore.core.errors import InputError
-from reproduction.chapter5.c5_02_functional_roles.ranking import average_precision, mean_by_cluster
+from reproduction.chapter5.ranking import average_precision, mean_by_cluster
 
 
 def test_by_hand():
@@ -45,5 +45,6 @@ def test_mean_weighs_queries_and_counts_clusters():
     found = mean_by_cluster([1.0, 0.0, 0.5, 0.5, 0.2], ["a", "a", "b", "c", "c"])
     assert found.value == pytest.approx(2.2 / 5)
     assert found.n == 3
+    assert found.ci95 is not None
     low, high = found.ci95
     assert low < found.value < high
