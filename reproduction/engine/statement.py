@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from lifelore.core.errors import InputError
 
 YES, HALF, NO, MISSING = "✓", "½", "✗", "–"
-"""Marks; `HALF` at the default: the 95 % interval spans the bound, more runs are needed."""
+"""Marks; `HALF` at the default: it holds on average, but the 95 % interval spans the bound (more runs needed)."""
 REPRODUCED, DIRECTION, OPEN_CHOICE, FAILS, IN_ERROR, UNTESTED = WORDS = (
     "reproduced", "direction reproduced, number not", "depends on an open choice", "not reproduced",
     "thesis in error", "cannot be tested",
@@ -73,16 +73,14 @@ class Statement:
         return cls(says, measure, op, low if high is None else (low, high), central)
 
     def mark(self, measured: Measured) -> str:
-        """`YES` or `NO` by the whole 95 % interval, `HALF` where it spans the bound; by an exact value."""
+        """`YES` by the whole 95 % interval, `HALF` by the value alone, else `NO`."""
         number = measured.get(self.measure, {})
-        asked = number.get("ci95") or [number.get("value")]
-        ends = [x for x in asked if x is not None and math.isfinite(x)]
-        if len(ends) < len(asked):
+        asked = [number.get("value"), *(number.get("ci95") or ())]
+        finite = [x for x in asked if x is not None and math.isfinite(x)]
+        if len(finite) < len(asked):
             return MISSING
-        met = [OPS[self.op](x, self.bound) for x in ends]
-        low, high = self.bound if isinstance(self.bound, tuple) else (self.bound, self.bound)
-        spans = any(met) or (self.op == "in" and ends[0] < low and ends[-1] > high)
-        return YES if all(met) else HALF if spans else NO
+        met = [OPS[self.op](x, self.bound) for x in finite]
+        return YES if all(met) else HALF if met[0] else NO
 
     def marks(self, measured: Measured, readings: Sequence[Measured]) -> str:
         """Three marks: at the default, under some reading, under most."""
@@ -107,7 +105,7 @@ def word_of(statements: Sequence[Statement], marks: Sequence[str], in_error: boo
         return IN_ERROR
     if NO not in default and NO not in most:
         return REPRODUCED if all(of[0] == YES for of in marks) else DIRECTION
-    return OPEN_CHOICE if NO not in some else FAILS
+    return OPEN_CHOICE if set(some) == {YES} else FAILS
 
 
 def number_in_words(number: Mapping, significant: int = 3) -> str:

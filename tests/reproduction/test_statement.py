@@ -31,6 +31,7 @@ def statement(holds, central=True):
     [
         ("x > 0", number(1, 0.5, 2), "✓"),
         ("x > 0", number(1, -0.5, 2), "½"),
+        ("x > 0", number(-1, -2, 0.5), "✗"),  # not on average either
         ("x > 0", number(-1, -2, -0.5), "✗"),
         ("x > 0", number(0, 0, 0), "✗"),
         ("x >= 0", number(0, 0, 0), "✓"),
@@ -82,6 +83,7 @@ def test_a_reading_without_the_measure_does_not_count():
         (["✗✓✓"], [], OPEN_CHOICE),
         (["✓✓✓", "✗✓✗"], ["✓✓✓"], OPEN_CHOICE),
         (["✓✓✓", "✗✗✗"], [], FAILS),
+        (["✓✓✓", "✗½✗"], [], FAILS),
         (["✓✓✓"], ["–––"], UNTESTED),
     ],
 )
