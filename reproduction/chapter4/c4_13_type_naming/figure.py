@@ -21,9 +21,7 @@ def draw(result: Mapping) -> Figure:
         "half of the median\nfirst episode", (last["half_of_first"], 1), (4, -2), va="top", fontsize=8,
         xycoords=("data", "axes fraction"), textcoords="offset points", color=GREY,
     )  # fmt: skip
-    axes.set(
-        xlabel="step of the first episode", ylabel="most likely size / true size", ylim=(0, 5), xlim=(1, None)
-    )
+    axes.set(xlabel="step of the first episode", ylabel="most likely size / true size", ylim=(0, None))
     axes.grid(axis="y", color=LIGHT)
     axes.legend(title="true size", ncols=2)
     return figure

@@ -69,7 +69,7 @@ def test_methods_are_given_what_they_are_said_to_be():
 
 
 def test_only_the_default_runs_every_variant():
-    settings = CLAIM.settings("full")
+    settings = CLAIM.sizes["full"]
     first, *others = cells(settings)
     assert (first["runs"], first["all"]) == (settings["runs"], True)
     assert {(cell["runs"], cell["all"]) for cell in others} == {(settings["grid_runs"], False)}

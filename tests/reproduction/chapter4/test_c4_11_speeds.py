@@ -25,7 +25,7 @@ def test_a_transition_by_hand():
 
 def test_every_game_is_read_under_every_normalisation():
     loss = made([70, 60, 60, 60, 40, 30])
-    # 40 loss units of time and the rest of collisions: fixed scales give the loss back.
+    # Without collisions the fixed scale of time, 400, gives the loss back.
     results = [
         {"game": game, "steps": (400 * loss).tolist(), "hits": (0 * loss).tolist()}
         for game in ("blobs", "s-maze 110")

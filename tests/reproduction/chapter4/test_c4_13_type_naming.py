@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from reproduction.chapter4.ball_game.trials import BEAT, OPEN
+from reproduction.chapter4.ball_game.trials import BEAT, BEATS
 from reproduction.chapter4.c4_13_type_naming.run import numbers, readings, size_ratio
 
 
@@ -35,10 +35,7 @@ def test_a_ratio_has_the_interval_of_its_players():
 
 
 def test_readings_leave_out_choices_of_other_methods():
-    half = {
-        method: made().tolist() for choice in OPEN.values() for to in choice.values() for method in to.values()
-    }
-    result = {"game": "blobs", "normalisation": "fixed", "half": half | {BEAT: made().tolist()}}
+    result = {"game": "blobs", "normalisation": "fixed", "half": {method: made().tolist() for method in BEATS}}
     assert [(cell["ε"], cell["prior"]) for cell, _ in readings({}, [result])] == [
         ("default", "default"), ("1/n", "default"), ("default", "types of the population"),
     ]  # fmt: skip
