@@ -6,7 +6,7 @@ from typing import Any
 from lifelore.domains.ball_game.ball_game import SIZES
 from lifelore.figures.style import BLUE, GREEN, INK, ORANGE, PURPLE, SKY, VERMILION
 
-_SIZE_COLOURS = dict(zip(SIZES, (PURPLE, BLUE, SKY, GREEN, ORANGE, VERMILION), strict=True))
+_SIZE_COLOURS: dict[int, str] = dict(zip(SIZES, (PURPLE, BLUE, SKY, GREEN, ORANGE, VERMILION), strict=True))
 METHODS = {"static": INK, "EXP-3": VERMILION, "BEAT": BLUE}
 WORDS = {"static": "best static speed α*", "EXP-3": "EXP-3", "BEAT": "BEAT"}
 """Colour and label of each curve of Figure 4.16."""

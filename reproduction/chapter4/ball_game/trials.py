@@ -21,7 +21,7 @@ from reproduction.chapter4.ball_game.learners import BeatLearner, PrintedExp3, e
 from reproduction.chapter4.ball_game.play import Floats, Players, play_all
 
 EPISODES = 5
-STEPS = 150
+STEPS = 100
 """Steps of the first episode whose named types are recorded."""
 SHARED = ("games", "normalisations", "runs", "grid_runs", "training")
 """Settings that `run_cell` and `cells` read."""

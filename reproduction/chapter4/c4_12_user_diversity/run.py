@@ -7,12 +7,11 @@ import numpy as np
 from lifelore.core.metrics import Estimate, ratio_estimate
 from reproduction.chapter4.ball_game.games import check_games as check
 from reproduction.chapter4.ball_game.trials import BEAT, EXP3, SHARED, STATIC, cells, readings_of, run_cell
-from reproduction.engine.results_table import BAND, curve_of
 
 __all__ = ["cells", "check", "measure", "readings", "rows", "run_cell", "shared"]
 shared = SHARED
-FEW, MANY, ALL = slice(0, 3), slice(3, 6), slice(0, 6)
-"""Populations of 1 to 3 types, of 4 to 6, and all; every size weighs as much."""
+FEW, THREE, MANY, ALL = slice(0, 3), slice(2, 3), slice(3, 6), slice(0, 6)
+"""Populations of 1 to 3 types, of 3, of 4 to 6, and all; every size weighs as much."""
 
 
 def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
@@ -26,6 +25,7 @@ def numbers(result: Mapping, instead: Mapping[str, str]) -> dict[str, Estimate]:
     return {
         "to_exp3": ratio(EXP3, ALL),
         "to_static_few": ratio(STATIC, FEW),
+        "to_static_at_3": ratio(STATIC, THREE),
         "to_static_many": ratio(STATIC, MANY),
     }
 
@@ -41,6 +41,6 @@ def readings(settings: Mapping, results: Sequence[Mapping]) -> Iterable[tuple[di
 
 
 def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
-    """Mean loss of an episode by method and size of the population in the first game, and its 95 % interval."""
-    losses = {method: np.array(results[0]["losses"][method]).mean(axis=2).T for method in (STATIC, EXP3, BEAT)}
-    return [{"method": method, **curve_of(lost, 4, BAND)} for method, lost in losses.items()]
+    """Mean loss of an episode by method and size of the population in the first game."""
+    losses = {method: np.array(results[0]["losses"][method]).mean(axis=(1, 2)) for method in (STATIC, EXP3, BEAT)}
+    return [{"method": method, "mean": lost.round(4).tolist()} for method, lost in losses.items()]
