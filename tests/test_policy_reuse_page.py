@@ -228,7 +228,7 @@ def test_what_ten_runs_a_pair_give_in_other_worlds_is_what_the_claims_measured()
 
 
 def test_the_default_rule_with_uncertain_models_is_as_the_claim_measured():
-    found = json.loads((RESULTS / "C4.17" / "result.json").read_text(encoding="utf-8"))["measured"]
+    found = json.loads((RESULTS / "O1" / "result.json").read_text(encoding="utf-8"))["measured"]
     text = " ".join(PAGE.split("- **With uncertain models**")[1].split("The decision stands")[0].split())
 
     def told(name: str, sign: int = 1) -> str:

@@ -1,6 +1,6 @@
 """`bench perfect_information`: regret of the myopic value of perfect information beside that of four other rules.
 
-The worlds and their noises are those of claim C4.17, without the three other layouts of the surveillance reserve.
+The worlds and their noises are those of claim O1, without the three other layouts of the surveillance reserve.
 Each round is a group of ten tasks of 50 episodes, with noise and learnt models of its own; all rules meet the
 same. With uncertain models rules hold a belief over the parameters of learnt models too.
 """
@@ -23,16 +23,6 @@ from lifelore.interaction.selection import (
     SelectionRule,
     ValueOfPerfectInformation,
 )
-from reproduction.chapter4.c4_17_default_rule.run import STUCK
-from reproduction.chapter4.c4_17_default_rule.worlds import (
-    CALLS,
-    EQUAL,
-    GOLF,
-    NOISES,
-    TABLES,
-    TELEPHONE,
-    world_of,
-)
 from reproduction.chapter4.reuse.many_tasks import (
     EXACT,
     LEARNT,
@@ -40,6 +30,16 @@ from reproduction.chapter4.reuse.many_tasks import (
     late_regret,
     play_doubting,
     play_rule,
+)
+from reproduction.own.o_01_default_rule.run import STUCK
+from reproduction.own.o_01_default_rule.worlds import (
+    CALLS,
+    EQUAL,
+    GOLF,
+    NOISES,
+    TABLES,
+    TELEPHONE,
+    world_of,
 )
 
 Array = NDArray[np.float64]
@@ -97,7 +97,7 @@ def _rules(case: Case) -> tuple[str, ...]:
 
 
 def played(case: Case, rule: str, round_: int) -> tuple[float, float]:
-    """Mean summed regret of a round's tasks, and the share of them that is stuck as in C4.17."""
+    """Mean summed regret of a round's tasks, and the share of them that is stuck as in O1."""
     name, noise, models = case
     world = world_of(name, noise, 0, round_)
     known = EXACT if models == EXACT else LEARNT

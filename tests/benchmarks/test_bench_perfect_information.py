@@ -4,8 +4,8 @@ import pytest
 
 from benchmarks import bench
 from benchmarks.interaction import perfect_information as case
-from reproduction.chapter4.c4_17_default_rule.worlds import EQUAL, GOLF, TABLES
 from reproduction.chapter4.reuse.many_tasks import EXACT, LEARNT, UNCERTAIN
+from reproduction.own.o_01_default_rule.worlds import EQUAL, GOLF, TABLES
 
 
 @pytest.fixture

@@ -20,7 +20,8 @@ def draw(result: Mapping) -> Figure:
     for name, key in (("static", "static"), ("BEAT", "beat")):
         values = [one[key] for one in row["diversity"]]
         middle.plot(range(1, len(values) + 1), values, color=METHODS[name], label=WORDS[name], marker="o", ms=4)
-    middle.set(title="Figure 4.19", xlabel="population diversity (types)", ylabel="mean loss of a round", ylim=(0, None))
+    middle.set(title="Figure 4.19", xlabel="population diversity (types)", ylabel="mean loss of a round")
+    middle.set_ylim(0, None)
     middle.set_xticks(range(1, len(row["diversity"]) + 1))
     middle.legend()
     named = {f"b = {one['size']}": {"mean": one["ratio"]} for one in row["named"]}

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lifelore.core.errors import InputError
+from lifelore.core.errors import LifeloreError
 from lifelore.core.streams import stream
 from lifelore.domains.ball_game.ball_game import LossScale, ball_game
 from lifelore.domains.ball_game.moves import N_AFTER, N_OUTCOMES
@@ -143,5 +143,5 @@ def test_games_by_their_words():
         "normalisation": "maxima",
     }  # fmt: skip
     for words, rule in (("moon", "unknown layout"), ("blobs, bounces", "a layout, then any of r = b, careless")):
-        with pytest.raises(InputError, match=rule):
+        with pytest.raises(LifeloreError, match=rule):
             check_games({"games": [words]})
