@@ -23,7 +23,6 @@ def draw(result: Mapping) -> Figure:
     left, right = panels
     left.set(yticks=range(len(RULES)), yticklabels=list(RULES), xlabel="regret / regret of each world's best rule")
     left.invert_yaxis()
-    left.set_xlim(1 - 0.1 * (left.get_xlim()[1] - 1), None)
     right.axvline(MOST_STUCK, color=GREY, linestyle=(0, (1, 2)))
     right.set_xlabel("stuck tasks above the least stuck rule, worst world")
     return figure
