@@ -98,8 +98,7 @@ soak: setup-test ## Long runs: 200 kills of lives, 50 of the service under load,
 	$(BIN)/python -m pytest -m soak
 
 reproduction-pages: setup-test ## The pages of docs/reproduction and the gallery from the committed results
-	$(BIN)/python -m reproduction.engine.report
-	$(BIN)/python -m reproduction.engine.gallery
+	$(BIN)/python -m reproduction.engine.pages
 
 docs: reproduction-pages $(BIN)/.docs ## The site in out/docs; a name that nothing explains fails
 	$(BIN)/sphinx-build -q -n -W --keep-going --fresh-env docs out/docs

@@ -12,7 +12,10 @@ def reproduce(
         list[str] | None,
         typer.Argument(metavar="[CLAIM|FIGURE]...", help="Claims (C3.4) or figures (3.7); default: all."),
     ] = None,
-    full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger; else small.")] = False,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Run at a small size, for tests only (the default).")
+    ] = False,
+    full: Annotated[bool, typer.Option("--full", help="Run at the thesis's size or larger.")] = False,
     list_all: Annotated[bool, typer.Option("--list", help="List every claim with its figure.")] = False,
     verify: Annotated[
         bool, typer.Option("--verify", help="Run stored results again and compare them to the last digit.")
@@ -47,10 +50,12 @@ def reproduce(
         found = list_claims()
         print_json(found) if as_json else _print_list(found)
         return
+    if quick and full:
+        raise InputError("quick and full exclude each other: choose one")
     ids = [claim_id for name in claims or [] for claim_id in found_ids(name)]
     folder = Path(out) if out else RESULTS
     if verify:
-        if full or settings or seed:
+        if quick or full or settings or seed:
             raise InputError(
                 "verify takes mode, settings and seed from the stored result; leave out --full, --set and --seed"
             )

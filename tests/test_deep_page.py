@@ -1,6 +1,5 @@
-"""The page on deep learning with a prior: its Python runs, only shorter, and its numbers are the benchmark's."""
+"""The page on deep learning with a prior: its Python runs, only shorter."""
 
-import json
 import re
 import subprocess
 import sys
@@ -9,12 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from benchmarks.action.deep_worlds import GUIDED, SEVEN, UNIFORM
 from lifelore.action.priors.action_prior import ActionPrior
 from lifelore.action.priors.prior_file import load_prior, save_prior
 
-ROOT = Path(__file__).parents[1]
-PAGE = (ROOT / "docs" / "deep_rl.md").read_text(encoding="utf-8")
+PAGE = (Path(__file__).parents[1] / "docs" / "deep_rl.md").read_text(encoding="utf-8")
 EXPLORES, LIVES, COUNTS, MASKS = re.findall(r"```python\n(.*?)```", PAGE, flags=re.S)
 
 
@@ -68,72 +65,3 @@ def test_masks(tmp_path):
 @pytest.mark.parametrize("code", [EXPLORES, LIVES, COUNTS, MASKS])
 def test_what_a_user_writes_is_short(code):
     assert len([line for line in code.splitlines() if line.strip()]) <= 15
-
-
-def test_numbers_are_those_of_the_benchmark():
-    result = json.loads((ROOT / "results" / "bench_deep.json").read_text(encoding="utf-8"))
-    lines = {line.split("|")[1].strip(): line for line in PAGE.splitlines() if line.startswith("| ")}
-    worlds = [name.strip(" `") for name in lines[""].split("|")[2:-1]]
-    assert worlds == list(result["exploring"])
-
-    def told(start):
-        (line,) = [line for name, line in lines.items() if name.startswith(start)]
-        return [cell.strip() for cell in line.split("|")[2:-1]]
-
-    for start, who in (("episodes", SEVEN), ("three", UNIFORM), ("prior", GUIDED)):
-        shares = [result["exploring"][world][who]["value"] for world in worlds]
-        assert told(start) == [f"{100 * share:.1f} %" for share in shares]
-    learning = [result["learning"][world] for world in worlds[:2]]
-    for start, who in (("goals", "DQN"), ("with prior", "DQN with prior")):
-        assert told(start) == [*(f"{np.mean(one['goals'][who]):.0f}" for one in learning), ""]
-    ratios = [
-        (one["gain"]["threshold_ratio"]["value"], *one["gain"]["threshold_ratio"]["ci95"]) for one in learning
-    ]
-    assert told("steps until") == [*("{:.2f} ({:.2f}–{:.2f})".format(*ratio) for ratio in ratios), ""]
-    assert told("runs of 12") == [
-        *(f"{one['gain']['baseline_never']}, {one['gain']['never']}" for one in learning),
-        "",
-    ]
-    assert {len(one["goals"]["DQN"]) for one in learning} == {12}
-    speeds = [100 * (goal["measured"] - 1) for goal in result["goals"] if goal["name"].startswith("a step of")]
-    assert [float(x) for x in re.findall(r"([\d.]+) %", PAGE.split("A step of DQN")[1])][:3] == [
-        round(speed, 1) for speed in speeds
-    ]
-
-
-def test_its_picture_is_small_enough():
-    assert (ROOT / "results" / "bench_deep.png").stat().st_size <= 300_000
-
-
-LAYOUTS = json.loads((ROOT / "results" / "bench_deep_layouts.json").read_text(encoding="utf-8"))
-LAYOUT_ROWS = {row["name"]: row for row in LAYOUTS["rows"]}
-WORLD = "SimpleCrossingS9N1"
-CASES = [
-    ("one", "one layout", "MaskablePPO"),
-    ("another every episode", "another layout every episode", "MaskablePPO"),
-    ("another every episode", "another layout every episode", "DQN"),
-]
-
-
-def shown(name, digits):
-    row = LAYOUT_ROWS[f"{WORLD}, {name}"]
-    low, high = row["ci95"]
-    return f"{row['value']:.{digits}f} [{low:.{digits}f}, {high:.{digits}f}]"
-
-
-@pytest.mark.parametrize(("words", "layouts", "learner"), CASES)
-def test_the_table_of_layouts(words, layouts, learner):
-    case = f"{layouts}, {learner}"
-    score, goals = "score at the end", "goals reached while learning"
-    cells = [
-        shown(f"{case} without prior, {score}", 2),
-        shown(f"{case} with prior, {score}", 2),
-        shown(f"{case}, {score}, gain by prior, mean", 2),
-        shown(f"{case} without prior, {goals}", 0),
-        shown(f"{case} with prior, {goals}", 0),
-    ]
-    assert f"| {words} | {learner} | " + " | ".join(cells) + " |" in PAGE
-
-
-def test_the_number_of_runs():
-    assert {row["n"] for row in LAYOUTS["rows"]} == {5}

@@ -1,5 +1,6 @@
 """The page on extending: its programs run as printed and print what the page shows."""
 
+import os
 import re
 import subprocess
 import sys
@@ -7,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-PAGE = (Path(__file__).parents[1] / "docs" / "extending.md").read_text(encoding="utf-8")
+ROOT = Path(__file__).parents[1]
+PAGE = (ROOT / "docs" / "extending.md").read_text(encoding="utf-8")
 SECTIONS = dict(re.findall(r"^## (.*?)\n(.*?)(?=^## |\Z)", PAGE, flags=re.S | re.M))
 
 
@@ -28,7 +30,8 @@ def test_a_section_prints_what_it_shows(section, tmp_path):
             (tmp_path / named[1]).write_text(code, encoding="utf-8")
         elif language == "python":
             command = [sys.executable, "-W", "error", "-c", code]
-            done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False)
+            path = {**os.environ, "PYTHONPATH": str(ROOT)}  # claims belong to a checkout
+            done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, check=False, env=path)
             assert done.returncode == 0, done.stderr
             assert done.stdout == following
             ran += 1

@@ -14,6 +14,7 @@ DOCS = Path(__file__).parents[1] / "docs"
 EXPECTED = {
     "start/robots": [
         "30 tasks in examples/data/office.yaml",
+        "lore compared with scratch, last third: steps to 80 % ×0.153 [0.120, 0.202]",
         "recognised as office",
         "this robot has finished 36 tasks in all",
         "m from dock to lab over",
@@ -43,7 +44,7 @@ EXPECTED = {
     ],
     "long_lived": ["points below the best possible return", "task 3, context", "believed in"],
     "fleet": ["karl", "rosie", "contributions: 2 added", "contributions: 0 added"],
-    "policy_reuse": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
+    "log_to_choices": ["10 types named", "decision ", "uplift ", "columns is retired", "new 3 forgotten"],
 }
 """Words of the output of each page, in this order."""
 NOT_RUN = {
@@ -134,10 +135,14 @@ def test_a_page_is_walked_from_a_fresh_checkout(page, tmp_path):
         at = shown.index(words, at) + len(words)
 
 
+def test_the_gain_of_memory_is_the_one_that_the_page_shows():
+    assert f"\n    {EXPECTED['start/robots'][1]}" in (DOCS / "start" / "robots.md").read_text("utf-8")
+
+
 @pytest.mark.slow
 def test_an_outcome_comes_by_the_identifier_that_the_choice_printed(tmp_path):
     (line,) = re.findall(
-        r"^    (lifelore reuse update .*)", (DOCS / "policy_reuse.md").read_text("utf-8"), flags=re.M
+        r"^    (lifelore reuse update .*)", (DOCS / "log_to_choices.md").read_text("utf-8"), flags=re.M
     )
     log = DOCS.parent / "examples" / "data" / "log.csv"
     made = output(

@@ -62,15 +62,15 @@ class Statement:
         >>> Statement.parsed("first return is positive", "first > 0")
         Statement(says='first return is positive', measure='first', op='>', bound=0.0, central=False)
         """
-        found = _HOLDS.fullmatch(holds.strip())
         try:
-            measure, op, bound = found.groups()  # type: ignore[union-attr]
-            ends = tuple(map(float, bound.strip("[]").split(","))) if op == "in" else (float(bound),)
-            return cls(says, measure, op, ends if op == "in" else ends[0], central)  # type: ignore[arg-type]
+            measure, op, bound = _HOLDS.fullmatch(holds.strip()).groups()  # type: ignore[union-attr]
+            ends = [float(end) for end in bound.strip("[]").split(",")]
+            (low, high) = ends if op == "in" else (*ends, None)
         except (AttributeError, ValueError):
             raise InputError(
                 f"holds of '{says}' must read like 'measure > 0' or 'measure in [0, 1]', got '{holds}'"
             ) from None
+        return cls(says, measure, op, low if high is None else (low, high), central)
 
     def mark(self, measured: Measured) -> str:
         """`YES` or `NO` by the whole 95 % interval, `HALF` where it spans the bound; by an exact value."""

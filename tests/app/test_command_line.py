@@ -1,7 +1,6 @@
 """`lifelore` as a whole: nothing heavy for its help, one line for a mistake, and what every command has."""
 
 import ast
-import re
 import subprocess
 import sys
 from importlib.metadata import entry_points
@@ -10,7 +9,6 @@ import pytest
 import typer
 
 import lifelore
-from benchmarks import BENCHES
 from lifelore.app import command_line
 from lifelore.domains.worlds import domain_names
 
@@ -26,7 +24,7 @@ print(status, sorted(sys.modules), file=sys.stderr)
 @pytest.mark.parametrize(
     "arguments",
     [["--help"], ["live", "--help"], ["memory", "--help"], ["memory", "forget", "--help"], ["reproduce", "--help"],
-     ["bench", "--help"], ["doctor", "--help"], ["version"]],
+     ["doctor", "--help"], ["version"]],
     ids=" ".join,
 )  # fmt: skip
 def test_help_and_version_import_nothing_heavy(arguments):
@@ -83,9 +81,7 @@ def test_no_sentence_of_a_list_of_commands_is_cut_off(group, ask, monkeypatch):
     assert "..." not in listed
 
 
-def test_help_lists_every_benchmark_and_domain(ask):
-    shown = " ".join(ask("bench", "--help").out.split())
-    assert [name for name in BENCHES if name not in re.findall(r"[a-z_]+", shown)] == []
+def test_help_lists_every_domain(ask):
     for verb in ("live", "teach"):
         shown = " ".join(ask(verb, "--help").out.split())
         assert [name for name in domain_names() if name not in shown.split("--domain")[1][:120]] == []
@@ -105,7 +101,6 @@ def test_the_contract_names_these_commands():
         "teach",
         "advise",
         "reproduce",
-        "bench",
         "doctor",
         "explain",
         "serve",

@@ -8,10 +8,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lifelore.app import reproduce_command
 from lifelore.app.memory_table import print_memory
+from lifelore.core.errors import InputError
 from lifelore.memory import open_memory
-from reproduction.engine.condition_table import counted_rows
-from reproduction.engine.registry import claim_of
 
 OVERVIEW = {"location", "schema", "robots", "lore", "forgotten", "forgotten_records", "buildings"}
 REPORT = {"lifelore", "python", "system", "cores", "packages", "checks"}
@@ -217,19 +217,19 @@ def test_reading_verbs_create_no_memory(ask, tmp_path):
     assert not list(tmp_path.glob("**/*.db"))
 
 
-def test_the_ledger_of_claims(ask):
+def test_the_list_of_claims(ask):
     entries = ask("reproduce", "--list", "--json").document
-    assert all(set(entry) == {"claim", "where", "reports", "built"} for entry in entries)
-    assert {"C3.1", "C3.2"} <= {entry["claim"] for entry in entries if entry["built"]}
+    assert all(set(entry) == {"claim", "figure", "title", "sentence"} for entry in entries)
     said = ask("reproduce", "--list")
     assert (said.status, said.err) == (0, "")
     assert all(entry["claim"] in said.out for entry in entries)
 
 
+@pytest.mark.parametrize("name", ["C3.1", "3.1"])
 @pytest.mark.parametrize("as_json", [True, False])
-def test_a_claim_from_the_command_line(as_json, ask, tmp_path):
+def test_a_claim_from_the_command_line(as_json, name, ask, tmp_path):
     options = ("--set", "mazes=2", "--set", "tasks=3", "--out", "results", "--jobs", 1)
-    said = ask("reproduce", "C3.1", *options, *(["--json"] if as_json else []))
+    said = ask("reproduce", name, *options, *(["--json"] if as_json else []))
     assert (said.status, said.err) == (0, "")
     assert (tmp_path / "results/C3.1/result.json").is_file()
     if as_json:
@@ -238,11 +238,13 @@ def test_a_claim_from_the_command_line(as_json, ask, tmp_path):
     else:
         result = json.loads((tmp_path / "results/C3.1/result.json").read_text(encoding="utf-8"))
         words = " ".join(said.out.split())
-        assert (
-            f": {result['second']['verdict']} (first reading: {result['verdict']}; a quick run, no evidence)"
-            in words
-        )
-        answers = re.findall(r"^  (yes|no|open|missing) ", said.out, flags=re.M)
-        assert len(answers) == len(counted_rows(claim_of("C3.1"), result))
-        assert answers == sorted(answers, key=lambda answer: answer == "yes")
+        assert f": {result['verdict']}; a small run, no evidence" in words
+        shown = re.findall(r"^  ([✓½✗–]{3}) ", said.out, flags=re.M)
+        assert shown == ["".join(marks) for marks in result["marks"].values()]
         assert said.out.endswith("results/C3.1/figure.png\n\n")
+
+
+def test_reproduce_elsewhere_names_the_checkout(monkeypatch, tmp_path):
+    monkeypatch.setattr(reproduce_command, "CHECKOUT", tmp_path)
+    with pytest.raises(InputError, match="runs in a checkout of the repository"):
+        reproduce_command.reproduce_verb()()

@@ -130,7 +130,7 @@ NAMES = {
     f"{LATTICE} --start a,b": "start must be ROW,COL",
     f"{LATTICE} --start nan,1": "start must be ROW,COL",
     "memory forget nobody --memory {known}": "robot 'nobody' has contributed nothing here; known robots: robot",
-    "reproduce C9.9": "claim 'C9.9' is not in the ledger",
+    "reproduce C9.9": "no claim or figure 'C9.9'",
     "reproduce C3.1 --quick --full": "exclude each other",
     "reproduce C3.1 --verify --full": "takes mode, settings and seed from the stored result",
     "reproduce C3.1 --verify --out {folder}": "no result of C3.1 in",
@@ -140,11 +140,6 @@ NAMES = {
     "reproduce C3.1 --jobs 0 --out {folder}": "jobs must be at least 1",
     "reproduce C3.1 --jobs x": "'--jobs'",
     "reproduce C3.1 --out {text}": "Not a directory",
-    "bench": "Missing argument",
-    "bench nonsense": "bench must be one of kernels",
-    "bench nonsense --json": "got 'nonsense'",
-    "bench kernels --repeats 0": "repeats must lie in",
-    "bench kernels --repeats x": "'--repeats'",
 }
 MAPS = {
     f"{LATTICE} --map {{map}}": "map does not apply to domain",

@@ -10,14 +10,16 @@ import pytest
 from lifelore.core.errors import InputError
 from reproduction.engine import registry
 from reproduction.engine.claim import Claim
-from reproduction.engine.predicate import Predicate
+from reproduction.engine.statement import Statement
 
 
 def claim(check=None):
     settings = {"runs": 5, "rate": 0.5, "name": "all", "sizes": [1, 2], "deep": {"a": 1}, "fast": True}
     nothing = dict.fromkeys(("cells", "run_cell", "measure", "rows", "draw"), lambda *_: None)
+    words = dict.fromkeys(("title", "sentence", "thesis", "here", "decides"), "w")
+    statements = (Statement.parsed("x is positive", "x > 0", central=True),)
     sizes = {"quick": {**settings, "runs": 1}, "full": settings}
-    return Claim("C0.0", "t", "th", sizes, Predicate((), ()), **nothing, check=check)  # type: ignore[arg-type]
+    return Claim("C0.0", **words, statements=statements, sizes=sizes, check=check, **nothing)  # type: ignore[arg-type]
 
 
 def test_modes():
@@ -73,9 +75,9 @@ def test_the_claims_own_check_sees_the_overridden_settings():
     assert seen[0]["runs"] == 3
 
 
-def test_a_cause_says_whether_a_test_shows_it():
-    one = replace(claim(), causes={"a": "it rains", "b": "it pours"}, shown_by={"b": "E7"})
-    assert one.causes_in_words() == {"a": "it rains (untested)", "b": "it pours (shown by tests: E7)"}
+def test_a_claim_without_a_central_statement_is_refused():
+    with pytest.raises(InputError, match="must have a statement with central = true"):
+        replace(claim(), statements=(Statement.parsed("x is positive", "x > 0"),))
 
 
 def test_overriding_leaves_the_claim_as_it_was():
@@ -84,22 +86,22 @@ def test_overriding_leaves_the_claim_as_it_was():
     assert one.settings("full")["runs"] == 5
 
 
-def test_a_small_claim_stands_in_one_module(tmp_path, monkeypatch):
-    text = (Path(registry.__file__).parents[1] / "chapter2/c2_09_substructure/claim.toml").read_text()
+def test_a_claim_is_loaded_from_its_folder(tmp_path, monkeypatch):
+    text = (Path(registry.__file__).parents[1] / "chapter3/c3_01_useful_actions/claim.toml").read_text()
     (tmp_path / "small").mkdir()
     (tmp_path / "small/claim.toml").write_text(text)
     (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print")
     monkeypatch.syspath_prepend(tmp_path)
-    claim = Claim.load("C2.9", tmp_path / "small", "small")
+    claim = Claim.load("C3.1", tmp_path / "small", "small")
     assert claim.cells is claim.draw is print
     assert claim.check is None
     (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = print  # no figure")
     importlib.invalidate_caches()
     monkeypatch.delitem(sys.modules, "small.run")
     with pytest.raises(InputError, match="missing draw"):
-        Claim.load("C2.9", tmp_path / "small", "small")
-    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print; shared = ('sizes',)")
+        Claim.load("C3.1", tmp_path / "small", "small")
+    (tmp_path / "small/run.py").write_text("cells = run_cell = measure = rows = draw = print; shared = ('speed',)")
     importlib.invalidate_caches()
     monkeypatch.delitem(sys.modules, "small.run")
-    with pytest.raises(InputError, match=r"shared of .* must name settings, got sizes"):
-        Claim.load("C2.9", tmp_path / "small", "small")
+    with pytest.raises(InputError, match=r"shared of .* must name settings, got speed"):
+        Claim.load("C3.1", tmp_path / "small", "small")

@@ -14,7 +14,8 @@ from lifelore.core.errors import InputError, MissingExtraError
 from reproduction.engine import cluster
 from reproduction.engine.reproduce import reproduce
 
-CLAIM = "C3.2"
+CLAIM = "C3.1"
+SMALL = {"mazes": 500, "tasks": 5}
 
 
 def wait_for(process: subprocess.Popen[str], pattern: str) -> str:
@@ -58,7 +59,7 @@ def test_a_cluster_without_workers_is_refused(scheduler, tmp_path):
 
 
 def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, tmp_path):
-    here = reproduce([CLAIM], out=tmp_path / "here", jobs=1)
+    here = reproduce([CLAIM], out=tmp_path / "here", overrides=SMALL, jobs=1)
     victim, survivor = worker(scheduler), worker(scheduler)
     killed = []
 
@@ -68,7 +69,9 @@ def test_a_cluster_gives_the_same_bits_also_where_a_worker_is_killed(scheduler, 
             victim.send_signal(signal.SIGKILL)
 
     with victim, survivor:
-        there = reproduce([CLAIM], out=tmp_path / "there", engine="dask", scheduler=scheduler, progress=kill)
+        there = reproduce(
+            [CLAIM], out=tmp_path / "there", overrides=SMALL, engine="dask", scheduler=scheduler, progress=kill
+        )
         assert victim.wait() == -signal.SIGKILL
         survivor.kill()
     ((done, total),) = killed

@@ -7,19 +7,13 @@ from pathlib import Path
 import pytest
 
 from lifelore.core.errors import InputError, NotFoundError, StoreError
+from lifelore.core.metrics import mean_estimate
 from reproduction.engine import reproduce as module
-from reproduction.engine.predicate import Predicate
 from reproduction.engine.provenance import versions
 from reproduction.engine.reproduce import reproduce, rounded
 from tests.reproduction.toy_claim import toy_claim
 
 RAN = []
-PREDICATE = {
-    "conditions": [
-        {"name": "a", "measure": "x", "part": "value", "op": ">", "bound": 0, "words": "x is positive"}
-    ],
-    "rules": [{"verdict": "holds", "all": ["a"]}],
-}
 
 
 def run_cell(settings, cell, seed):
@@ -32,7 +26,7 @@ def run_cell(settings, cell, seed):
 @pytest.fixture
 def toy(monkeypatch):
     settings = {"n": 6, "fail_at": -1}
-    claim = toy_claim(settings, run_cell, Predicate.from_data(PREDICATE))
+    claim = toy_claim(settings, run_cell, limits={"fail_at": {"least": -1}})
     monkeypatch.setattr(module, "claim_of", lambda claim_id: claim)
     monkeypatch.setattr(module, "source_key", lambda name: "code")
     monkeypatch.setattr(module, "provenance", lambda name, data: {"source": "code", "cores": 1})
@@ -103,7 +97,9 @@ def test_progress_counts_up_to_all(toy, tmp_path):
 def test_result_by_hand(toy, tmp_path):
     result = reproduce(["C3.1"], out=tmp_path, overrides={"n": 3})[0]
     assert result["measured"]["x"]["value"] == 1.33333  # mean of 0, 1, 2 and a third, to six digits
-    assert result["verdict"] == "holds"
+    assert result["verdict"] == "reproduced"
+    assert result["marks"] == {"x is positive": ["✓", "✓", "✓"]}
+    assert result["readings"] == []
     assert result["rows"] == [{"x": 0.333333}, {"x": 1.33333}, {"x": 2.33333}]
     assert result["settings"] == {"n": 3, "fail_at": -1}
     assert {"python", "lifelore", "numpy", "numba", "scipy"} <= set(result["versions"])
@@ -123,7 +119,7 @@ def test_a_disk_that_refuses_is_one_line(toy, tmp_path):
 
 
 def test_what_is_refused_before_anything_runs(tmp_path):
-    with pytest.raises(NotFoundError, match="not in the ledger"):
+    with pytest.raises(NotFoundError, match=r"no claim 'C1\.1'"):
         reproduce(["C1.1"], out=tmp_path)
     with pytest.raises(InputError, match="jobs must be at least 1, got 0"):
         reproduce(["C3.1"], out=tmp_path, jobs=0)
@@ -144,3 +140,15 @@ def test_a_quick_run_never_takes_the_place_of_evidence(toy, tmp_path):
     reproduce(["C3.1"], "quick", out=tmp_path)
     assert (tmp_path / "C3.1" / "result.json").read_bytes() == evidence
     assert json.loads((tmp_path / "C3.1" / "quick" / "result.json").read_text())["mode"] == "quick"
+
+
+def test_readings_are_judged_and_drawn(toy, tmp_path, monkeypatch):
+    values = {"low": -1.0, "middle": 1.0, "high": 2.0}
+    read = lambda settings, results: [({"choice": k}, {"x": mean_estimate([v])}) for k, v in values.items()]  # noqa: E731
+    monkeypatch.setattr(module, "claim_of", lambda claim_id: replace(toy, readings=read))
+    result = reproduce(["C3.1"], out=tmp_path, jobs=1)[0]
+    assert result["marks"] == {"x is positive": ["✓", "✓", "✓"]}
+    assert [reading["cell"]["choice"] for reading in result["readings"]] == ["low", "middle", "high"]
+    assert (tmp_path / "C3.1" / "readings.png").read_bytes().startswith(b"\x89PNG")
+    values["middle"] = -2.0
+    assert reproduce(["C3.1"], out=tmp_path, jobs=1)[0]["marks"] == {"x is positive": ["✓", "✓", "½"]}

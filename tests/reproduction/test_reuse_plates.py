@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 def test_every_picture_is_drawn_and_shown():
     page = (ROOT / "docs" / "policy_reuse.md").read_text(encoding="utf-8")
     names = []
-    for name, figure in plates(ROOT / "results"):
+    for name, figure in plates(ROOT / "reproduction" / "results"):
         assert figure.axes
         assert f"](pictures/{name}.png)" in page
         assert (ROOT / "docs" / "pictures" / f"{name}.png").stat().st_size < 300_000

@@ -44,15 +44,14 @@ def test_another_digit_is_found(stored, tmp_path):
     assert found["differences"][0]["where"].endswith(".value")
 
 
-def test_another_measure_and_another_second_verdict_are_found(stored, tmp_path):
+def test_another_mark_and_another_reading_are_found(stored, tmp_path):
     def change(result):
-        result["second"]["verdict"] = "undecided"
-        (others,) = [row["other_measures"] for row in result["rows"] if "other_measures" in row]
-        next(iter(others.values()))["n"] += 1
+        next(iter(result["marks"].values()))[0] = "½"
+        result["readings"][0]["cell"]["generator"] = "another"
 
     (found,) = verify(["C3.1"], out=spoiled(stored, tmp_path, change))
     assert found["n_differences"] == 2
-    assert found["differences"][0]["where"] == "second"
+    assert [one["where"].partition(".")[0] for one in found["differences"]] == ["marks", "readings[0]"]
 
 
 def test_a_result_whose_outside_data_are_not_here_is_not_run(stored, tmp_path, monkeypatch):
@@ -71,20 +70,21 @@ def test_a_result_whose_outside_data_are_not_here_is_not_run(stored, tmp_path, m
 
 
 def test_where_and_what_differs():
+    made = {"source": "k", "processor": "p", "simd": "s", "data": {}}
     one = {
-        "claim": "C3.1", "verdict": "holds", "versions": {"numpy": "1"}, "rows": [{"x": 1}, {"x": 2}],
-        "measured": {"a": {"value": 1.0}, "seconds": {"value": 5.0}},
+        "claim": "C3.1", "verdict": "reproduced", "marks": {}, "versions": {"numpy": "1"}, "readings": [],
+        "rows": [{"x": 1}, {"x": 2}], "measured": {"a": {"value": 1.0}, "seconds": {"value": 5.0}}, "made": made,
     }  # fmt: skip
     other = {
-        "claim": "C3.1", "verdict": "holds in part", "versions": {"numpy": "2"}, "rows": [{"x": 1}],
-        "measured": {"a": {"value": 1.0}, "b": {"value": 3}, "seconds": {"value": 6.0}}, "made": {"source": "k"},
-        "seconds": 7.0,
+        **one, "verdict": "not reproduced", "versions": {"numpy": "2"}, "rows": [{"x": 1}],
+        "measured": {"a": {"value": 1.0}, "b": {"value": 3}, "seconds": {"value": 6.0}},
+        "made": {**made, "source": "l"}, "seconds": 7.0,
     }  # fmt: skip
     found = compared(one, other)
     assert [difference["where"] for difference in found["differences"]] == ["verdict", "measured.b", "rows[1]"]
     assert found["changed"] == [
         {"where": "versions.numpy", "stored": "1", "now": "2"},
-        {"where": "source", "stored": "nothing", "now": "k"},
+        {"where": "source", "stored": "k", "now": "l"},
     ]
 
 

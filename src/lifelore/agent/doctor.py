@@ -117,7 +117,7 @@ def _memory(where: str | None) -> dict:
 
 def _compiler() -> dict:
     found = shutil.which("gcc")
-    return _check("C compiler", True, found or "none; only `bench kernels` uses it")
+    return _check("C compiler", True, found or "none; only `make bench NAME=kernels` uses it")
 
 
 def _check(what: str, ok: bool, finding: str, advice: str | None = None) -> dict:

@@ -72,6 +72,18 @@ def test_it_serves_and_stops_by_a_signal(started, study, tmp_path):
     assert [one["status"] for one in lines if one["message"] == "request"] == [200] * 4
 
 
+@pytest.mark.parametrize("inherited", [signal.SIG_IGN, signal.SIG_DFL], ids=["ignored", "default"])
+def test_its_status_after_sigint_does_not_depend_on_the_shell(start, tmp_path, inherited):
+    """A job in the background of a shell, and under nohup, inherits an ignored SIGINT."""
+    child = start(
+        "serve", "--port", 0, "--memory", tmp_path / "lifelore.db", "--json",
+        preexec_fn=lambda: signal.signal(signal.SIGINT, inherited),
+    )  # fmt: skip
+    child.stdout.readline()
+    child.send_signal(signal.SIGINT)
+    assert child.wait(60) == 130
+
+
 def test_it_stops_where_its_standard_input_ends(start, study, tmp_path):
     memory = tmp_path / "lifelore.db"
     child = start("serve", "--port", 0, "--memory", memory, "--json", "--until-eof", stdin=subprocess.PIPE)

@@ -22,7 +22,7 @@ Array = NDArray[np.float64]
 
 ESTIMATORS = ("ips", "self-normalised", "doubly-robust")
 LEAST_EFFECTIVE_USERS = 20.0
-"""Below so many effective users, 95 % intervals cover the truth less often: see `bench evaluation`."""
+"""Below so many effective users, 95 % intervals cover the truth less often."""
 LARGEST_SHARE = 0.1
 """Share of a user in all weights above which a warning names it."""
 MEAN_WEIGHT_ERRORS = 3.3

@@ -65,8 +65,10 @@ def serve(
         timeout_graceful_shutdown=GRACE,
         ws_max_size=settings.largest_body,
     )
-    # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then.
+    # uvicorn raises the signal again when it has stopped; SIGTERM has done its work then. A process started in the
+    # background of a shell inherits an ignored SIGINT; the status of a stopped service is the same there.
     signal.signal(signal.SIGTERM, lambda number, frame: None)
+    signal.signal(signal.SIGINT, signal.default_int_handler)
     ready(f"http://{name}:{listening.getsockname()[1]}")
     server = uvicorn.Server(config)
     if until is not None:

@@ -17,7 +17,7 @@ from lifelore.interaction.beliefs.hazard import HazardTerms
 
 Array = NDArray[np.float64]
 DEFAULT_HAZARD = 0.002
-"""Default probability per episode of a new type; `lifelore bench changing_types` compares others."""
+"""Default probability per episode of a new type; a larger one forgets sooner what a known user showed."""
 ROWS_AT_ONCE = 1 << 20
 """Size of the largest temporary array when many beliefs take a step of a matrix; more is no faster."""
 
