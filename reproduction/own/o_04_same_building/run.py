@@ -62,5 +62,5 @@ def rows(settings: Mapping, results: Sequence[Mapping]) -> list[dict]:
     """The matches of every kind of map."""
     return [
         {"map": name, "same": name in EDITS, "match": [result["compared"][name]["match"] for result in results]}
-        for name in results[0]["compared"]
+        for name in (*EDITS, *OTHERS)
     ]
