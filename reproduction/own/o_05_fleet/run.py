@@ -1,8 +1,8 @@
 """O5: rounds until a fleet is competent in an office that no robot knows, by the number of robots.
 
 In every round each robot takes over what the fleet knew before the round, lives one short task with a memory file
-of its own, and gives the file to the fleet, as robots do that are offline during a task. A fleet is competent where
-its tasks have at most a tenth of the refused moves (into a wall) of robots that know nothing.
+of its own, and gives the file to the fleet, as robots do that are offline during a task. A fleet is competent
+where its tasks have at most a tenth of the refused moves (into a wall) of robots that know nothing.
 """
 
 import tempfile
