@@ -13,7 +13,7 @@ SHOWN = (2, 20, 60)
 def draw(result: Mapping) -> Figure:
     """A session of three sizes each: a line for policy reuse, dots for Algorithm 9."""
     *sessions, last = result["rows"]
-    figure = new_figure(8.4, 3.2)
+    figure = new_figure(8.4, 3.5)
     left, right = figure.subplots(1, 2, width_ratios=[1.5, 1])
     for session in sessions:
         size = SIZES[session["kind"]]
@@ -24,8 +24,8 @@ def draw(result: Mapping) -> Figure:
     left.plot([], [], "o", ms=3.5, color=INK, label="Algorithm 9")
     left.plot([], [], color=INK, linewidth=1.2, label="policy reuse")
     left.set(xlabel="step of a session", ylabel="belief in the true type", ylim=(0, 1.02))
-    left.legend(loc="center right")
-    right.hist(last["vanished"], bins=20, color=VERMILION)
+    figure.legend(*left.get_legend_handles_labels(), ncols=5, loc="outside lower center")
+    right.hist(last["vanished"], bins=8, color=VERMILION)
     right.set(xlabel="step at which all products are 0", ylabel="sessions", title="As printed, never normalised")
     for axes in (left, right):
         axes.grid(axis="y", color=LIGHT)
